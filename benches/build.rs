@@ -18,14 +18,16 @@ fn main() -> std::io::Result<()> {
         for symbolic in [false, true] {
             let name = format!("Chain{n}{}", if symbolic { "Parameters" } else { "" });
             let extra = if symbolic { format!("{extra}, prepare") } else { extra.to_string() };
-            let source = chains::chain(&name, n, symbolic);
+            let source = chains::chain_source(&name, n, symbolic);
             text += &format!(
                 "#[linkwork::mechanism({}{extra})]\n#[derive(Clone, Copy)]\n{}\n",
                 source.arguments, source.item
             );
             if symbolic {
-                text +=
-                    &format!("impl {name} {{ fn numbers() -> Self {{ {} }} }}\n", chains::value("Self", n));
+                text += &format!(
+                    "impl {name} {{ fn numbers() -> Self {{ {} }} }}\n",
+                    chains::chain_value_expression("Self", n)
+                );
             }
         }
     }

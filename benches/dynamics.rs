@@ -1,10 +1,10 @@
 //! Every generated function and the generic implementation, on 256 random states in turn.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use linkwork_benches::pairs::robots;
+use linkwork_benches::pairs::benchmark_robots;
 
-fn dynamics(criterion: &mut Criterion) {
-    for robot in robots() {
+fn benchmark_dynamics(criterion: &mut Criterion) {
+    for robot in benchmark_robots() {
         let mut group = criterion.benchmark_group(robot.name);
         for mut pair in robot.pairs {
             for (which, run) in [("generated", &mut pair.generated), ("generic", &mut pair.generic)] {
@@ -21,5 +21,5 @@ fn dynamics(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, dynamics);
+criterion_group!(benches, benchmark_dynamics);
 criterion_main!(benches);

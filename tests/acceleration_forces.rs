@@ -55,7 +55,7 @@ struct Unsteady<T: Real> {
 static ANGLES: [f64; 5] = [-1.6, -0.5, 0.1, 0.6, 1.7];
 static LIFTS: [f64; 5] = [-0.3, -0.9, 0.6, 1.4, 0.2];
 
-fn unsteady() -> Unsteady<f64> {
+fn unsteady_aircraft() -> Unsteady<f64> {
     let lift = Table::new([&ANGLES], &LIFTS).unwrap().smooth();
     Unsteady {
         mass: 900.0,
@@ -104,19 +104,19 @@ struct Coupled {
 const COUPLED: Coupled = Coupled { gain: 0.2, share: 0.5, reach: 1.3, added: 0.7 };
 
 /// Returns the derivative of `f` at zero by central differences of eighth order with step `h`.
-fn slope<const N: usize>(h: f64, f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
+fn derivative_at_zero<const N: usize>(h: f64, f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
     let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
     let terms = weights.iter().zip(1..).map(|(w, k)| (f(k as f64 * h) - f(-(k as f64) * h)) * *w);
     terms.fold(SVector::zeros(), |sum, term| sum + term) / h
 }
 
 /// Returns the derivatives of `f` along `K` directions by differences: a matrix in column-major order.
-fn slopes<const N: usize, const K: usize>(
+fn derivatives_at_zero<const N: usize, const K: usize>(
     sizes: [f64; K],
     f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
 ) -> Vec<f64> {
     let derivative_column = |k: usize| {
-        slope(sizes[k], |s| {
+        derivative_at_zero(sizes[k], |s| {
             let mut by = SVector::zeros();
             by[k] = s;
             f(by)
@@ -136,38 +136,38 @@ struct Case<const NQ: usize, const NV: usize, const NU: usize> {
 fn in_flight() -> Vec<Case<7, 7, 2>> {
     let mut random = Random::new(3);
     let random_case = |k: usize| {
-        let turn: SVector<f64, 4> = random.vector::<4>(1.0).normalize();
+        let turn: SVector<f64, 4> = random.random_vector::<4>(1.0).normalize();
         let q = SVector::from_column_slice(&[10.0, 20.0, -900.0, turn[0], turn[1], turn[2], turn[3]]);
-        let mut v: SVector<f64, 7> = random.vector(0.7);
+        let mut v: SVector<f64, 7> = random.random_vector(0.7);
         v[0] += 60.0;
         v[2] += 3.0 * k as f64;
         v[6] = 3000.0 + 100.0 * v[6];
-        Case { t: 0.0, q, v, a: random.vector(2.0), u: random.vector(1.0) }
+        Case { t: 0.0, q, v, a: random.random_vector(2.0), u: random.random_vector(1.0) }
     };
     (0..6).map(random_case).collect()
 }
 
-fn coupled() -> Vec<Case<3, 3, 1>> {
+fn coupled_cases() -> Vec<Case<3, 3, 1>> {
     let mut random = Random::new(8);
     let random_case = |_| Case {
-        t: random.uniform(2.0),
-        q: random.vector(1.5),
-        v: random.vector(1.5),
-        a: random.vector(3.0),
-        u: random.vector(2.0),
+        t: random.uniform_number(2.0),
+        q: random.random_vector(1.5),
+        v: random.random_vector(1.5),
+        a: random.random_vector(3.0),
+        u: random.random_vector(2.0),
     };
     (0..8).map(random_case).collect()
 }
 
 #[test]
 fn forward_undoes_inverse_dynamics() {
-    let craft = unsteady();
+    let craft = unsteady_aircraft();
     let whole = craft.extended();
     for Case { t, q, v, a, .. } in in_flight() {
         let tau = whole.inverse_dynamics(t, &q, &v, &a);
         assert_similar("v̇", whole.forward_dynamics(t, &q, &v, &tau).as_slice(), a.as_slice(), 1e-11);
     }
-    for Case { t, q, v, a, .. } in coupled() {
+    for Case { t, q, v, a, .. } in coupled_cases() {
         let tau = COUPLED.inverse_dynamics(t, &q, &v, &a);
         assert_similar("v̇", COUPLED.forward_dynamics(t, &q, &v, &tau).as_slice(), a.as_slice(), 1e-11);
     }
@@ -175,7 +175,7 @@ fn forward_undoes_inverse_dynamics() {
 
 #[test]
 fn what_multiplies_accelerations_is_not_symmetric() {
-    for Case { t, q, v, .. } in coupled() {
+    for Case { t, q, v, .. } in coupled_cases() {
         let at_rest = COUPLED.inverse_dynamics(t, &q, &v, &SVector::zeros());
         assert_similar("h", at_rest.as_slice(), COUPLED.bias_forces(t, &q, &v).as_slice(), 1e-14);
         let acceleration_column = |k: usize| {
@@ -208,7 +208,7 @@ fn what_multiplies_accelerations_is_not_symmetric() {
 
 #[test]
 fn derivatives_agree_with_differences() {
-    let craft = unsteady();
+    let craft = unsteady_aircraft();
     let whole = craft.extended();
     let (mut still, step) = ([1e-2; 7], [1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 10.0]);
     still[6] = 1.0;
@@ -217,23 +217,25 @@ fn derivatives_agree_with_differences() {
         let (by_q, by_v, by_force) = whole.forward_dynamics_derivatives(t, &q, &v, &tau);
         let accelerations_of_whole = |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);
         let displaced_configuration = |by| whole.integrate(&q, &by);
-        let found = slopes(still, |by| accelerations_of_whole(&displaced_configuration(by), &v, &tau));
+        let found =
+            derivatives_at_zero(still, |by| accelerations_of_whole(&displaced_configuration(by), &v, &tau));
         assert_similar("∂v̇/∂q", by_q.as_slice(), &found, DIFFERENCE);
-        let found = slopes(step, |by| accelerations_of_whole(&q, &(v + by), &tau));
+        let found = derivatives_at_zero(step, |by| accelerations_of_whole(&q, &(v + by), &tau));
         assert_similar("∂v̇/∂v", by_v.as_slice(), &found, DIFFERENCE);
-        let found = slopes([1e2; 7], |by| accelerations_of_whole(&q, &v, &(tau + by)));
+        let found = derivatives_at_zero([1e2; 7], |by| accelerations_of_whole(&q, &v, &(tau + by)));
         assert_similar("∂v̇/∂τ", by_force.as_slice(), &found, 1e-9);
         let (by_q, by_v) = whole.inverse_dynamics_derivatives(t, &q, &v, &a);
-        let found = slopes(still, |by| whole.inverse_dynamics(t, &displaced_configuration(by), &v, &a));
+        let found =
+            derivatives_at_zero(still, |by| whole.inverse_dynamics(t, &displaced_configuration(by), &v, &a));
         assert_similar("∂τ/∂q", by_q.as_slice(), &found, DIFFERENCE);
-        let found = slopes(step, |by| whole.inverse_dynamics(t, &q, &(v + by), &a));
+        let found = derivatives_at_zero(step, |by| whole.inverse_dynamics(t, &q, &(v + by), &a));
         assert_similar("∂τ/∂v", by_v.as_slice(), &found, DIFFERENCE);
     }
 }
 
 #[test]
 fn linear_motions_agree_with_differences() {
-    for Case { t, q, v, u, .. } in coupled() {
+    for Case { t, q, v, u, .. } in coupled_cases() {
         let now = at(&COUPLED, t);
         let motion = Derivatives::linear_motion(&now, &q, &v, &u);
         let coupled_accelerations = |q: &SVector<f64, 3>, v: &SVector<f64, 3>, u: &SVector<f64, 1>| {
@@ -245,28 +247,30 @@ fn linear_motions_agree_with_differences() {
             coupled_accelerations(&q, &v, &u).as_slice(),
             1e-13,
         );
-        let found = slopes([1e-2; 3], |by| coupled_accelerations(&(q + by), &v, &u));
+        let found = derivatives_at_zero([1e-2; 3], |by| coupled_accelerations(&(q + by), &v, &u));
         assert_similar("∂v̇/∂q", motion.by_q.as_slice(), &found, DIFFERENCE);
-        let found = slopes([1e-2; 3], |by| coupled_accelerations(&q, &(v + by), &u));
+        let found = derivatives_at_zero([1e-2; 3], |by| coupled_accelerations(&q, &(v + by), &u));
         assert_similar("∂v̇/∂v", motion.by_v.as_slice(), &found, DIFFERENCE);
-        let found = slopes([1e-2; 1], |by| coupled_accelerations(&q, &v, &(u + by)));
+        let found = derivatives_at_zero([1e-2; 1], |by| coupled_accelerations(&q, &v, &(u + by)));
         assert_similar("∂v̇/∂u", motion.by_u.as_slice(), &found, DIFFERENCE);
     }
 }
 
 #[test]
 fn derivatives_by_parameters_agree_with_differences() {
-    for Case { t, q, v, a, .. } in coupled() {
+    for Case { t, q, v, a, .. } in coupled_cases() {
         let perturbed_mechanism = |by: SVector<f64, 4>| {
             let Coupled { gain, share, reach, added } = COUPLED;
             Coupled { gain: gain + by[0], share: share + by[1], reach: reach + by[2], added: added + by[3] }
         };
         let by = COUPLED.inverse_dynamics_by_parameters(t, &q, &v, &a);
-        let found = slopes([1e-2; 4], |s| perturbed_mechanism(s).inverse_dynamics(t, &q, &v, &a));
+        let found =
+            derivatives_at_zero([1e-2; 4], |s| perturbed_mechanism(s).inverse_dynamics(t, &q, &v, &a));
         assert_similar("∂τ/∂p", by.as_slice(), &found, DIFFERENCE);
         let tau = a;
         let by = COUPLED.forward_dynamics_by_parameters(t, &q, &v, &tau);
-        let found = slopes([1e-2; 4], |s| perturbed_mechanism(s).forward_dynamics(t, &q, &v, &tau));
+        let found =
+            derivatives_at_zero([1e-2; 4], |s| perturbed_mechanism(s).forward_dynamics(t, &q, &v, &tau));
         assert_similar("∂v̇/∂p", by.as_slice(), &found, DIFFERENCE);
     }
 }
@@ -274,14 +278,14 @@ fn derivatives_by_parameters_agree_with_differences() {
 #[test]
 fn prepared_mechanisms_and_batches_have_them() {
     let prepared = COUPLED.prepare();
-    for Case { t, q, v, a, .. } in coupled() {
+    for Case { t, q, v, a, .. } in coupled_cases() {
         let tau = COUPLED.inverse_dynamics(t, &q, &v, &a);
         let again = prepared.inverse_dynamics(t, &q, &v, &a);
         assert_similar("τ", again.as_slice(), tau.as_slice(), 1e-13);
         let back = prepared.forward_dynamics(t, &q, &v, &tau);
         assert_similar("v̇", back.as_slice(), a.as_slice(), 1e-11);
     }
-    let all = coupled();
+    let all = coupled_cases();
     let lanes_of_cases = |f: fn(&Case<3, 3, 1>) -> SVector<f64, 3>| {
         SVector::<Lanes<f64, 4>, 3>::from_fn(|i, _| Lanes::from_fn(|k| f(&all[k])[i]))
     };
@@ -337,9 +341,9 @@ fn a_hull_moves_by_kirchhoffs_equations() {
     let hull = Hull { mass: 3.0, along: 0.4, across: 2.5, turning: 1.5 };
     let mut random = Random::new(5);
     for _ in 0..6 {
-        let turn: SVector<f64, 4> = random.vector::<4>(1.0).normalize();
+        let turn: SVector<f64, 4> = random.random_vector::<4>(1.0).normalize();
         let q = SVector::from_column_slice(&[1.0, 2.0, 3.0, turn[0], turn[1], turn[2], turn[3]]);
-        let v: SVector<f64, 6> = random.vector(2.0);
+        let v: SVector<f64, 6> = random.random_vector(2.0);
         let total = SVector::<f64, 6>::from([3.4, 5.5, 5.5, 2.0, 6.5, 6.0]);
         let momentum = total.component_mul(&v);
         let (p, l) = (momentum.fixed_rows::<3>(0), momentum.fixed_rows::<3>(3));

@@ -20,7 +20,7 @@ mod spec;
 #[path = "../macros/compiler/tests/oracle/words.rs"]
 mod words;
 
-use jet::{C, real};
+use jet::{C, real_number};
 use kane::State;
 use linkwork::nalgebra::SVector;
 use spec::{Spec, Style};
@@ -35,18 +35,22 @@ const STEP: f64 = 1e-40;
 
 /// Returns the description of mechanism `k`: a random tree, and for every third `k` a mechanism with
 /// identical limbs.
-fn mechanism(k: u64) -> Spec {
+fn random_mechanism(k: u64) -> Spec {
     let limbs = if k % 3 == 2 { 2 + k as usize % 2 } else { 0 };
-    Spec { symbolic: false, ..spec::spec(7_000 + k, Style { bodies: 5, limbs, decades: 0.5, noise: None }) }
+    Spec {
+        symbolic: false,
+        ..spec::random_spec(7_000 + k, Style { bodies: 5, limbs, decades: 0.5, noise: None })
+    }
 }
 
 /// Returns the text that the generator writes to `mechanisms.rs`.
-fn written() -> String {
+fn generated_mechanisms_text() -> String {
     let mut out = String::from(
         "//! Written by the test `the_file_is_what_the_generator_writes`.\n\nuse linkwork::mechanism;\n",
     );
     for k in 0..COUNT {
-        let (arguments, item) = words::source(&mechanism(k), &format!("Random{k}"), ", derivatives");
+        let (arguments, item) =
+            words::mechanism_source(&random_mechanism(k), &format!("Random{k}"), ", derivatives");
         let _ = write!(out, "\n/// Random.\n#[mechanism({arguments})]\n{item}\n");
     }
     out
@@ -56,18 +60,18 @@ fn written() -> String {
 fn the_file_is_what_the_generator_writes() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/accelerations/mechanisms.rs");
     if std::env::var_os("LINKWORK_WRITE").is_some() {
-        std::fs::write(path, written()).unwrap();
+        std::fs::write(path, generated_mechanisms_text()).unwrap();
     }
     let remove_whitespace = |text: &str| text.split_whitespace().collect::<String>();
     assert_eq!(
         remove_whitespace(&std::fs::read_to_string(path).unwrap()),
-        remove_whitespace(&written()),
+        remove_whitespace(&generated_mechanisms_text()),
         "write it anew with LINKWORK_WRITE=1"
     );
 }
 
 /// Splits complex numbers into values (real parts) and derivatives (imaginary parts over the step).
-fn parts(list: &[C]) -> (Vec<f64>, Vec<f64>) {
+fn values_and_derivatives(list: &[C]) -> (Vec<f64>, Vec<f64>) {
     list.iter().map(|x| (x.re, x.im / STEP)).unzip()
 }
 
@@ -86,7 +90,7 @@ fn forward_dynamics((columns, bias): &(Vec<Vec<C>>, Vec<C>), tau: &[C]) -> Vec<C
             row.iter_mut().zip(&pivot).for_each(|(x, p)| *x -= factor * p);
         }
     }
-    let mut x = vec![real(0.0); n];
+    let mut x = vec![real_number(0.0); n];
     for i in (0..n).rev() {
         let known: C = (i + 1..n).map(|j| rows[i][j] * x[j]).sum();
         x[i] = (rows[i][n] - known) / rows[i][i];
@@ -94,7 +98,7 @@ fn forward_dynamics((columns, bias): &(Vec<Vec<C>>, Vec<C>), tau: &[C]) -> Vec<C
     x
 }
 
-fn close(what: &str, k: u64, actual: &[f64], expected: &[f64]) {
+fn assert_close_entries(what: &str, k: u64, actual: &[f64], expected: &[f64]) {
     assert_eq!(actual.len(), expected.len());
     let scale = expected.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
     for (entry, (a, b)) in actual.iter().zip(expected).enumerate() {
@@ -104,33 +108,35 @@ fn close(what: &str, k: u64, actual: &[f64], expected: &[f64]) {
 
 macro_rules! check {
     ($($k:literal $name:ident)*) => {$(
-        let spec = mechanism($k);
-        assert_eq!((mechanisms::$name::NQ, mechanisms::$name::NV), kane::sizes(&spec));
+        let spec = random_mechanism($k);
+        let counts = kane::coordinate_and_velocity_counts(&spec);
+        assert_eq!((mechanisms::$name::NQ, mechanisms::$name::NV), counts);
         let mut random = random::Random::new($k);
         let m = mechanisms::$name {};
-        let q = m.integrate(&m.neutral(), &SVector::from_fn(|_, _| random.uniform(1.2)));
-        let v = SVector::<f64, { mechanisms::$name::NV }>::from_fn(|_, _| random.uniform(1.0));
-        let tau = SVector::<f64, { mechanisms::$name::NV }>::from_fn(|_, _| random.uniform(2.0));
+        let q = m.integrate(&m.neutral(), &SVector::from_fn(|_, _| random.uniform_number(1.2)));
+        let v = SVector::<f64, { mechanisms::$name::NV }>::from_fn(|_, _| random.uniform_number(1.0));
+        let tau = SVector::<f64, { mechanisms::$name::NV }>::from_fn(|_, _| random.uniform_number(2.0));
         let state = State::new(q.as_slice(), v.as_slice(), tau.as_slice());
         let (by_q, by_v, inverse) = m.forward_dynamics_derivatives(&q, &v, &tau);
         let at_state = kane::mass_and_bias(&spec, &state.q, &state.v);
-        let (accelerations, _) = parts(&forward_dynamics(&at_state, &state.a));
-        close("v̇", $k, m.forward_dynamics(&q, &v, &tau).as_slice(), &accelerations);
+        let (accelerations, _) = values_and_derivatives(&forward_dynamics(&at_state, &state.a));
+        assert_close_entries("v̇", $k, m.forward_dynamics(&q, &v, &tau).as_slice(), &accelerations);
         let mut expected = [Vec::new(), Vec::new(), Vec::new()];
         for k in 0..mechanisms::$name::NV {
             let step = C::new(0.0, STEP);
             let q = kane::imaginary_step(&spec, &state.q, k, STEP);
             let (mut v, mut tau) = (state.v.clone(), state.a.clone());
             (v[k], tau[k]) = (v[k] + step, tau[k] + step);
-            let (moved, faster) = (kane::mass_and_bias(&spec, &q, &state.v), kane::mass_and_bias(&spec, &state.q, &v));
-            expected[0].extend(parts(&forward_dynamics(&moved, &state.a)).1);
-            expected[1].extend(parts(&forward_dynamics(&faster, &state.a)).1);
-            expected[2].extend(parts(&forward_dynamics(&at_state, &tau)).1);
+            let moved = kane::mass_and_bias(&spec, &q, &state.v);
+            let faster = kane::mass_and_bias(&spec, &state.q, &v);
+            expected[0].extend(values_and_derivatives(&forward_dynamics(&moved, &state.a)).1);
+            expected[1].extend(values_and_derivatives(&forward_dynamics(&faster, &state.a)).1);
+            expected[2].extend(values_and_derivatives(&forward_dynamics(&at_state, &tau)).1);
         }
-        close("∂v̇/∂q", $k, by_q.as_slice(), &expected[0]);
-        close("∂v̇/∂v", $k, by_v.as_slice(), &expected[1]);
-        close("M⁻¹", $k, inverse.as_slice(), &expected[2]);
-        close("M⁻¹ alone", $k, m.mass_matrix_inverse(&q).as_slice(), &expected[2]);
+        assert_close_entries("∂v̇/∂q", $k, by_q.as_slice(), &expected[0]);
+        assert_close_entries("∂v̇/∂v", $k, by_v.as_slice(), &expected[1]);
+        assert_close_entries("M⁻¹", $k, inverse.as_slice(), &expected[2]);
+        assert_close_entries("M⁻¹ alone", $k, m.mass_matrix_inverse(&q).as_slice(), &expected[2]);
     )*};
 }
 

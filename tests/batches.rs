@@ -116,12 +116,12 @@ struct FourBar {
     closing: Pin,
 }
 
-fn machine() -> Machine<f64> {
+fn sample_machine() -> Machine<f64> {
     Machine { g: 9.7, m: 1.3, l: 0.4, k: 20.0 }
 }
 
 /// Whether two numbers have the same bits; all NaNs count as equal.
-fn same<T: Real>(a: T, b: T) -> bool {
+fn has_same_bits<T: Real>(a: T, b: T) -> bool {
     a == b && a.is_sign_negative() == b.is_sign_negative() || (is_nan(a) && is_nan(b))
 }
 
@@ -151,12 +151,15 @@ fn assert_near<T: Real, const R: usize, const C: usize, const L: usize>(
         for (found, expected) in wide.iter().zip(one.iter()) {
             let (found, expected) = (found[k], *expected);
             let near = rounding > 0.0 && (found - expected).abs() <= bound;
-            assert!(near || same(found, expected), "{what}, lane {k} of {L}: {found}, not {expected}");
+            assert!(
+                near || has_same_bits(found, expected),
+                "{what}, lane {k} of {L}: {found}, not {expected}"
+            );
         }
     }
 }
 
-fn scalar<T: Real>(x: T) -> SMatrix<T, 1, 1> {
+fn scalar_as_matrix<T: Real>(x: T) -> SMatrix<T, 1, 1> {
     SMatrix::from_element(x)
 }
 
@@ -171,15 +174,15 @@ impl<T: Real, const N: usize, const L: usize> States<T, N, L> {
         Self { wide: SVector::from_fn(|i, _| Lanes::from_fn(|k| each[k][i])), each }
     }
 
-    fn random(random: &mut Random, bound: f64) -> Self {
-        Self::new(core::array::from_fn(|_| random.vector::<N>(bound).map(linkwork::nalgebra::convert)))
+    fn random_states(random: &mut Random, bound: f64) -> Self {
+        Self::new(core::array::from_fn(|_| random.random_vector::<N>(bound).map(linkwork::nalgebra::convert)))
     }
 
     /// Returns random displacements with magnitudes from 0 to 3.
-    fn displacements(random: &mut Random) -> Self {
+    fn random_displacements(random: &mut Random) -> Self {
         let sizes = [2.0, 1e-9, 0.1, 1e-3, 0.5, 3.0, 0.0, 1e-6];
         Self::new(core::array::from_fn(|k| {
-            (random.vector::<N>(1.0) * sizes[k % 8]).map(linkwork::nalgebra::convert)
+            (random.random_vector::<N>(1.0) * sizes[k % 8]).map(linkwork::nalgebra::convert)
         }))
     }
 }
@@ -187,7 +190,7 @@ impl<T: Real, const N: usize, const L: usize> States<T, N, L> {
 /// Checks all functions of the trait on lanes against single states. `columns` and `limbs` are the tolerances
 /// where the single-state program itself uses SIMD lanes over columns of the mass matrix or over limbs, and
 /// sums in another order.
-fn check<M, const NQ: usize, const NV: usize, const NU: usize, const L: usize>(
+fn check_all_functions<M, const NQ: usize, const NV: usize, const NU: usize, const L: usize>(
     m: &M,
     [columns, limbs]: [f64; 2],
 ) where
@@ -196,14 +199,15 @@ fn check<M, const NQ: usize, const NV: usize, const NU: usize, const L: usize>(
     let wide = m.lanes::<L>();
     let mut random = Random::new(17);
     for _ in 0..20 {
-        let t: States<M::Scalar, 1, L> = States::random(&mut random, 2.0);
-        let dv: States<M::Scalar, NV, L> = States::displacements(&mut random);
-        let q0 = m.integrate(&m.neutral(), &States::<M::Scalar, NV, 1>::random(&mut random, 2.0).each[0]);
+        let t: States<M::Scalar, 1, L> = States::random_states(&mut random, 2.0);
+        let dv: States<M::Scalar, NV, L> = States::random_displacements(&mut random);
+        let q0 =
+            m.integrate(&m.neutral(), &States::<M::Scalar, NV, 1>::random_states(&mut random, 2.0).each[0]);
         let q: States<M::Scalar, NQ, L> =
             States::new(core::array::from_fn(|k| m.integrate(&q0, &dv.each[k])));
-        let v: States<M::Scalar, NV, L> = States::random(&mut random, 2.0);
-        let a: States<M::Scalar, NV, L> = States::random(&mut random, 5.0);
-        let u: States<M::Scalar, NU, L> = States::random(&mut random, 5.0);
+        let v: States<M::Scalar, NV, L> = States::random_states(&mut random, 2.0);
+        let a: States<M::Scalar, NV, L> = States::random_states(&mut random, 5.0);
+        let u: States<M::Scalar, NU, L> = States::random_states(&mut random, 5.0);
         let single_state = |k: usize| (t.each[k][0], &q.each[k], &v.each[k]);
         let (t0, q0, v0) = (t.wide[0], &q.wide, &v.wide);
         let start = q.each[0].map(Lanes::splat);
@@ -227,11 +231,11 @@ fn check<M, const NQ: usize, const NV: usize, const NU: usize, const L: usize>(
         assert_lanes("generalized_forces", &wide.generalized_forces(t0, q0, v0, &u.wide), |k| {
             m.generalized_forces(single_state(k).0, single_state(k).1, single_state(k).2, &u.each[k])
         });
-        assert_lanes("kinetic_energy", &scalar(wide.kinetic_energy(t0, q0, v0)), |k| {
-            scalar(m.kinetic_energy(single_state(k).0, single_state(k).1, single_state(k).2))
+        assert_lanes("kinetic_energy", &scalar_as_matrix(wide.kinetic_energy(t0, q0, v0)), |k| {
+            scalar_as_matrix(m.kinetic_energy(single_state(k).0, single_state(k).1, single_state(k).2))
         });
-        assert_lanes("potential_energy", &scalar(wide.potential_energy(t0, q0)), |k| {
-            scalar(m.potential_energy(single_state(k).0, single_state(k).1))
+        assert_lanes("potential_energy", &scalar_as_matrix(wide.potential_energy(t0, q0)), |k| {
+            scalar_as_matrix(m.potential_energy(single_state(k).0, single_state(k).1))
         });
         assert_lanes("generalized_momentum", &wide.generalized_momentum(t0, q0, v0), |k| {
             m.generalized_momentum(single_state(k).0, single_state(k).1, single_state(k).2)
@@ -252,49 +256,49 @@ const LIMBS: [f64; 2] = [1e-10; 2];
 
 #[test]
 fn robots_in_lanes() {
-    check::<_, 6, 6, 6, 1>(&Ur5, COLUMNS);
-    check::<_, 6, 6, 6, 3>(&Ur5, COLUMNS);
-    check::<_, 6, 6, 6, 4>(&Ur5, COLUMNS);
-    check::<_, 6, 6, 6, 8>(&Ur5, COLUMNS);
-    check::<_, 6, 6, 6, 16>(&Ur5, COLUMNS);
-    check::<_, _, _, _, 8>(&Kinova, COLUMNS);
-    check::<_, _, _, _, 8>(&Panda, COLUMNS);
-    check::<_, _, _, _, 2>(&Solo12, LIMBS);
-    check::<_, _, _, _, 4>(&Solo12, LIMBS);
-    check::<_, _, _, _, 8>(&Solo12, LIMBS);
-    check::<_, _, _, _, 4>(&Humanoid, LIMBS);
-    check::<_, _, _, _, 8>(&Humanoid, LIMBS);
+    check_all_functions::<_, 6, 6, 6, 1>(&Ur5, COLUMNS);
+    check_all_functions::<_, 6, 6, 6, 3>(&Ur5, COLUMNS);
+    check_all_functions::<_, 6, 6, 6, 4>(&Ur5, COLUMNS);
+    check_all_functions::<_, 6, 6, 6, 8>(&Ur5, COLUMNS);
+    check_all_functions::<_, 6, 6, 6, 16>(&Ur5, COLUMNS);
+    check_all_functions::<_, _, _, _, 8>(&Kinova, COLUMNS);
+    check_all_functions::<_, _, _, _, 8>(&Panda, COLUMNS);
+    check_all_functions::<_, _, _, _, 2>(&Solo12, LIMBS);
+    check_all_functions::<_, _, _, _, 4>(&Solo12, LIMBS);
+    check_all_functions::<_, _, _, _, 8>(&Solo12, LIMBS);
+    check_all_functions::<_, _, _, _, 4>(&Humanoid, LIMBS);
+    check_all_functions::<_, _, _, _, 8>(&Humanoid, LIMBS);
 }
 
 #[test]
 fn single_precision_in_lanes() {
-    check::<_, _, _, _, 8>(&SinglePanda, [1e-6, 0.0]);
-    check::<_, _, _, _, 16>(&SinglePanda, [1e-6, 0.0]);
+    check_all_functions::<_, _, _, _, 8>(&SinglePanda, [1e-6, 0.0]);
+    check_all_functions::<_, _, _, _, 16>(&SinglePanda, [1e-6, 0.0]);
 }
 
 #[test]
 fn every_kind_of_configuration_in_lanes() {
-    check::<_, _, _, _, 4>(&machine(), SAME);
-    check::<_, _, _, _, 8>(&machine(), SAME);
+    check_all_functions::<_, _, _, _, 4>(&sample_machine(), SAME);
+    check_all_functions::<_, _, _, _, 8>(&sample_machine(), SAME);
     let single: Machine<f32> = Machine { g: 9.7, m: 1.3, l: 0.4, k: 20.0 };
-    check::<_, _, _, _, 8>(&single, SAME);
+    check_all_functions::<_, _, _, _, 8>(&single, SAME);
 }
 
 #[test]
 fn driven_mechanisms_in_lanes() {
-    check::<_, _, _, _, 4>(&Hoop { radius: 0.4, spin: 5.0 }, SAME);
-    check::<_, _, _, _, 8>(&Hoop { radius: 0.4, spin: 5.0 }, SAME);
+    check_all_functions::<_, _, _, _, 4>(&Hoop { radius: 0.4, spin: 5.0 }, SAME);
+    check_all_functions::<_, _, _, _, 8>(&Hoop { radius: 0.4, spin: 5.0 }, SAME);
 }
 
 #[test]
 fn loops_in_lanes() {
     let linkage = FourBar { g: 9.7, l: 0.4 };
-    check::<_, _, _, _, 4>(&linkage, SAME);
-    check::<_, _, _, _, 8>(&linkage, SAME);
-    check::<_, _, _, _, 8>(&linkage.prepare(), SAME);
+    check_all_functions::<_, _, _, _, 4>(&linkage, SAME);
+    check_all_functions::<_, _, _, _, 8>(&linkage, SAME);
+    check_all_functions::<_, _, _, _, 8>(&linkage.prepare(), SAME);
     // One lane has dependent constraints, the other lanes have independent ones.
     let q: States<f64, 3, 4> = States::new([0.3, 0.0, -0.5, 1.1].map(|a| SVector::from([a, -a, a])));
-    let [v, tau]: [States<f64, 3, 4>; 2] = [(); 2].map(|()| States::random(&mut Random::new(31), 1.0));
+    let [v, tau]: [States<f64, 3, 4>; 2] = [(); 2].map(|()| States::random_states(&mut Random::new(31), 1.0));
     assert_lanes("forward_dynamics", &linkage.forward_dynamics_lanes(&q.wide, &v.wide, &tau.wide), |k| {
         linkage.forward_dynamics(&q.each[k], &v.each[k], &tau.each[k])
     });
@@ -311,9 +315,9 @@ fn large_angles_do_not_disturb_their_neighbours() {
 #[test]
 fn functions_on_request_in_lanes() {
     let mut random = Random::new(23);
-    let q: States<f64, 8, 4> = States::random(&mut random, 2.0);
-    let [v, a]: [States<f64, 8, 4>; 2] = [(); 2].map(|()| States::random(&mut random, 2.0));
-    let u: States<f64, 8, 4> = States::random(&mut random, 2.0);
+    let q: States<f64, 8, 4> = States::random_states(&mut random, 2.0);
+    let [v, a]: [States<f64, 8, 4>; 2] = [(); 2].map(|()| States::random_states(&mut random, 2.0));
+    let u: States<f64, 8, 4> = States::random_states(&mut random, 2.0);
     let (by_q, by_v) = Panda.inverse_dynamics_derivatives_lanes(&q.wide, &v.wide, &a.wide);
     let derivatives_of_state =
         |k: usize| Panda.inverse_dynamics_derivatives(&q.each[k], &v.each[k], &a.each[k]);
@@ -336,11 +340,11 @@ fn functions_on_request_in_lanes() {
 
 #[test]
 fn large_mechanisms_call_each_other_in_lanes() {
-    let (m, mut random) = (machine(), Random::new(29));
-    let dv: States<f64, 12, 4> = States::random(&mut random, 2.0);
+    let (m, mut random) = (sample_machine(), Random::new(29));
+    let dv: States<f64, 12, 4> = States::random_states(&mut random, 2.0);
     let q: States<f64, 14, 4> = States::new(core::array::from_fn(|k| m.integrate(&m.neutral(), &dv.each[k])));
-    let [v, tau]: [States<f64, 12, 4>; 2] = [(); 2].map(|()| States::random(&mut random, 2.0));
-    let u: States<f64, 1, 4> = States::random(&mut random, 2.0);
+    let [v, tau]: [States<f64, 12, 4>; 2] = [(); 2].map(|()| States::random_states(&mut random, 2.0));
+    let u: States<f64, 1, 4> = States::random_states(&mut random, 2.0);
     let (by_q, _, inverse) = m.forward_dynamics_derivatives_lanes(&q.wide, &v.wide, &tau.wide);
     let derivatives_of_state =
         |k: usize| m.forward_dynamics_derivatives(&q.each[k], &v.each[k], &tau.each[k]);
@@ -355,9 +359,9 @@ fn large_mechanisms_call_each_other_in_lanes() {
 #[test]
 fn composed_derivatives_go_into_matrices_in_lanes() {
     let mut random = Random::new(37);
-    let dv: States<f64, 12, 4> = States::random(&mut random, 2.0);
+    let dv: States<f64, 12, 4> = States::random_states(&mut random, 2.0);
     let q: States<f64, 15, 4> = States::new(dv.each.map(|dv| Tail.integrate(&Tail.neutral(), &dv)));
-    let [v, tau]: [States<f64, 12, 4>; 2] = [(); 2].map(|()| States::random(&mut random, 2.0));
+    let [v, tau]: [States<f64, 12, 4>; 2] = [(); 2].map(|()| States::random_states(&mut random, 2.0));
     let mut into = [SMatrix::zeros(); 3];
     let [by_q, by_v, inverse] = &mut into;
     let a = Tail.forward_dynamics_derivatives_into_lanes(&q.wide, &v.wide, &tau.wide, by_q, by_v, inverse);
@@ -371,15 +375,15 @@ fn composed_derivatives_go_into_matrices_in_lanes() {
 
 #[test]
 fn a_lanewise_mechanism_is_a_mechanism() {
-    fn energy<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
+    fn total_energy<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
         m: &M,
         v: M::Scalar,
     ) -> M::Scalar {
         let t = v - v;
         m.kinetic_energy(t, &m.neutral(), &SVector::repeat(v)) + m.potential_energy(t, &m.neutral())
     }
-    let found = energy(&at(&Ur5.lanes::<4>(), Lanes::splat(0.0)), Lanes([0.0, 1.0, 2.0, 3.0]));
+    let found = total_energy(&at(&Ur5.lanes::<4>(), Lanes::splat(0.0)), Lanes([0.0, 1.0, 2.0, 3.0]));
     for k in 0..4 {
-        assert!(same(found[k], energy(&Ur5, k as f64)));
+        assert!(has_same_bits(found[k], total_energy(&Ur5, k as f64)));
     }
 }

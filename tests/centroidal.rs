@@ -52,8 +52,8 @@ macro_rules! check {
         let robot = $at;
         let mut random = Random::new(11);
         for _ in 0..8 {
-            let q = random.configuration(&robot);
-            let v = random.vector(1.5);
+            let q = random.random_configuration(&robot);
+            let v = random.random_vector(1.5);
             let matrix = robot.centroidal_momentum_matrix(&q);
             let momentum = robot.momentum(&q, &v);
             assert_similar("momentum", (matrix * v).as_slice(), momentum.as_slice(), EXACT);
@@ -87,8 +87,8 @@ fn check_flight<M, const NQ: usize, const NV: usize, const NU: usize>(
 {
     let mut random = Random::new(12);
     for _ in 0..8 {
-        let (q, v) = (random.configuration(robot), random.vector(2.0));
-        let tau = robot.generalized_forces(0.0, &q, &v, &random.vector(20.0));
+        let (q, v) = (random.random_configuration(robot), random.random_vector(2.0));
+        let tau = robot.generalized_forces(0.0, &q, &v, &random.random_vector(20.0));
         let a = robot.forward_dynamics(0.0, &q, &v, &tau);
         let rate = matrix(&q) * a + bias(&q, &v);
         let weight = [0.0, 0.0, -9.81 * mass, 0.0, 0.0, 0.0];

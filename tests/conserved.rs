@@ -220,8 +220,10 @@ macro_rules! stays {
 fn it_stays_along_motions() {
     let mut random = Random::new(7);
     let top = Top { height: 0.2 };
-    stays!(&top, random.configuration(&top), random.vector(4.0), |m, t, q, v| m.conserved(&q, &v));
-    stays!(Stone {}, random.configuration(&Stone {}), random.vector(2.0), |m, t, q, v| m.conserved(&q, &v));
+    stays!(&top, random.random_configuration(&top), random.random_vector(4.0), |m, t, q, v| m
+        .conserved(&q, &v));
+    stays!(Stone {}, random.random_configuration(&Stone {}), random.random_vector(2.0), |m, t, q, v| m
+        .conserved(&q, &v));
     stays!(Carts { mass: 1.3 }, [0.1, 0.7, 0.9], [0.4, -1.0, 2.0], |m, t, q, v| m.conserved(&q, &v));
     stays!(Greased {}, [0.1, 0.7], [0.4, 2.0], |m, t, q, v| m.conserved(&q, &v));
     stays!(Hoop { spin: 5.0 }, [0.4], [1.0], |m, t, q, v| m.conserved(t, &q, &v));
@@ -263,28 +265,34 @@ fn hamiltons_form_agrees() {
     let mut random = Random::new(3);
     for _ in 0..5 {
         let top = Top { height: 0.3 };
-        let (q, v): (SVector<f64, 4>, SVector<f64, 3>) = (random.configuration(&top), random.vector(2.0));
-        canonical!(&top, q, v, random.vector(3.0), |_| top.kinetic_energy(&q, &v) + top.potential_energy(&q));
+        let (q, v): (SVector<f64, 4>, SVector<f64, 3>) =
+            (random.random_configuration(&top), random.random_vector(2.0));
+        canonical!(&top, q, v, random.random_vector(3.0), |_| top.kinetic_energy(&q, &v)
+            + top.potential_energy(&q));
         let stone = Stone {};
-        let (q, v): (SVector<f64, 7>, SVector<f64, 6>) = (random.configuration(&stone), random.vector(2.0));
-        canonical!(&stone, q, v, random.vector(3.0), |_| stone.kinetic_energy(&q, &v));
+        let (q, v): (SVector<f64, 7>, SVector<f64, 6>) =
+            (random.random_configuration(&stone), random.random_vector(2.0));
+        canonical!(&stone, q, v, random.random_vector(3.0), |_| stone.kinetic_energy(&q, &v));
         let carts = Carts { mass: 1.1 };
-        let (q, v): (SVector<f64, 3>, SVector<f64, 3>) = (random.configuration(&carts), random.vector(2.0));
-        canonical!(&carts, q, v, random.vector(3.0), |_| carts.kinetic_energy(&q, &v)
+        let (q, v): (SVector<f64, 3>, SVector<f64, 3>) =
+            (random.random_configuration(&carts), random.random_vector(2.0));
+        canonical!(&carts, q, v, random.random_vector(3.0), |_| carts.kinetic_energy(&q, &v)
             + carts.potential_energy(&q));
         let greased = Greased {};
-        let (q, v): (SVector<f64, 2>, SVector<f64, 2>) = (random.configuration(&greased), random.vector(2.0));
-        canonical!(&greased, q, v, random.vector(3.0), |_| greased.kinetic_energy(&q, &v)
+        let (q, v): (SVector<f64, 2>, SVector<f64, 2>) =
+            (random.random_configuration(&greased), random.random_vector(2.0));
+        canonical!(&greased, q, v, random.random_vector(3.0), |_| greased.kinetic_energy(&q, &v)
             + greased.potential_energy(&q));
-        let (hoop, t) = (Hoop { spin: 4.0 }, random.uniform(2.0));
-        let (q, v): (SVector<f64, 1>, SVector<f64, 1>) = (random.vector(2.0), random.vector(2.0));
+        let (hoop, t) = (Hoop { spin: 4.0 }, random.uniform_number(2.0));
+        let (q, v): (SVector<f64, 1>, SVector<f64, 1>) =
+            (random.random_vector(2.0), random.random_vector(2.0));
         let energy =
             |p: &SVector<f64, 1>| p.dot(&v) - hoop.kinetic_energy(t, &q, &v) + hoop.potential_energy(t, &q);
-        canonical!(&hoop, q, v, random.vector(3.0), energy, t);
+        canonical!(&hoop, q, v, random.random_vector(3.0), energy, t);
         let swung = Swung {};
         let energy =
             |p: &SVector<f64, 1>| p.dot(&v) - swung.kinetic_energy(t, &q, &v) + swung.potential_energy(t, &q);
-        canonical!(&swung, q, v, random.vector(3.0), energy, t);
+        canonical!(&swung, q, v, random.random_vector(3.0), energy, t);
     }
 }
 
@@ -294,7 +302,8 @@ fn momenta_change_by_the_slope_of_the_hamiltonian() {
     let mut random = Random::new(5);
     let carts = Carts { mass: 0.8 };
     for _ in 0..5 {
-        let (q, p): (SVector<f64, 3>, SVector<f64, 3>) = (random.vector(1.0), random.vector(2.0));
+        let (q, p): (SVector<f64, 3>, SVector<f64, 3>) =
+            (random.random_vector(1.0), random.random_vector(2.0));
         let rate = carts.canonical_momentum_rate(&q, &p, &SVector::zeros());
         for k in 0..3 {
             let mut step = SVector::<f64, 3>::zeros();

@@ -7,22 +7,22 @@ mod random_tree;
 
 use linkwork_compiler::expr::diff::Derivative;
 use linkwork_compiler::expr::eval::eval;
-use linkwork_compiler::expr::sample::sample;
+use linkwork_compiler::expr::sample::sample_of_symbol;
 use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
 use linkwork_compiler::kinematics::{self, Joint, random_configuration};
 use linkwork_compiler::mechanics::{aba, crba, energy, forces, lagrange, ldl, momentum, rnea};
 use linkwork_compiler::mechanism::{Direction, Input, LinkId, Model, Quantity};
 use linkwork_compiler::{lower, mechanics};
 use proptest::prelude::*;
-use random_tree::trees;
-use support::model::{symbols, with_model};
-use support::random::config;
+use random_tree::random_trees;
+use support::model::{random_symbol_values, with_model};
+use support::random::property_test_config;
 
 /// Tolerance relative to the largest entry of the reference.
 const TOLERANCE: f64 = 1e-10;
 
 fn assert_close(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[Expr<'_>]) {
-    let at = symbols(model, seed);
+    let at = random_symbol_values(model, seed);
     let (a, b) = (eval(a, &at), eval(b, &at));
     let scale = b.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
     for (k, (a, b)) in a.iter().zip(&b).enumerate() {
@@ -31,30 +31,36 @@ fn assert_close(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[E
 }
 
 /// Returns the expressions of the inverse dynamics `M x + h`.
-fn apply<'g>(m: &crba::Matrix<'g>, x: &[Expr<'g>], h: &[Expr<'g>]) -> Vec<Expr<'g>> {
+fn apply_mass_and_bias<'g>(m: &crba::Matrix<'g>, x: &[Expr<'g>], h: &[Expr<'g>]) -> Vec<Expr<'g>> {
     m.iter().zip(h).map(|(row, h)| row.iter().zip(x).fold(*h, |sum, (m, x)| sum + *m * *x)).collect()
 }
 
-fn flat<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
+fn flatten_matrix<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
     m.iter().flatten().copied().collect()
 }
 
 fn check_dynamics(model: &Model<'_>, seed: u64) {
-    let joints = kinematics::joints(model);
-    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
+    let joints = kinematics::joints_of_model(model);
+    let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
     let reference = lagrange::derive(model, &joints);
     let mass = crba::mass_matrix(model, &joints);
     let bias = rnea::inverse_dynamics(model, &joints, &v, None);
     let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
-    assert_close("mass matrix", model, seed, &flat(&mass), &flat(&reference.mass_matrix));
+    assert_close("mass matrix", model, seed, &flatten_matrix(&mass), &flatten_matrix(&reference.mass_matrix));
     assert_close("bias", model, seed, &bias, &reference.bias);
-    assert_close("inverse dynamics", model, seed, &tau, &apply(&reference.mass_matrix, &a, &reference.bias));
+    assert_close(
+        "inverse dynamics",
+        model,
+        seed,
+        &tau,
+        &apply_mass_and_bias(&reference.mass_matrix, &a, &reference.bias),
+    );
     let kinetic = energy::kinetic_energy(model, &joints, &v);
     let potential = energy::potential_energy(model, &joints);
     assert_close("energies", model, seed, &[kinetic, potential], &[reference.kinetic, reference.potential]);
     let p = momentum::generalized_momentum(model, &joints, &v);
     let zero = vec![model.graph.zero(); model.nv()];
-    assert_close("momentum", model, seed, &p, &apply(&reference.mass_matrix, &v, &zero));
+    assert_close("momentum", model, seed, &p, &apply_mass_and_bias(&reference.mass_matrix, &v, &zero));
     check_momentum_rate(model, &joints, &p, &bias, seed);
     check_forward(model, &joints, &mass, &tau, &bias, &a, seed);
     check_lowering(model, &tau, seed);
@@ -77,7 +83,7 @@ fn check_momentum_rate<'g>(
             *sum += d.differentiate(*p) * *rate;
         }
     }
-    let rate = momentum::momentum_rate(model, joints, &mechanics::velocities(model));
+    let rate = momentum::momentum_rate(model, joints, &mechanics::velocity_symbols(model));
     assert_close("momentum rate", model, seed, &rate, &expected);
 }
 
@@ -93,7 +99,7 @@ fn check_forward<'g>(
     let r: Vec<Expr<'g>> = tau.iter().zip(bias).map(|(t, h)| *t - *h).collect();
     let articulated = aba::accelerations(model, joints, &r).expect("no coordinate is coupled");
     assert_close("articulated bodies", model, seed, &articulated, a);
-    let factorised = ldl::solve(mass.clone(), r, joints);
+    let factorised = ldl::solve_symmetric(mass.clone(), r, joints);
     assert_close("factorisation", model, seed, &factorised, a);
 }
 
@@ -102,12 +108,14 @@ fn check_lowering(model: &Model<'_>, tau: &[Expr<'_>], seed: u64) {
     let q = random_configuration(model, seed);
     let value_of_symbol = |s| match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => q[k],
-        _ => sample(s, seed),
+        _ => sample_of_symbol(s, seed),
     };
     let direct = eval(tau, &value_of_symbol);
     let program = lower::lower(tau);
-    let (plain, fused) =
-        (program.run(&value_of_symbol), program.run_passes(lower::pipeline::PART).run(&value_of_symbol));
+    let (plain, fused) = (
+        program.interpret_program(&value_of_symbol),
+        program.run_passes(lower::pipeline::PART).interpret_program(&value_of_symbol),
+    );
     let scale = direct.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
     for k in 0..direct.len() {
         assert!((plain[k] - direct[k]).abs() <= 1e-13 * scale, "{} and {}", plain[k], direct[k]);
@@ -120,18 +128,20 @@ fn check_lowering(model: &Model<'_>, tau: &[Expr<'_>], seed: u64) {
 /// differentiating the point's position in the ground frame.
 fn check_inputs<'g>(model: &Model<'g>, seed: u64) {
     let g = model.graph;
-    let joints = kinematics::joints(model);
+    let joints = kinematics::joints_of_model(model);
     let world = world_frames(&joints, g);
     let mut power = g.zero();
     for (k, (_, input)) in model.inputs.iter().enumerate() {
         let u = Quantity::Input(k).expr(g);
         power += u * match input {
             Input::Named => g.zero(),
-            Input::Coordinate(c) => kinematics::rate(model, c),
-            Input::Sum(terms, _) => terms.iter().fold(g.zero(), |sum, c| sum + kinematics::rate(model, c)),
+            Input::Coordinate(c) => kinematics::coordinate_velocity(model, c),
+            Input::Sum(terms, _) => {
+                terms.iter().fold(g.zero(), |sum, c| sum + kinematics::coordinate_velocity(model, c))
+            }
             Input::Force { link, point, along } => {
                 let (r, p) = &world[link.0];
-                ground_vector(along, &world, g).dot(velocity(model, *p + *r * *point))
+                ground_vector(along, &world, g).dot(velocity_of_point(model, *p + *r * *point))
             }
             Input::Torque { link, about } => {
                 ground_vector(about, &world, g).dot(angular_velocity(model, &world[link.0].0))
@@ -148,7 +158,7 @@ fn world_frames<'g>(joints: &[Joint<'g>], g: &'g Graph) -> Vec<(Mat3<'g>, Vec3<'
     let mut world: Vec<(Mat3<'g>, Vec3<'g>)> = Vec::new();
     for joint in joints {
         let (r, p) = joint.parent.map_or((Mat3::identity(g), Vec3::zero(g)), |LinkId(p)| world[p]);
-        world.push((r * joint.rotation.matrix(), p + r * joint.translation));
+        world.push((r * joint.rotation.rotation_matrix(), p + r * joint.translation));
     }
     world
 }
@@ -165,7 +175,7 @@ fn time_derivative<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
     })
 }
 
-fn velocity<'g>(model: &Model<'g>, p: Vec3<'g>) -> Vec3<'g> {
+fn velocity_of_point<'g>(model: &Model<'g>, p: Vec3<'g>) -> Vec3<'g> {
     p.map(|c| time_derivative(model, c))
 }
 
@@ -177,15 +187,15 @@ fn angular_velocity<'g>(model: &Model<'g>, r: &Mat3<'g>) -> Vec3<'g> {
 }
 
 proptest! {
-    #![proptest_config(config(60))]
+    #![proptest_config(property_test_config(60))]
 
     #[test]
-    fn lagrange_and_the_recursions_agree(tree in trees(3), seed in 0_u64..1000) {
-        with_model(&tree.source(), |_, model| check_dynamics(model, seed));
+    fn lagrange_and_the_recursions_agree(tree in random_trees(3), seed in 0_u64..1000) {
+        with_model(&tree.tree_source(), |_, model| check_dynamics(model, seed));
     }
 
     #[test]
-    fn inputs_do_the_work_of_their_forces(tree in trees(4), seed in 0_u64..1000) {
-        with_model(&tree.source(), |_, model| check_inputs(model, seed));
+    fn inputs_do_the_work_of_their_forces(tree in random_trees(4), seed in 0_u64..1000) {
+        with_model(&tree.tree_source(), |_, model| check_inputs(model, seed));
     }
 }

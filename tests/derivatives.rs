@@ -18,15 +18,15 @@ use linkwork_compiler::mechanics::derivatives::{
 };
 use linkwork_compiler::mechanics::{self, crba, ldl, rnea};
 use linkwork_compiler::mechanism::{Chart, Model, Quantity};
-use linkwork_compiler::{compile, read};
+use linkwork_compiler::{compile, read_source};
 use proptest::prelude::*;
-use random_limbs::creatures;
-use random_tree::{tied_trees, trees};
-use random_world::worlds;
+use random_limbs::random_creatures;
+use random_tree::{random_trees, tied_trees};
+use random_world::random_worlds;
 use std::path::Path;
 use support::compare::assert_similar;
-use support::model::{symbols, try_model, with_model};
-use support::random::config;
+use support::model::{random_symbol_values, try_model, with_model};
+use support::random::property_test_config;
 use support::table::Record;
 
 /// Tolerance relative to the largest entry of a reference value.
@@ -49,17 +49,17 @@ macro_rules! robot {
             type Square = SMatrix<f64, { $robot::NV }, { $robot::NV }>;
             // The same matrices are passed to each call: entries that are always zero are never written.
             let (mut forces, mut motion) = ([Square::zeros(); 2], [Square::zeros(); 3]);
-            for (i, case) in Record::load(&format!("robots/{name}.json")).records("cases").iter().enumerate() {
-                if !case.has("Minv") {
+            for (i, case) in Record::load(&format!("robots/{name}.json")).records_with_key("cases").iter().enumerate() {
+                if !case.has_key("Minv") {
                     continue;
                 }
                 cases += 1;
                 let label_of_case = |what: &str| format!("{name}, case {i}: {what}");
-                let (q, v, a, tau) = (&case.vector("q"), &case.vector("v"), &case.vector("a"), &case.vector("tau"));
+                let (q, v, a, tau) = (&case.vector_with_key("q"), &case.vector_with_key("v"), &case.vector_with_key("a"), &case.vector_with_key("tau"));
                 let assert_close_to_reference = |what: &str, actual: &[f64], expected: &[f64]| {
                     assert_similar(&label_of_case(what), actual, expected, REFERENCE);
                 };
-                let expected_matrix = |key: &str| -> Square { case.matrix(key) };
+                let expected_matrix = |key: &str| -> Square { case.matrix_with_key(key) };
                 let (by_q, by_v) = $robot.inverse_dynamics_derivatives(q, v, a);
                 assert_close_to_reference("∂τ/∂q", by_q.as_slice(), expected_matrix("dtau_dq").as_slice());
                 assert_close_to_reference("∂τ/∂v", by_v.as_slice(), expected_matrix("dtau_dv").as_slice());
@@ -74,7 +74,7 @@ macro_rules! robot {
                 assert!(motion == [by_q, by_v, inverse], "{}", label_of_case("∂v̇ into matrices"));
                 assert_close_to_reference("∂v̇/∂q", by_q.as_slice(), expected_matrix("dddq_dq").as_slice());
                 assert_close_to_reference("∂v̇/∂v", by_v.as_slice(), expected_matrix("dddq_dv").as_slice());
-                let expected: Square = case.symmetric("Minv");
+                let expected: Square = case.symmetric_matrix_with_key("Minv");
                 assert_close_to_reference("M⁻¹ of forward dynamics", inverse.as_slice(), expected.as_slice());
                 let found = $robot.mass_matrix_inverse(q);
                 assert_close_to_reference("M⁻¹", found.as_slice(), expected.as_slice());
@@ -98,24 +98,24 @@ robot!(G1, g1, "../models/urdf/g1.urdf", , base = free);
 // derivations ---------------------------------------------------------------------------------------------
 
 fn assert_same(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[Expr<'_>]) {
-    let at = symbols(model, seed);
+    let at = random_symbol_values(model, seed);
     assert_similar(what, &eval(a, &at), &eval(b, &at), DERIVATION);
 }
 
 fn check_recursion(model: &Model<'_>, seed: u64) {
-    let joints = kinematics::joints(model);
-    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
+    let joints = kinematics::joints_of_model(model);
+    let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
     let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
-    let expected = symbolic::derivatives(model, &tau);
+    let expected = symbolic::force_derivatives(model, &tau);
     for lanes in [1, 2, 4, 8] {
         let found = derivatives::inverse_dynamics(model, &joints, &a, DerivationMethod::Recursion(lanes));
         assert_same("∂τ/∂q", model, seed, &found.by_q.concat(), &expected.by_q.concat());
         assert_same("∂τ/∂v", model, seed, &found.by_v.concat(), &expected.by_v.concat());
-        let at = symbols(model, seed);
+        let at = random_symbol_values(model, seed);
         let program = lower(&found.by_q.concat());
         assert_similar(
             "program of ∂τ/∂q",
-            &program.run(&at),
+            &program.interpret_program(&at),
             &eval(&expected.by_q.concat(), &at),
             DERIVATION,
         );
@@ -125,8 +125,8 @@ fn check_recursion(model: &Model<'_>, seed: u64) {
 /// Checks that `C v` equals the terms of the bias forces that depend on the links' velocities, and that
 /// `Ṁ = C + Cᵀ`.
 fn check_coriolis_matrix<'g>(model: &Model<'g>, seed: u64, lanes: usize) {
-    let joints = kinematics::joints(model);
-    let v = mechanics::velocities(model);
+    let joints = kinematics::joints_of_model(model);
+    let v = mechanics::velocity_symbols(model);
     let still = vec![model.graph.zero(); model.nv()];
     let c = analytic::coriolis_matrix(model, &joints, &v, lanes);
     let bias_forces_at = |v: &[Expr<'g>]| rnea::inverse_dynamics(model, &joints, v, None);
@@ -137,29 +137,30 @@ fn check_coriolis_matrix<'g>(model: &Model<'g>, seed: u64, lanes: usize) {
     let expected: Vec<Expr<'_>> = moving.iter().zip(&resting).map(|(m, r)| *m - *r).collect();
     assert_same("C v", model, seed, &product, &expected);
     let mass = crba::mass_matrix(model, &joints).concat();
-    let rate: Vec<Expr<'_>> = mass.iter().map(|m| kinematics::time_derivative(model.space(), *m)).collect();
+    let rate: Vec<Expr<'_>> =
+        mass.iter().map(|m| kinematics::time_derivative(model.configuration_space(), *m)).collect();
     let n = model.nv();
     let sum: Vec<Expr<'_>> = (0..n * n).map(|k| c[k / n][k % n] + c[k % n][k / n]).collect();
     assert_same("Ṁ", model, seed, &sum, &rate);
 }
 
 fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
-    let joints = kinematics::joints(model);
+    let joints = kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
     let factor = derivatives::Factor::new(&mass, &joints);
-    let a = mechanics::accelerations(model);
+    let a = mechanics::acceleration_symbols(model);
     let matrix_times_vector = |m: &crba::Matrix<'g>, x: &[Expr<'g>]| -> Vec<Expr<'g>> {
         let zero = model.graph.zero();
         m.iter().map(|row| row.iter().zip(x).fold(zero, |sum, (m, x)| sum + *m * *x)).collect()
     };
     let forces = matrix_times_vector(&mass, &a);
     assert_same("inverse", model, seed, &matrix_times_vector(&factor.inverse(), &forces), &a);
-    assert_same("solution", model, seed, &factor.solve(forces.clone()), &a);
-    let trunk = Trunk::new(&joints, &mass, &Trunk::branching(&joints, model.nv()));
+    assert_same("solution", model, seed, &factor.solve_factored(forces.clone()), &a);
+    let trunk = Trunk::new(&joints, &mass, &Trunk::branching_velocities(&joints, model.nv()));
     let Some(trunk) = trunk else { return };
     let parts = derivatives::Inverse::new(&mass, &trunk);
-    assert_same("solution in parts", model, seed, &parts.solve(&forces), &a);
-    let (mut whole, factors) = (parts.columns(), parts.factors());
+    assert_same("solution in parts", model, seed, &parts.solve_divided(&forces), &a);
+    let (mut whole, factors) = (parts.inverse_columns(), parts.limb_factor_rows());
     for row in &mut whole {
         let columns: Vec<Expr<'_>> = trunk.velocities.iter().map(|t| row[*t]).collect();
         for (entry, factors) in row.iter_mut().zip(&factors) {
@@ -172,11 +173,11 @@ fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
 /// Checks that the derivatives of the acceleration of a free base that follow from invariance solve the
 /// differentiated equations of motion. Returns the indices of these columns, by `q` and by `v`.
 fn check_what_is_known(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
-    let joints = kinematics::joints(model);
+    let joints = kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
-    let a = mechanics::accelerations(model);
-    let tau = rnea::inverse_dynamics(model, &joints, &mechanics::velocities(model), Some(&a));
-    let forces = symbolic::derivatives(model, &tau);
+    let a = mechanics::acceleration_symbols(model);
+    let tau = rnea::inverse_dynamics(model, &joints, &mechanics::velocity_symbols(model), Some(&a));
+    let forces = symbolic::force_derivatives(model, &tau);
     let known = invariance::invariant_columns(model, &joints);
     for (forces, columns) in [(&forces.by_q, &known.by_q), (&forces.by_v, &known.by_v)] {
         for (k, column) in columns {
@@ -188,21 +189,21 @@ fn check_what_is_known(model: &Model<'_>, seed: u64) -> [Vec<usize>; 2] {
             assert_same("forces on a free base", model, seed, &found, &expected);
         }
     }
-    known.indices()
+    known.known_column_indices()
 }
 
 /// Returns the configuration after a step of size `h` along velocity `k`, correct to second order in `h`.
-fn displaced(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Vec<f64> {
+fn displaced_configuration(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Vec<f64> {
     let symbol_value = |s| match Quantity::from_symbol(s) {
         Quantity::Configuration(i) => q[i],
         Quantity::Velocity(i) => f64::from(u8::from(i == k)),
         _ => 0.0,
     };
     let rates: Vec<Expr<'_>> =
-        (0..model.nq()).map(|i| kinematics::configuration_rate(model.space(), i)).collect();
+        (0..model.nq()).map(|i| kinematics::configuration_rate(model.configuration_space(), i)).collect();
     let mut moved: Vec<f64> =
         q.iter().zip(eval(&rates, &symbol_value)).map(|(q, rate)| q + h * rate).collect();
-    for first in model.charts.iter().filter_map(Chart::quaternion) {
+    for first in model.charts.iter().filter_map(Chart::first_quaternion_index) {
         let length = moved[first.and_next(4)].iter().map(|c| c * c).sum::<f64>().sqrt();
         moved[first.and_next(4)].iter_mut().for_each(|c| *c /= length);
     }
@@ -214,17 +215,17 @@ fn displaced(model: &Model<'_>, q: &[f64], k: usize, h: f64) -> Vec<f64> {
 /// the number of known columns.
 fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
     const STEP: f64 = 1e-5;
-    let joints = kinematics::joints(model);
+    let joints = kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
     let tau: Vec<Expr<'_>> = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect();
-    let bias = rnea::inverse_dynamics(model, &joints, &mechanics::velocities(model), None);
+    let bias = rnea::inverse_dynamics(model, &joints, &mechanics::velocity_symbols(model), None);
     let rest: Vec<Expr<'_>> = tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect();
-    let motion = ldl::solve(mass.clone(), rest, &joints);
+    let motion = ldl::solve_symmetric(mass.clone(), rest, &joints);
     let mut found =
         derivatives::forward_dynamics(model, &joints, &mass, &tau, DerivationMethod::Recursion(1));
     let known = invariance::invariant_columns(model, &joints);
-    known.replace(&mut found.forces);
-    let at = symbols(model, seed);
+    known.replace_known_columns(&mut found.forces);
+    let at = random_symbol_values(model, seed);
     let q: Vec<f64> = (0..model.nq()).map(|k| at(Quantity::Configuration(k).symbol())).collect();
     let n = model.nv();
     let inverse = eval(&found.inverse.concat(), &at);
@@ -238,7 +239,7 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
             let column: Vec<f64> =
                 if known.contains(&k) { column } else { (0..n).map(negated_product_row).collect() };
             let motion_at_displacement = |h: f64| {
-                let q = if by_q { displaced(model, &q, k, h) } else { q.clone() };
+                let q = if by_q { displaced_configuration(model, &q, k, h) } else { q.clone() };
                 let displaced_value = |s| match Quantity::from_symbol(s) {
                     Quantity::Configuration(i) => q[i],
                     Quantity::Velocity(i) if i == k && !by_q => at(s) + h,
@@ -255,7 +256,7 @@ fn deviation_from_differences(model: &Model<'_>, seed: u64) -> (f64, usize) {
         }
         worst
     };
-    let [by_q, by_v] = known.indices();
+    let [by_q, by_v] = known.known_column_indices();
     for (error, size) in
         [largest_error(&found.forces.by_q, &by_q, true), largest_error(&found.forces.by_v, &by_v, false)]
     {
@@ -311,11 +312,11 @@ fn forces_from_the_ground_are_not_forgotten() {
 }
 
 proptest! {
-    #![proptest_config(config(80))]
+    #![proptest_config(property_test_config(80))]
 
     #[test]
-    fn recursion_and_differentiation_agree(tree in trees(4), seed in 0_u64..1000) {
-        with_model(&tree.source(), |_, model| {
+    fn recursion_and_differentiation_agree(tree in random_trees(4), seed in 0_u64..1000) {
+        with_model(&tree.tree_source(), |_, model| {
             check_recursion(model, seed);
             for lanes in [1, 4, 8] {
                 check_coriolis_matrix(model, seed, lanes);
@@ -327,20 +328,20 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(config(120))]
+    #![proptest_config(property_test_config(120))]
 
     /// Checks derivatives against finite differences on random mechanisms, in which elements of every kind
     /// act on free and on jointed bodies, and on the ground.
     #[test]
     fn derivatives_are_limits_of_differences(
-        (tree, world, creature) in (tied_trees(4), worlds(), creatures(2)),
+        (tree, world, creature) in (tied_trees(4), random_worlds(), random_creatures(2)),
         which in 0..6_usize,
         seed in 0_u64..1000,
     ) {
         let source = match which {
-            0 => world.source(),
-            1 => creature.source(),
-            _ => tree.source(),
+            0 => world.world_source(),
+            1 => creature.creature_source(),
+            _ => tree.tree_source(),
         };
         let check_model = |model: &Model<'_>| {
             if model.constraints.is_empty() {
@@ -358,16 +359,16 @@ proptest! {
 
 /// Returns the numbers of operations of the derivatives of inverse dynamics, and of the inverse of the mass
 /// matrix.
-fn operations(arguments: &str) -> [usize; 2] {
-    programs(arguments).map(|program| program.counts.total())
+fn operation_totals(arguments: &str) -> [usize; 2] {
+    derivative_programs(arguments).map(|program| program.counts.total_operations())
 }
 
-fn programs(arguments: &str) -> [Program; 2] {
+fn derivative_programs(arguments: &str) -> [Program; 2] {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
-    let source = read(parse_tokens(arguments), parse_tokens("struct Robot;"), folder, &mut cx);
+    let source = read_source(parse_tokens(arguments), parse_tokens("struct Robot;"), folder, &mut cx);
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
@@ -383,14 +384,15 @@ fn programs(arguments: &str) -> [Program; 2] {
 #[test]
 fn operation_counts_in_lanes() {
     let counts_of_robot = |robot: &str| {
-        let all = programs(&format!("urdf = \"../models/urdf/{robot}.urdf\", base = free, derivatives"));
+        let all =
+            derivative_programs(&format!("urdf = \"../models/urdf/{robot}.urdf\", base = free, derivatives"));
         all.map(|program| {
             let program = program.simd.expect("its limbs are alike");
             let fused = program
                 .instructions
                 .iter()
                 .filter(|op| !matches!(op, Op::Lane(..) | Op::Join(..) | Op::Call(..)));
-            (program.counts.total(), fused.count())
+            (program.counts.total_operations(), fused.count())
         })
     };
     // Each row has the derivatives of inverse dynamics, then the inverse of the mass matrix.
@@ -411,7 +413,8 @@ fn operation_counts() {
         ("solo12", free, [4800, 2460]),
         ("simple_humanoid", free, [17_500, 11_700]),
     ] {
-        let found = operations(&format!("urdf = \"../models/urdf/{robot}.urdf\", {options}, derivatives"));
+        let found =
+            operation_totals(&format!("urdf = \"../models/urdf/{robot}.urdf\", {options}, derivatives"));
         println!("{robot}, {options}: {found:?}");
         assert!(found[0] <= most[0] && found[1] <= most[1], "{robot}: {found:?}, expected at most {most:?}");
     }

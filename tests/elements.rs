@@ -6,8 +6,8 @@ mod random_world;
 
 use linkwork_compiler::expr::diff::Derivative;
 use linkwork_compiler::expr::eval::eval;
-use linkwork_compiler::expr::replace::replace;
-use linkwork_compiler::expr::sample::sample;
+use linkwork_compiler::expr::replace::substitute_symbols;
+use linkwork_compiler::expr::sample::sample_of_symbol;
 use linkwork_compiler::expr::{Expr, Symbol};
 use linkwork_compiler::kinematics::{
     self, Joint, random_configuration, symbols_in, time_derivative, velocity_gradient,
@@ -15,12 +15,12 @@ use linkwork_compiler::kinematics::{
 use linkwork_compiler::mechanics;
 use linkwork_compiler::mechanics::{crba, energy, lagrange, ldl, momentum, rnea};
 use linkwork_compiler::mechanism::{Model, Quantity};
-use linkwork_compiler::resolve::outline;
+use linkwork_compiler::resolve::outline_of_description;
 use linkwork_compiler::syntax::Description;
 use proptest::prelude::*;
-use random_world::{OUTPUTS, worlds};
+use random_world::{OUTPUTS, random_worlds};
 use support::model::with_model;
-use support::random::config;
+use support::random::property_test_config;
 
 /// Tolerance relative to the largest entry of the reference.
 const TOLERANCE: f64 = 1e-10;
@@ -36,18 +36,20 @@ struct State {
 
 impl State {
     fn new(model: &Model<'_>, seed: u64) -> State {
-        let v = (0..model.nv()).map(|k| 2.0 * (sample(Quantity::Velocity(k).symbol(), seed) - 1.0)).collect();
+        let v = (0..model.nv())
+            .map(|k| 2.0 * (sample_of_symbol(Quantity::Velocity(k).symbol(), seed) - 1.0))
+            .collect();
         State { q: random_configuration(model, seed), v, seed }
     }
 
-    fn values(&self, e: &[Expr<'_>]) -> Vec<f64> {
+    fn values_of_expressions(&self, e: &[Expr<'_>]) -> Vec<f64> {
         self.values_after(0.0, &[], e)
     }
 
     /// Returns the values of expressions after a short time along the motion with the given rates of `q`, to
     /// first order.
     fn values_after(&self, time: f64, rates: &[f64], e: &[Expr<'_>]) -> Vec<f64> {
-        let rate_of_symbol = |s: Symbol| 2.0 * (sample(s, self.seed) - 1.0);
+        let rate_of_symbol = |s: Symbol| 2.0 * (sample_of_symbol(s, self.seed) - 1.0);
         eval(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => self.q[k] + rates.get(k).map_or(0.0, |r| time * r),
             Quantity::Velocity(k) => self.v[k] + time * rate_of_symbol(Quantity::Acceleration(k).symbol()),
@@ -57,8 +59,8 @@ impl State {
     }
 
     /// Returns the rates of expressions along the motion, by differences.
-    fn slope(&self, model: &Model<'_>, e: &[Expr<'_>]) -> Vec<f64> {
-        let rates = self.values(&lagrange::configuration_rates(model));
+    fn rates_of_expressions(&self, model: &Model<'_>, e: &[Expr<'_>]) -> Vec<f64> {
+        let rates = self.values_of_expressions(&lagrange::configuration_rates(model));
         let values_at = |s: f64| self.values_after(s, &rates, e);
         let h = 1e-3;
         let (near, far) = ((values_at(h), values_at(-h)), (values_at(2.0 * h), values_at(-2.0 * h)));
@@ -77,7 +79,7 @@ fn assert_close(what: &str, a: &[f64], b: &[f64], tolerance: f64) {
 /// Checks that the outline that is generated for a mechanism with errors has the signatures of the correct
 /// mechanism.
 fn check_outline(description: &Description, model: &Model<'_>) {
-    let outline = outline(description);
+    let outline = outline_of_description(description);
     assert_eq!(outline.configuration, model.configuration);
     assert_eq!(outline.velocities, model.velocities.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>());
     assert_eq!(outline.inputs, model.inputs.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>());
@@ -102,46 +104,51 @@ fn check_outline(description: &Description, model: &Model<'_>) {
 }
 
 /// Returns the expressions of the inverse dynamics `M x + h`.
-fn apply<'g>(m: &crba::Matrix<'g>, x: &[Expr<'g>], h: &[Expr<'g>]) -> Vec<Expr<'g>> {
+fn apply_mass_and_bias<'g>(m: &crba::Matrix<'g>, x: &[Expr<'g>], h: &[Expr<'g>]) -> Vec<Expr<'g>> {
     m.iter().zip(h).map(|(row, h)| row.iter().zip(x).fold(*h, |sum, (m, x)| sum + *m * *x)).collect()
 }
 
-fn flat<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
+fn flatten_matrix<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
     m.iter().flatten().copied().collect()
 }
 
-fn derivative<'g>(model: &Model<'g>, quantity: Quantity, e: Expr<'g>) -> Expr<'g> {
+fn derivative_of_expression<'g>(model: &Model<'g>, quantity: Quantity, e: Expr<'g>) -> Expr<'g> {
     Derivative::with_respect_to(quantity.symbol(), model.graph).differentiate(e)
 }
 
 fn check_dynamics(model: &Model<'_>, seed: u64) {
     let state = State::new(model, seed);
     let assert_close_expressions = |what: &str, a: &[Expr<'_>], b: &[Expr<'_>]| {
-        assert_close(what, &state.values(a), &state.values(b), TOLERANCE);
+        assert_close(what, &state.values_of_expressions(a), &state.values_of_expressions(b), TOLERANCE);
     };
-    let joints = kinematics::joints(model);
-    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
+    let joints = kinematics::joints_of_model(model);
+    let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
     let reference = lagrange::derive(model, &joints);
     let mass = crba::mass_matrix(model, &joints);
     let bias = rnea::inverse_dynamics(model, &joints, &v, None);
     let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
-    assert_close_expressions("mass matrix", &flat(&mass), &flat(&reference.mass_matrix));
+    assert_close_expressions("mass matrix", &flatten_matrix(&mass), &flatten_matrix(&reference.mass_matrix));
     assert_close_expressions("bias", &bias, &reference.bias);
-    assert_close_expressions("inverse dynamics", &tau, &apply(&reference.mass_matrix, &a, &reference.bias));
+    assert_close_expressions(
+        "inverse dynamics",
+        &tau,
+        &apply_mass_and_bias(&reference.mass_matrix, &a, &reference.bias),
+    );
     let kinetic = energy::kinetic_energy(model, &joints, &v);
     let potential = energy::potential_energy(model, &joints);
     assert_close_expressions("energies", &[kinetic, potential], &[reference.kinetic, reference.potential]);
     let p = momentum::generalized_momentum(model, &joints, &v);
-    let expected: Vec<_> =
-        (0..model.nv()).map(|k| derivative(model, Quantity::Velocity(k), reference.kinetic)).collect();
+    let expected: Vec<_> = (0..model.nv())
+        .map(|k| derivative_of_expression(model, Quantity::Velocity(k), reference.kinetic))
+        .collect();
     assert_close_expressions("momentum", &p, &expected);
     // The reference is ṗ = Ṗ(q, v, t) + M a with τ = M a + h.
     let rate = momentum::momentum_rate(model, &joints, &v);
     let expected: Vec<_> =
-        p.iter().zip(&bias).map(|(p, h)| time_derivative(model.space(), *p) - *h).collect();
+        p.iter().zip(&bias).map(|(p, h)| time_derivative(model.configuration_space(), *p) - *h).collect();
     assert_close_expressions("momentum rate", &rate, &expected);
     let r: Vec<_> = tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect();
-    assert_close_expressions("factorisation", &ldl::solve(mass, r, &joints), &a);
+    assert_close_expressions("factorisation", &ldl::solve_symmetric(mass, r, &joints), &a);
     check_energy(model, &joints, &tau, &state);
 }
 
@@ -149,7 +156,7 @@ fn check_dynamics(model: &Model<'_>, seed: u64) {
 /// `∂L/∂t`.
 fn check_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], state: &State) {
     let g = model.graph;
-    let v = mechanics::velocities(model);
+    let v = mechanics::velocity_symbols(model);
     let dot_product =
         |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
     let kinetic = energy::kinetic_energy(model, joints, &v);
@@ -160,21 +167,26 @@ fn check_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>], s
         |e: Expr<'g>| velocity_gradient(e).iter().fold(g.zero(), |sum, (k, d)| sum + *d * v[*k]);
     let mut power = dot_product(tau, &v);
     for dashpot in &model.dashpots {
-        power -= dashpot.damping * kinematics::rate(model, &dashpot.on).square();
+        power -= dashpot.damping * kinematics::coordinate_velocity(model, &dashpot.on).square();
     }
     for function in &model.dissipations {
         power -= velocity_derivative(*function);
     }
     for load in &model.loads {
         let zero_for_inputs = |s| matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero());
-        power += replace(load.force, &zero_for_inputs) * velocity_derivative(load.rate);
+        power += substitute_symbols(load.force, &zero_for_inputs) * velocity_derivative(load.rate);
     }
-    let expected = power - derivative(model, Quantity::Time, kinetic - potential);
-    assert_close("energy", &state.slope(model, &[jacobi]), &state.values(&[expected]), DIFFERENCE);
+    let expected = power - derivative_of_expression(model, Quantity::Time, kinetic - potential);
+    assert_close(
+        "energy",
+        &state.rates_of_expressions(model, &[jacobi]),
+        &state.values_of_expressions(&[expected]),
+        DIFFERENCE,
+    );
 }
 
 /// Returns the values of the output with this name.
-fn output<'g>(model: &Model<'g>, name: &str) -> Vec<Expr<'g>> {
+fn output_expressions<'g>(model: &Model<'g>, name: &str) -> Vec<Expr<'g>> {
     model.outputs.iter().find(|o| o.name == name).expect("every output is there").values.clone()
 }
 
@@ -183,8 +195,13 @@ fn output<'g>(model: &Model<'g>, name: &str) -> Vec<Expr<'g>> {
 fn check_outputs(model: &Model<'_>, seed: u64) {
     let state = State::new(model, seed);
     let assert_rate_of_output = |rate: &str, of: &str| {
-        let slope = state.slope(model, &output(model, of));
-        assert_close(rate, &state.values(&output(model, rate)), &slope, DIFFERENCE);
+        let slope = state.rates_of_expressions(model, &output_expressions(model, of));
+        assert_close(
+            rate,
+            &state.values_of_expressions(&output_expressions(model, rate)),
+            &slope,
+            DIFFERENCE,
+        );
     };
     for k in 1..=3 {
         assert_rate_of_output(&format!("v{k}"), &format!("r{k}"));
@@ -193,43 +210,49 @@ fn check_outputs(model: &Model<'_>, seed: u64) {
     for k in 4..=6 {
         assert_rate_of_output(&format!("d{k}"), &format!("w{k}"));
     }
-    let vector_output =
-        |name: &str| <[f64; 3]>::try_from(state.values(&output(model, name))).expect("a vector");
+    let vector_output = |name: &str| {
+        <[f64; 3]>::try_from(state.values_of_expressions(&output_expressions(model, name))).expect("a vector")
+    };
     let w = vector_output("w4");
     for axis in ["x4", "y4", "z4"] {
         let e = vector_output(axis);
         let turning = [w[1] * e[2] - w[2] * e[1], w[2] * e[0] - w[0] * e[2], w[0] * e[1] - w[1] * e[0]];
-        assert_close(axis, &turning, &state.slope(model, &output(model, axis)), DIFFERENCE);
+        assert_close(
+            axis,
+            &turning,
+            &state.rates_of_expressions(model, &output_expressions(model, axis)),
+            DIFFERENCE,
+        );
     }
     for name in OUTPUTS.map(|(name, ..)| name).into_iter().chain(["size"]) {
-        let values = output(model, name);
+        let values = output_expressions(model, name);
         let total_time_derivative = |e: &Expr<'_>| {
-            let moved = state.values(&[time_derivative(model.space(), *e)])[0];
+            let moved = state.values_of_expressions(&[time_derivative(model.configuration_space(), *e)])[0];
             velocity_gradient(*e).iter().fold(moved, |sum, (k, d)| {
-                sum + state.values(&[*d * Quantity::Acceleration(*k).expr(model.graph)])[0]
+                sum + state.values_of_expressions(&[*d * Quantity::Acceleration(*k).expr(model.graph)])[0]
             })
         };
         let rates: Vec<f64> = values.iter().map(total_time_derivative).collect();
         // Accelerations are constant along this motion.
-        assert_close(name, &rates, &state.slope(model, &values), DIFFERENCE);
+        assert_close(name, &rates, &state.rates_of_expressions(model, &values), DIFFERENCE);
     }
 }
 
 proptest! {
-    #![proptest_config(config(32))]
+    #![proptest_config(property_test_config(32))]
 
     #[test]
-    fn lagrange_and_the_recursions_agree(world in worlds(), seed in 0_u64..1000) {
-        with_model(&world.source(), |_, model| check_dynamics(model, seed));
+    fn lagrange_and_the_recursions_agree(world in random_worlds(), seed in 0_u64..1000) {
+        with_model(&world.world_source(), |_, model| check_dynamics(model, seed));
     }
 
     #[test]
-    fn places_move_as_their_velocities_say(world in worlds(), seed in 0_u64..1000) {
-        with_model(&world.source(), |_, model| check_outputs(model, seed));
+    fn places_move_as_their_velocities_say(world in random_worlds(), seed in 0_u64..1000) {
+        with_model(&world.world_source(), |_, model| check_outputs(model, seed));
     }
 
     #[test]
-    fn a_mistake_leaves_the_signatures(world in worlds()) {
-        with_model(&world.source(), check_outline);
+    fn a_mistake_leaves_the_signatures(world in random_worlds()) {
+        with_model(&world.world_source(), check_outline);
     }
 }

@@ -52,7 +52,7 @@ struct Belief {
 /// Runs one period of the iterated extended Kalman filter. The correction is linearised again at its own
 /// result until the result changes no more, which finds the most likely state also from a distant prediction
 /// (Bell and Cathey, *The iterated Kalman filter update as a Gauss-Newton method*, 1993).
-fn update<M, const NY: usize>(m: &M, belief: &mut Belief, y: &SVector<f64, NY>)
+fn update_belief<M, const NY: usize>(m: &M, belief: &mut Belief, y: &SVector<f64, NY>)
 where
     M: Derivatives<4, 3, 0, Scalar = f64> + OutputDerivatives<4, 3, 0, NY, Scalar = f64>,
 {
@@ -89,14 +89,14 @@ where
 }
 
 /// Returns approximately normal random numbers: each is the sum of twelve uniform numbers (Irwin and Hall).
-fn normal<const N: usize>(random: &mut Random, variance: f64) -> SVector<f64, N> {
-    SVector::from_fn(|_, _| (0..12).map(|_| random.uniform(0.5)).sum::<f64>() * variance.sqrt())
+fn normal_vector<const N: usize>(random: &mut Random, variance: f64) -> SVector<f64, N> {
+    SVector::from_fn(|_, _| (0..12).map(|_| random.uniform_number(0.5)).sum::<f64>() * variance.sqrt())
 }
 
 /// Runs the filter for `duration` seconds from an initial error with standard deviation `off`. Returns the
 /// displacement from the estimate to the true state (configuration, then velocity), the last estimate and the
 /// last true configuration.
-fn run<M, const NY: usize>(
+fn run_filter<M, const NY: usize>(
     m: &M,
     random: &mut Random,
     off: f64,
@@ -111,17 +111,17 @@ where
     let u = SVector::from([]);
     let mut q = m.integrate(&m.neutral(), &[0.4, -0.3, 0.7].into());
     let mut v: SVector<f64, 3> = [0.5, 0.8, 1.5].into();
-    let error = normal::<6>(random, off * off);
+    let error = normal_vector::<6>(random, off * off);
     let (dq, dv) = discrete::split(&error);
     let mut belief =
         Belief { q: m.integrate(&q, &-dq), v: v - dv, spread: SMatrix::identity() * (off * off) };
     for _ in 0..(duration / PERIOD) as usize {
         (q, v) = discrete::step(m, &Rk4::step(PERIOD), 0.0, &q, &v, &u).unwrap();
-        v += normal::<3>(random, gusts);
+        v += normal_vector::<3>(random, gusts);
         let a = m.forward_dynamics(0.0, &q, &v, &SVector::zeros());
         let y: SVector<f64, NY> =
-            m.outputs(0.0, &q, &v, &a, &u) + normal::<NY>(random, gusts / GUSTS * NOISE);
-        update(m, &mut belief, &y);
+            m.outputs(0.0, &q, &v, &a, &u) + normal_vector::<NY>(random, gusts / GUSTS * NOISE);
+        update_belief(m, &mut belief, &y);
     }
     let left = discrete::stacked(&m.difference(&belief.q, &q), &(v - belief.v));
     (left, belief, q)
@@ -132,7 +132,7 @@ where
 #[test]
 fn a_load_on_a_ball_joint_is_found() {
     for seed in 0..5 {
-        let (left, ..) = run::<_, 9>(&Guided {}, &mut Random::new(seed), 0.3, 2.0, 0.0);
+        let (left, ..) = run_filter::<_, 9>(&Guided {}, &mut Random::new(seed), 0.3, 2.0, 0.0);
         assert!(left.amax() < 1e-3, "{seed}: {left}");
     }
 }
@@ -143,7 +143,7 @@ fn a_load_on_a_ball_joint_is_found() {
 fn heading_is_not_seen_without_a_compass() {
     for seed in 0..5 {
         let off = 0.3;
-        let (left, belief, q) = run::<_, 6>(&Load {}, &mut Random::new(seed), off, 2.0, 0.0);
+        let (left, belief, q) = run_filter::<_, 6>(&Load {}, &mut Random::new(seed), off, 2.0, 0.0);
         let attitude = UnitQuaternion::from_quaternion([q[0], q[1], q[2], q[3]].into());
         let up = attitude.inverse_transform_vector(&Vector3::z());
         let turned = left.fixed_rows::<3>(0).into_owned();
@@ -162,7 +162,7 @@ fn errors_are_as_large_as_they_are_said_to_be() {
     const RUNS: u64 = 30;
     let mut sum = 0.0;
     for seed in 0..RUNS {
-        let (left, belief, _) = run::<_, 9>(&Guided {}, &mut Random::new(100 + seed), 0.1, 1.0, GUSTS);
+        let (left, belief, _) = run_filter::<_, 9>(&Guided {}, &mut Random::new(100 + seed), 0.1, 1.0, GUSTS);
         sum += left.dot(&(belief.spread.try_inverse().unwrap() * left));
     }
     // The mean of 30 chi-square values with six degrees of freedom is within 3.3 standard deviations in 99.9

@@ -56,7 +56,7 @@ struct Fighter<T: Real> {
 static ANGLES: [f64; 4] = [-1.6, -0.1, 0.4, 1.7];
 static ELEVATOR: [f64; 3] = [-1.5, 0.2, 1.5];
 
-fn fighter() -> Fighter<f64> {
+fn tabulated_fighter() -> Fighter<f64> {
     let lift_coefficient = |a: f64, d: f64| (0.2 + 5.0 * a - 3.0 * a * a) * (1.0 + 0.3 * d);
     let values: Vec<f64> = ANGLES.iter().flat_map(|a| ELEVATOR.map(|d| lift_coefficient(*a, d))).collect();
     let lift = Table::new([&ANGLES, &ELEVATOR], values.leak()).unwrap().smooth();
@@ -71,34 +71,40 @@ struct Case {
     u: SVector<f64, 2>,
 }
 
-fn cases() -> Vec<Case> {
+fn random_cases() -> Vec<Case> {
     let mut random = Random::new(11);
     let random_case = |k: usize| {
-        let turn: SVector<f64, 4> = random.vector::<4>(1.0).normalize();
+        let turn: SVector<f64, 4> = random.random_vector::<4>(1.0).normalize();
         let q = SVector::from_column_slice(&[10.0, 20.0, -900.0, turn[0], turn[1], turn[2], turn[3]]);
-        let mut v: SVector<f64, 8> = random.vector(0.7);
+        let mut v: SVector<f64, 8> = random.random_vector(0.7);
         v[0] += 60.0;
         v[2] += 3.0 * k as f64;
         v[6] = 4000.0 + 100.0 * v[6];
-        Case { t: random.uniform(2.0), q, v, a: random.vector(2.0), u: random.vector(1.0) }
+        Case {
+            t: random.uniform_number(2.0),
+            q,
+            v,
+            a: random.random_vector(2.0),
+            u: random.random_vector(1.0),
+        }
     };
     (0..6).map(random_case).collect()
 }
 
 /// Returns the derivative of `f` at zero by central differences of eighth order with step `h`.
-fn slope<const N: usize>(h: f64, f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
+fn derivative_at_zero<const N: usize>(h: f64, f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
     let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
     let terms = weights.iter().zip(1..).map(|(w, k)| (f(k as f64 * h) - f(-(k as f64) * h)) * *w);
     terms.fold(SVector::zeros(), |sum, term| sum + term) / h
 }
 
 /// Returns the derivatives of `f` along `K` directions by differences: a matrix in column-major order.
-fn slopes<const N: usize, const K: usize>(
+fn derivatives_at_zero<const N: usize, const K: usize>(
     sizes: [f64; K],
     f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
 ) -> Vec<f64> {
     let derivative_column = |k: usize| {
-        slope(sizes[k], |s| {
+        derivative_at_zero(sizes[k], |s| {
             let mut by = SVector::zeros();
             by[k] = s;
             f(by)
@@ -111,14 +117,14 @@ const STEP: [f64; 8] = [1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 10.0, 1e-2];
 
 #[test]
 fn states_are_named_after_the_velocities() {
-    fn names<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
+    fn velocity_names<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
         _: &M,
     ) -> [&'static str; NV] {
         assert_eq!(M::FIRST_ORDER, 2);
         M::VELOCITIES
     }
-    let fighter = fighter();
-    assert_eq!(names(&fighter.extended())[5..], ["flight.wz", "power", "sensed"]);
+    let fighter = tabulated_fighter();
+    assert_eq!(velocity_names(&fighter.extended())[5..], ["flight.wz", "power", "sensed"]);
     assert_eq!(fighter.states().as_slice(), [3e3, 0.1]);
     let other = fighter.with_states(&[1.0, 2.0].into());
     assert_eq!((other.power, other.sensed, other.mass), (1.0, 2.0, 900.0));
@@ -126,9 +132,9 @@ fn states_are_named_after_the_velocities() {
 
 #[test]
 fn forward_undoes_inverse_dynamics() {
-    let fighter = fighter();
+    let fighter = tabulated_fighter();
     let whole = fighter.extended();
-    for Case { t, q, v, a, .. } in cases() {
+    for Case { t, q, v, a, .. } in random_cases() {
         let tau = whole.inverse_dynamics(t, &q, &v, &a);
         let back = whole.forward_dynamics(t, &q, &v, &tau);
         assert_similar("accelerations and rates", back.as_slice(), a.as_slice(), 1e-12);
@@ -139,8 +145,8 @@ fn forward_undoes_inverse_dynamics() {
 
 #[test]
 fn the_rates_are_what_was_written() {
-    let fighter = fighter();
-    for Case { t, q, v, u, .. } in cases() {
+    let fighter = tabulated_fighter();
+    for Case { t, q, v, u, .. } in random_cases() {
         let now = fighter.with_states(&[v[6], v[7]].into());
         let own = v.fixed_rows::<6>(0).into_owned();
         let whole = fighter.extended();
@@ -159,9 +165,9 @@ fn the_rates_are_what_was_written() {
 
 #[test]
 fn derivatives_agree_with_differences() {
-    let fighter = fighter();
+    let fighter = tabulated_fighter();
     let whole = fighter.extended();
-    for Case { t, q, v, a, u } in cases() {
+    for Case { t, q, v, a, u } in random_cases() {
         let tau = whole.inverse_dynamics(t, &q, &v, &a);
         let displaced_configuration = |by| whole.integrate(&q, &by);
         let mut still = STEP;
@@ -172,16 +178,18 @@ fn derivatives_agree_with_differences() {
         assert_similar(
             "∂v̇/∂q",
             by_q.as_slice(),
-            &slopes(still, |by| forward_dynamics_of_whole(&displaced_configuration(by), &v, &tau)),
+            &derivatives_at_zero(still, |by| {
+                forward_dynamics_of_whole(&displaced_configuration(by), &v, &tau)
+            }),
             DIFFERENCE,
         );
         assert_similar(
             "∂v̇/∂v",
             by_v.as_slice(),
-            &slopes(STEP, |by| forward_dynamics_of_whole(&q, &(v + by), &tau)),
+            &derivatives_at_zero(STEP, |by| forward_dynamics_of_whole(&q, &(v + by), &tau)),
             DIFFERENCE,
         );
-        let by_tau = slopes([1.0; 8], |by| forward_dynamics_of_whole(&q, &v, &(tau + by)));
+        let by_tau = derivatives_at_zero([1.0; 8], |by| forward_dynamics_of_whole(&q, &v, &(tau + by)));
         assert_similar("∂v̇/∂τ", by_force.as_slice(), &by_tau, 1e-9);
 
         let (by_q, by_v) = whole.inverse_dynamics_derivatives(t, &q, &v, &a);
@@ -189,42 +197,43 @@ fn derivatives_agree_with_differences() {
         assert_similar(
             "∂τ/∂q",
             by_q.as_slice(),
-            &slopes(still, |by| inverse_dynamics_of_whole(&displaced_configuration(by), &v)),
+            &derivatives_at_zero(still, |by| inverse_dynamics_of_whole(&displaced_configuration(by), &v)),
             DIFFERENCE,
         );
         assert_similar(
             "∂τ/∂v",
             by_v.as_slice(),
-            &slopes(STEP, |by| inverse_dynamics_of_whole(&q, &(v + by))),
+            &derivatives_at_zero(STEP, |by| inverse_dynamics_of_whole(&q, &(v + by))),
             DIFFERENCE,
         );
 
         let (by_q, by_v, by_u) = whole.generalized_forces_derivatives(t, &q, &v, &u);
         let forces_of_whole = |q: &_, v: &_, u: &_| whole.generalized_forces(t, q, v, u);
-        let found = slopes(still, |by| forces_of_whole(&displaced_configuration(by), &v, &u));
+        let found = derivatives_at_zero(still, |by| forces_of_whole(&displaced_configuration(by), &v, &u));
         assert_similar("inputs, ∂τ/∂q", by_q.as_slice(), &found, DIFFERENCE);
-        let found = slopes(STEP, |by| forces_of_whole(&q, &(v + by), &u));
+        let found = derivatives_at_zero(STEP, |by| forces_of_whole(&q, &(v + by), &u));
         assert_similar("inputs, ∂τ/∂v", by_v.as_slice(), &found, DIFFERENCE);
-        let found = slopes([1e-2; 2], |by: SVector<f64, 2>| forces_of_whole(&q, &v, &(u + by)));
+        let found = derivatives_at_zero([1e-2; 2], |by: SVector<f64, 2>| forces_of_whole(&q, &v, &(u + by)));
         assert_similar("inputs, ∂τ/∂u", by_u.as_slice(), &found, DIFFERENCE);
     }
 }
 
 #[test]
 fn outputs_change_with_them() {
-    let fighter = fighter();
+    let fighter = tabulated_fighter();
     let whole = fighter.extended();
-    for Case { t, q, v, a, u } in cases() {
+    for Case { t, q, v, a, u } in random_cases() {
         let outputs_of_whole = |v: &_, a: &_, u: &_| whole.outputs(t, &q, v, a, u);
         let found = whole.output_derivatives(t, &q, &v, &a, &u);
-        let by_v = slopes(STEP, |by| outputs_of_whole(&(v + by), &a, &u));
+        let by_v = derivatives_at_zero(STEP, |by| outputs_of_whole(&(v + by), &a, &u));
         assert_similar("∂y/∂v", found.by_v.as_slice(), &by_v, DIFFERENCE);
-        let by_a = slopes([1.0; 8], |by| outputs_of_whole(&v, &(a + by), &u));
+        let by_a = derivatives_at_zero([1.0; 8], |by| outputs_of_whole(&v, &(a + by), &u));
         assert_similar("∂y/∂v̇", found.by_a.as_slice(), &by_a, DIFFERENCE);
-        let by_u = slopes([1e-2; 2], |by| outputs_of_whole(&v, &a, &(u + by)));
+        let by_u = derivatives_at_zero([1e-2; 2], |by| outputs_of_whole(&v, &a, &(u + by)));
         assert_similar("∂y/∂u", found.by_u.as_slice(), &by_u, DIFFERENCE);
         let displaced_configuration = |by: SVector<f64, 8>| whole.integrate(&q, &by);
-        let by_q = slopes([1e-2; 8], |by| whole.outputs(t, &displaced_configuration(by), &v, &a, &u));
+        let by_q =
+            derivatives_at_zero([1e-2; 8], |by| whole.outputs(t, &displaced_configuration(by), &v, &a, &u));
         assert_similar("∂y/∂q", found.by_q.as_slice(), &by_q, DIFFERENCE);
     }
 }

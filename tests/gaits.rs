@@ -44,7 +44,7 @@ const HEIGHT: f64 = 1e4;
 const LAST: f64 = 200.0;
 
 /// Returns the contact mode in a node, `None` at the touchdown.
-fn touch(k: usize) -> Option<Touch> {
+fn contact_mode_of_node(k: usize) -> Option<Touch> {
     match k {
         LANDS => None,
         k if (LEAVES..LANDS).contains(&k) => Some(Touch::Open),
@@ -53,10 +53,10 @@ fn touch(k: usize) -> Option<Touch> {
 }
 
 /// Returns the state after a node, and the cost of the node.
-fn advance(k: usize, (q, v): &State, u: &Inputs) -> (State, f64) {
+fn advance_node(k: usize, (q, v): &State, u: &Inputs) -> (State, f64) {
     let m = Hopper {};
     let effort = EFFORT / 2.0 * u.norm_squared();
-    let Some(touch) = touch(k) else {
+    let Some(touch) = contact_mode_of_node(k) else {
         let landed = contact::land(&m, 0.0, q, v, &[Touch::Sticks]).expect("the foot can land");
         return ((*q, landed.v), effort + HEIGHT / 2.0 * m.contact_gaps(q).norm_squared());
     };
@@ -67,26 +67,26 @@ fn advance(k: usize, (q, v): &State, u: &Inputs) -> (State, f64) {
 }
 
 /// Returns the cost of the last state and its derivatives. The goal is 0.3 m ahead, upright and at rest.
-fn last((q, v): &State) -> (f64, Value<f64, 4>) {
+fn terminal_cost((q, v): &State) -> (f64, Value<f64, 4>) {
     let (off, one) = (q - SVector::from([0.3, 0.4, 0.0, 0.0]), SMatrix::identity() * LAST);
     let costs = LAST / 2.0 * (off.norm_squared() + v.norm_squared());
     (costs, Value { q: off * LAST, v: v * LAST, qq: one, vv: one, ..Value::zeros() })
 }
 
 /// Returns the states of the motion from the start, and its total cost.
-fn motion(start: &State, inputs: &[Inputs]) -> (Vec<State>, f64) {
+fn states_and_total_cost(start: &State, inputs: &[Inputs]) -> (Vec<State>, f64) {
     let (mut states, mut sum) = (vec![*start], 0.0);
     for (k, u) in inputs.iter().enumerate() {
-        let (next, cost) = advance(k, &states[k], u);
+        let (next, cost) = advance_node(k, &states[k], u);
         states.push(next);
         sum += cost;
     }
-    let end = last(&states[inputs.len()]).0;
+    let end = terminal_cost(&states[inputs.len()]).0;
     (states, sum + end)
 }
 
 /// Returns the transition of a node to first order, and its cost to second order.
-fn node(
+fn transition_and_cost(
     k: usize,
     (q, v): &State,
     u: &Inputs,
@@ -94,7 +94,7 @@ fn node(
 ) -> (Transition<f64, 4, 4, 2>, Quadratic<f64, 4, 2>) {
     let m = Hopper {};
     let mut cost = Quadratic { u: u * EFFORT, uu: SMatrix::identity() * EFFORT, ..Quadratic::zeros() };
-    let Some(touch) = touch(k) else {
+    let Some(touch) = contact_mode_of_node(k) else {
         let landed = contact::land_derivatives(&m, 0.0, q, v, &[Touch::Sticks]).expect("the foot can land");
         let rise = m.contact_jacobian(q).fixed_rows::<1>(0).into_owned();
         cost.add_squares_of_configuration(HEIGHT, &m.contact_gaps(q), &rise);
@@ -119,14 +119,14 @@ fn node(
 
 /// Returns the largest derivative of the total cost with respect to an input, by differences of sixth order
 /// of the whole motion.
-fn gradient(start: &State, inputs: &[Inputs]) -> f64 {
+fn largest_gradient(start: &State, inputs: &[Inputs]) -> f64 {
     let mut most = 0.0_f64;
     for k in 0..NODES {
         for i in 0..2 {
             let cost_with_changed_input = |s: f64| {
                 let mut moved = inputs.to_vec();
                 moved[k][i] += s;
-                motion(start, &moved).1
+                states_and_total_cost(start, &moved).1
             };
             let h = 1e-2;
             let central_difference =
@@ -148,14 +148,14 @@ fn a_hop_is_optimal() {
     let start: State = ([0.0, 0.38, 0.1, 0.02].into(), SVector::zeros());
     // All inputs of the initial guess are zero.
     let mut inputs = vec![SVector::from([0.0, 0.0]); NODES];
-    let (mut states, mut cost) = motion(&start, &inputs);
-    let (first, begin) = (cost, gradient(&start, &inputs));
+    let (mut states, mut cost) = states_and_total_cost(&start, &inputs);
+    let (first, begin) = (cost, largest_gradient(&start, &inputs));
     let mut found = HeldDerivatives::zeros();
     for _ in 0..400 {
         let mut policies = vec![Policy::zeros(); NODES];
-        let mut to_go = last(&states[NODES]).1;
+        let mut to_go = terminal_cost(&states[NODES]).1;
         for k in (0..NODES).rev() {
-            let (step, costs) = node(k, &states[k], &inputs[k], &mut found);
+            let (step, costs) = transition_and_cost(k, &states[k], &inputs[k], &mut found);
             backward_into(&step, &costs, 0.0, &mut policies[k], &mut to_go).expect("it is convex");
         }
         let tried = (0..20).map(|halved| 0.5_f64.powi(halved)).find_map(|length| {
@@ -163,12 +163,12 @@ fn a_hop_is_optimal() {
             for (k, policy) in policies.iter().enumerate() {
                 let (q, v) = next[k];
                 let u = inputs[k] + policy.inputs(length, &(q - states[k].0), &(v - states[k].1));
-                let (state, cost) = advance(k, &next[k], &u);
+                let (state, cost) = advance_node(k, &next[k], &u);
                 next.push(state);
                 changed.push(u);
                 sum += cost;
             }
-            sum += last(&next[NODES]).0;
+            sum += terminal_cost(&next[NODES]).0;
             (sum < cost).then_some((next, changed, sum))
         });
         let Some((next, changed, less)) = tried else { break };
@@ -178,7 +178,7 @@ fn a_hop_is_optimal() {
             break;
         }
     }
-    let end = gradient(&start, &inputs);
+    let end = largest_gradient(&start, &inputs);
     assert!(end < 1e-6 * begin, "{begin:e} {end:e}");
     assert!(cost < 0.1 * first, "{first} {cost}");
     // The foot leaves the ground and touches down at the prescribed node.

@@ -115,7 +115,7 @@ struct Slings {
 }
 
 /// Returns the rank of the stacked matrices: the number of independent columns.
-fn rank<const N: usize, const M: usize>(matrices: &[SMatrix<f64, N, M>]) -> usize {
+fn rank_of_stacked<const N: usize, const M: usize>(matrices: &[SMatrix<f64, N, M>]) -> usize {
     let stacked = DMatrix::from_fn(N * matrices.len(), M, |i, j| matrices[i / N][(i % N, j)]);
     let singular = stacked.singular_values();
     singular.iter().filter(|s| **s > RANK * singular.max()).count()
@@ -134,21 +134,21 @@ macro_rules! check {
         assert_close("total mass", &[total], &[robot.total_mass()], EXACT);
         let (mut standard, mut base) = (Vec::new(), Vec::new());
         for _ in 0..2 * STANDARD / $robot::NV + 4 {
-            let q = random.configuration(&robot);
-            let [v, a] = [random.vector(2.0), random.vector(3.0)];
+            let q = random.random_configuration(&robot);
+            let [v, a] = [random.random_vector(2.0), random.random_vector(3.0)];
             let whole = robot.joint_torque_regressor(&q, &v, &a);
             let least = robot.base_regressor(&q, &v, &a);
             let tau = robot.inverse_dynamics(&q, &v, &a);
             assert_similar("inverse dynamics", (whole * own).as_slice(), tau.as_slice(), EXACT);
-            for other in [own, random.vector(1.0)] {
+            for other in [own, random.random_vector(1.0)] {
                 let reduced = least * robot.base_parameters(&other);
                 assert_similar("base parameters", reduced.as_slice(), (whole * other).as_slice(), 1e-8);
             }
             standard.push(whole);
             base.push(least);
         }
-        assert_eq!(rank(&standard), BASE, "independent columns of the whole");
-        assert_eq!(rank(&base), BASE, "independent columns of the base regressor");
+        assert_eq!(rank_of_stacked(&standard), BASE, "independent columns of the whole");
+        assert_eq!(rank_of_stacked(&base), BASE, "independent columns of the base regressor");
         BASE
     }};
 }
@@ -164,13 +164,13 @@ fn robots() {
     assert_eq!(check!(Quadruped, Quadruped), 10 + 12 * 7);
 }
 
-fn puma() -> Puma {
+fn puma_arm() -> Puma {
     Puma { a2: 0.4318, a3: 0.0203, d3: 0.15005, d4: 0.4318, m: 4.0 }
 }
 
 #[test]
 fn mechanisms_with_parameters() {
-    assert_eq!(check!(Puma, puma()), 36);
+    assert_eq!(check!(Puma, puma_arm()), 36);
     assert_eq!(Puma::BODIES, ["trunk", "upper", "fore", "first", "second", "hand"]);
     assert_eq!(Puma::BASE_PARAMETERS[0], "trunk.zz");
     check!(Workshop, Workshop { mass: 0.7, length: 0.4 });
@@ -179,9 +179,9 @@ fn mechanisms_with_parameters() {
 
 #[test]
 fn prepared() {
-    let (robot, mut random) = (puma(), Random::new(22));
+    let (robot, mut random) = (puma_arm(), Random::new(22));
     let prepared = robot.prepare();
-    let (q, v, a) = (random.vector(2.0), random.vector(2.0), random.vector(2.0));
+    let (q, v, a) = (random.random_vector(2.0), random.random_vector(2.0), random.random_vector(2.0));
     let (one, other) = (prepared.base_regressor(&q, &v, &a), robot.base_regressor(&q, &v, &a));
     assert_close("base regressor", one.as_slice(), other.as_slice(), EXACT);
     let standard = prepared.standard_parameters();

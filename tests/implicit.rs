@@ -201,7 +201,7 @@ struct OnCircle {
 }
 
 /// Returns the number of evaluations of the dynamics in a single step of RODAS.
-fn evaluations<M, const NQ: usize, const NV: usize>(
+fn count_step_evaluations<M, const NQ: usize, const NV: usize>(
     m: &M,
     q: SVector<f64, NQ>,
     v: SVector<f64, NV>,
@@ -209,7 +209,7 @@ fn evaluations<M, const NQ: usize, const NV: usize>(
 where
     M: Mechanism<NQ, NV, 1, Scalar = f64>,
 {
-    fn count<M, const NQ: usize, const NV: usize, const KNOWN: bool>(
+    fn count_evaluations<M, const NQ: usize, const NV: usize, const KNOWN: bool>(
         m: &Counted<'_, M, KNOWN>,
         q: SVector<f64, NQ>,
         v: SVector<f64, NV>,
@@ -221,11 +221,14 @@ where
         simulate(m).from(q, v).method(method).duration(1e-6).finish().unwrap();
         m.count.get()
     }
-    [count(&Counted::<_, true>::new(m), q, v), count(&Counted::<_, false>::new(m), q, v)]
+    [
+        count_evaluations(&Counted::<_, true>::new(m), q, v),
+        count_evaluations(&Counted::<_, false>::new(m), q, v),
+    ]
 }
 
 /// Returns the ends of a run under feedback, with generated derivatives and with differences.
-fn ends<M, S, const NQ: usize, const NV: usize>(
+fn ends_of_runs<M, S, const NQ: usize, const NV: usize>(
     m: &M,
     (q, v): (SVector<f64, NQ>, SVector<f64, NV>),
     method: S,
@@ -234,7 +237,7 @@ where
     M: Mechanism<NQ, NV, 1, Scalar = f64>,
     S: Method<f64> + Clone,
 {
-    fn end<M, S, const NQ: usize, const NV: usize, const KNOWN: bool>(
+    fn end_under_feedback<M, S, const NQ: usize, const NV: usize, const KNOWN: bool>(
         m: &Counted<'_, M, KNOWN>,
         (q, v): (SVector<f64, NQ>, SVector<f64, NV>),
         method: S,
@@ -249,49 +252,50 @@ where
         let end = run.finish().unwrap();
         (end.q, end.v)
     }
-    let known = end(&Counted::<_, true>::new(m), (q, v), method.clone());
-    [known, end(&Counted::<_, false>::new(m), (q, v), method)]
+    let known = end_under_feedback(&Counted::<_, true>::new(m), (q, v), method.clone());
+    [known, end_under_feedback(&Counted::<_, false>::new(m), (q, v), method)]
 }
 
 #[track_caller]
-fn agree<M, const NQ: usize, const NV: usize>(m: &M, start: (SVector<f64, NQ>, SVector<f64, NV>))
+fn check_agreement<M, const NQ: usize, const NV: usize>(m: &M, start: (SVector<f64, NQ>, SVector<f64, NV>))
 where
     M: Mechanism<NQ, NV, 1, Scalar = f64>,
 {
-    let [known, differences] = ends(m, start, Rodas::new().tolerance(1e-8, 1e-10));
+    let [known, differences] = ends_of_runs(m, start, Rodas::new().tolerance(1e-8, 1e-10));
     let largest_state_difference =
         |a: &(SVector<f64, NQ>, SVector<f64, NV>), b: &(SVector<f64, NQ>, SVector<f64, NV>)| {
             (a.0 - b.0).amax().max((a.1 - b.1).amax())
         };
     assert!(largest_state_difference(&known, &differences) < 1e-6, "{known:?} and {differences:?}");
-    let [fixed, other] = ends(m, start, Rosenbrock::step(4e-5));
+    let [fixed, other] = ends_of_runs(m, start, Rosenbrock::step(4e-5));
     assert!(largest_state_difference(&fixed, &other) < 1e-6, "{fixed:?} and {other:?}");
     // The methods have orders 2 and 4.
     assert!(largest_state_difference(&fixed, &known) < 1e-4, "{fixed:?} and {known:?}");
 }
 
-fn closed(m: &FourBar) -> (SVector<f64, 3>, SVector<f64, 3>) {
+fn closed_linkage_state(m: &FourBar) -> (SVector<f64, 3>, SVector<f64, 3>) {
     let q = m.assemble(&[1.2, -0.8, 1.5].into(), &[0]).unwrap();
     (q, m.project_velocity(&q, &[0.5, 0.0, 0.0].into()).unwrap())
 }
 
 #[test]
 fn the_motion_is_that_by_differences() {
-    agree(&Cart {}, ([0.01, 0.4].into(), [0.0, 1.0].into()));
-    agree(&Late { lag: 1e-3, torque: 0.0 }.extended(), ([0.4].into(), [1.0, 0.2].into()));
+    check_agreement(&Cart {}, ([0.01, 0.4].into(), [0.0, 1.0].into()));
+    check_agreement(&Late { lag: 1e-3, torque: 0.0 }.extended(), ([0.4].into(), [1.0, 0.2].into()));
     let bar = FourBar {};
-    agree(&bar, closed(&bar));
+    check_agreement(&bar, closed_linkage_state(&bar));
     let hopper = Hopper {};
     let stance = contact::hold(&hopper, [Touch::Sticks]).stabilized(20.0);
-    agree(&stance, ([0.0, 0.4, 0.0].into(), [0.4, 0.0, -1.0].into()));
-    agree(&stabilized(&bar, 20.0), closed(&bar));
+    check_agreement(&stance, ([0.0, 0.4, 0.0].into(), [0.4, 0.0, -1.0].into()));
+    check_agreement(&stabilized(&bar, 20.0), closed_linkage_state(&bar));
 }
 
 #[test]
 fn the_order_is_four() {
     let late = Late { lag: 0.4, torque: 0.0 };
     let whole = late.extended();
-    let end_with_method = |method: Rodas<f64>| ends(&whole, ([0.4].into(), [1.0, 0.2].into()), method)[0];
+    let end_with_method =
+        |method: Rodas<f64>| ends_of_runs(&whole, ([0.4].into(), [1.0, 0.2].into()), method)[0];
     let end_with_fixed_steps =
         |h: f64| end_with_method(Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h));
     let exact = end_with_method(Rodas::new().tolerance(1e-13, 1e-14));
@@ -304,10 +308,11 @@ fn the_order_is_four() {
 #[test]
 fn the_order_is_four_under_constraints() {
     let start = ([0.0, -1.0].into(), [2.5, 0.0].into());
-    let precise = ends(&OnCircle {}, start, DormandPrince8::new().tolerance(1e-13, 1e-13))[0];
+    let precise = ends_of_runs(&OnCircle {}, start, DormandPrince8::new().tolerance(1e-13, 1e-13))[0];
     let fixed_step_method = |h: f64| Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h);
-    let errors_with_step =
-        |h: f64| ends(&OnCircle {}, start, fixed_step_method(h)).map(|end| (end.0 - precise.0).norm());
+    let errors_with_step = |h: f64| {
+        ends_of_runs(&OnCircle {}, start, fixed_step_method(h)).map(|end| (end.0 - precise.0).norm())
+    };
     for (coarse, fine) in errors_with_step(0.05).into_iter().zip(errors_with_step(0.0125)) {
         let order = (coarse / fine).log2() / 2.0;
         assert!(order > 3.6, "{order}: {coarse:e}, {fine:e}");
@@ -343,20 +348,21 @@ fn a_clock_that_has_run_for_long_costs_no_steps() {
 
 #[test]
 fn derivatives_spare_two_evaluations_for_each_velocity() {
-    let [known, differences] = evaluations(&Cart {}, [0.01, 0.4].into(), [0.0, 1.0].into());
+    let [known, differences] = count_step_evaluations(&Cart {}, [0.01, 0.4].into(), [0.0, 1.0].into());
     assert_eq!((known, differences - known), (8, 4));
     let late = Late { lag: 1e-3, torque: 0.0 };
-    let [known, differences] = evaluations(&late.extended(), [0.4].into(), [1.0, 0.2].into());
+    let [known, differences] = count_step_evaluations(&late.extended(), [0.4].into(), [1.0, 0.2].into());
     assert_eq!((known, differences - known), (8, 4));
     let bar = FourBar {};
-    let (q, v) = closed(&bar);
-    let [known, differences] = evaluations(&bar, q, v);
+    let (q, v) = closed_linkage_state(&bar);
+    let [known, differences] = count_step_evaluations(&bar, q, v);
     assert_eq!((known, differences - known), (8, 6));
-    let [known, differences] = evaluations(&stabilized(&bar, 20.0), q, v);
+    let [known, differences] = count_step_evaluations(&stabilized(&bar, 20.0), q, v);
     assert_eq!((known, differences - known), (8, 6));
     let hopper = Hopper {};
     let stance = contact::hold(&hopper, [Touch::Sticks]);
-    let [known, differences] = evaluations(&stance, [0.0, 0.4, 0.0].into(), [0.4, 0.0, -1.0].into());
+    let [known, differences] =
+        count_step_evaluations(&stance, [0.0, 0.4, 0.0].into(), [0.4, 0.0, -1.0].into());
     assert_eq!((known, differences - known), (8, 6));
 }
 
@@ -372,7 +378,7 @@ fn wrappers_pass_derivatives_on_that_they_do_not_change() {
 }
 
 /// Returns `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂u)` by central differences of fourth order.
-fn differences<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn difference_derivatives<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: f64,
     (q, v): (&SVector<f64, NQ>, &SVector<f64, NV>),
@@ -384,7 +390,7 @@ where
     let accelerations_with_input = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, u: &SVector<f64, NU>| {
         m.forward_dynamics(t, q, v, &m.generalized_forces(t, q, v, u))
     };
-    fn slopes<const N: usize, const K: usize>(
+    fn derivatives_at_zero<const N: usize, const K: usize>(
         f: impl Fn(SVector<f64, K>) -> SVector<f64, N>,
     ) -> SMatrix<f64, N, K> {
         let columns: Vec<SVector<f64, N>> = (0..K)
@@ -398,16 +404,23 @@ where
         SMatrix::from_fn(|i, k| columns[k][i])
     }
     (
-        slopes(|dq| accelerations_with_input(&m.integrate(q, &dq), v, u)),
-        slopes(|dv| accelerations_with_input(q, &(v + dv), u)),
-        slopes(|du| accelerations_with_input(q, v, &(u + du))),
+        derivatives_at_zero(|dq| accelerations_with_input(&m.integrate(q, &dq), v, u)),
+        derivatives_at_zero(|dv| accelerations_with_input(q, &(v + dv), u)),
+        derivatives_at_zero(|du| accelerations_with_input(q, v, &(u + du))),
     )
 }
 
 /// Checks that the derivatives of stabilized accelerations, which let constraint violations decay, equal
 /// differences, also in states that violate the constraints.
 #[track_caller]
-fn decays<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+fn check_decaying_violations<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
     m: &M,
     t: f64,
     state: (SVector<f64, NQ>, SVector<f64, NV>),
@@ -422,7 +435,7 @@ fn decays<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize,
     );
     for (q, v) in [state, beside] {
         let steady = stabilized(m, 12.0);
-        let expected = differences(&steady, t, (&q, &v), &u);
+        let expected = difference_derivatives(&steady, t, (&q, &v), &u);
         let found = steady.acceleration_derivatives(t, &q, &v, &u).unwrap();
         let whole = at(&steady, t).linear_motion(&q, &v, &u);
         let by_hand = (whole.by_q, whole.by_v, whole.by_u);
@@ -443,13 +456,17 @@ fn decays<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize,
 /// Stabilized derivatives exist for closed loops, a rod, a rolling wheel and a moving road.
 #[test]
 fn decaying_violations_have_derivatives() {
-    decays(&OnCircle {}, 0.0, ([0.6, -0.8].into(), [0.8, 0.6].into()));
+    check_decaying_violations(&OnCircle {}, 0.0, ([0.6, -0.8].into(), [0.8, 0.6].into()));
     let bar = FourBar {};
-    decays(&bar, 0.0, closed(&bar));
+    check_decaying_violations(&bar, 0.0, closed_linkage_state(&bar));
     let disk = RollingDisk { g: 9.81, m: 0.5, radius: 0.2 };
     let q = [0.1, 0.2, 0.19, 0.4, 0.3, 0.2].into();
-    decays(&disk, 0.0, (q, disk.project_velocity(&q, &[0.3, 0.2, 0.0, 0.5, 0.1, -2.0].into()).unwrap()));
-    decays(&CarAxle {}, 0.3, ([0.0, 0.5, 1.0, 0.5].into(), [-0.5, 0.0, -0.5, 0.0].into()));
+    check_decaying_violations(
+        &disk,
+        0.0,
+        (q, disk.project_velocity(&q, &[0.3, 0.2, 0.0, 0.5, 0.1, -2.0].into()).unwrap()),
+    );
+    check_decaying_violations(&CarAxle {}, 0.3, ([0.0, 0.5, 1.0, 0.5].into(), [-0.5, 0.0, -0.5, 0.0].into()));
 }
 
 /// Checks that each SIMD lane has the derivatives of its own state, and that an implicit method moves each

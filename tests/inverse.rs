@@ -119,7 +119,7 @@ macro_rules! solve_the_equations {
             type Square = SMatrix<f64, $nv, $nv>;
             let mut given = [Square::zeros(); 3];
             for case in 0..20 {
-                let [dq, v, tau] = [(); 3].map(|()| random.vector::<$nv>(2.0));
+                let [dq, v, tau] = [(); 3].map(|()| random.random_vector::<$nv>(2.0));
                 let q = $m.integrate(&$m.neutral(), &dq);
                 let mass = $m.mass_matrix(&q);
                 let assert_close_matrices = |what: &str, found: &Square, expected: &Square| {

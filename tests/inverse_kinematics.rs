@@ -15,30 +15,38 @@ struct Panda;
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free)]
 struct Solo;
 
-fn frame(frames: &[&str], name: &str) -> usize {
+fn frame_index(frames: &[&str], name: &str) -> usize {
     index_of(frames, name).unwrap_or_else(|| panic!("no {name} among {frames:?}"))
 }
 
 /// Returns a random configuration within the limits, a tenth of the range away from them.
-fn inside<const NV: usize>(random: &mut Random, m: &impl Limits<NV, NV, Scalar = f64>) -> SVector<f64, NV> {
+fn configuration_within_limits<const NV: usize>(
+    random: &mut Random,
+    m: &impl Limits<NV, NV, Scalar = f64>,
+) -> SVector<f64, NV> {
     let (lower, upper) = (m.lower_limits(), m.upper_limits());
     SVector::from_fn(|k, _| {
         let (low, high) = (lower[k].max(-3.0), upper[k].min(3.0));
-        0.5 * (low + high) + 0.4 * (high - low) * random.uniform(1.0)
+        0.5 * (low + high) + 0.4 * (high - low) * random.uniform_number(1.0)
     })
 }
 
 /// Starts the search near known solutions and checks that it ends there, within the limits. Returns the
 /// number of successes out of `tries`.
-fn reached<M, const N: usize, const NU: usize>(m: &M, tool: usize, off: f64, tries: u64) -> usize
+fn count_reached_targets<M, const N: usize, const NU: usize>(
+    m: &M,
+    tool: usize,
+    off: f64,
+    tries: u64,
+) -> usize
 where
     M: Mechanism<N, N, NU, Scalar = f64> + Frames<N, N, Scalar = f64> + Limits<N, N, Scalar = f64>,
 {
     let mut count = 0;
     for seed in 0..tries {
         let mut random = Random::new(seed);
-        let there = inside(&mut random, m);
-        let start = there + random.vector::<N>(off);
+        let there = configuration_within_limits(&mut random, m);
+        let start = there + random.random_vector::<N>(off);
         let placement = m.placement_of(tool, 0.0, &there).expect("it is a frame");
         let found = InverseKinematics::new().reach(m, 0.0, &[Target::pose(tool, placement)], &start);
         let Ok(found) = found else { continue };
@@ -55,13 +63,13 @@ where
 
 #[test]
 fn what_is_in_reach_is_reached() {
-    let tool = frame(<Ur5 as Frames<6, 6>>::FRAMES, "tool0");
-    let hand = frame(<Panda as Frames<7, 7>>::FRAMES, "panda_hand");
+    let tool = frame_index(<Ur5 as Frames<6, 6>>::FRAMES, "tool0");
+    let hand = frame_index(<Panda as Frames<7, 7>>::FRAMES, "panda_hand");
     let found = [
-        reached(&Ur5, tool, 0.3, 100),
-        reached(&Panda, hand, 0.3, 100),
-        reached(&Ur5, tool, 1.0, 100),
-        reached(&Panda, hand, 1.0, 100),
+        count_reached_targets(&Ur5, tool, 0.3, 100),
+        count_reached_targets(&Panda, hand, 0.3, 100),
+        count_reached_targets(&Ur5, tool, 1.0, 100),
+        count_reached_targets(&Panda, hand, 1.0, 100),
     ];
     println!("{found:?}");
     assert!(found[0] >= 99 && found[1] >= 99 && found[2] >= 95 && found[3] >= 90, "{found:?}");
@@ -73,12 +81,12 @@ fn what_is_in_reach_is_reached() {
 fn several_frames_are_reached_at_once() {
     let mut random = Random::new(4);
     let frames = <Solo as Frames<19, 18>>::FRAMES;
-    let feet = ["FL_FOOT", "FR_FOOT", "HL_FOOT", "HR_FOOT"].map(|name| frame(frames, name));
+    let feet = ["FL_FOOT", "FR_FOOT", "HL_FOOT", "HR_FOOT"].map(|name| frame_index(frames, name));
     let mut bent = Solo.neutral();
     for (k, angle) in [0.0, 0.7, -1.4].iter().cycle().take(12).enumerate() {
         bent[7 + k] = *angle;
     }
-    let moved = Solo.integrate(&bent, &random.vector(0.1));
+    let moved = Solo.integrate(&bent, &random.random_vector(0.1));
     let targets = feet.map(|foot| {
         let there = Solo.placement_of(foot, 0.0, &moved).expect("it is a frame");
         Target::position(foot, there.translation.vector)
@@ -102,7 +110,7 @@ fn several_frames_are_reached_at_once() {
 
 #[test]
 fn targets_that_make_no_sense_are_errors() {
-    let (tool, start) = (frame(<Ur5 as Frames<6, 6>>::FRAMES, "tool0"), SVector::from([0.3; 6]));
+    let (tool, start) = (frame_index(<Ur5 as Frames<6, 6>>::FRAMES, "tool0"), SVector::from([0.3; 6]));
     let search_for_target = |target| InverseKinematics::new().reach(&Ur5, 0.0, &[target], &start);
     // Three metres are more than the length of the arm.
     let Err(Unreached::OutOfReach { q, position, iterations, .. }) =

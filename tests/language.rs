@@ -76,7 +76,7 @@ where
     pin: Pin,
 }
 
-fn inertia<M, T, const NU: usize>(m: &M) -> T
+fn inertia_at_neutral<M, T, const NU: usize>(m: &M) -> T
 where
     T: Real,
     M: Mechanism<1, 1, NU, Scalar = T>,
@@ -86,8 +86,8 @@ where
 
 #[test]
 fn scalars() {
-    assert_eq!(inertia(&Generic { length: 0.5_f32 }), 0.25_f32);
-    assert_eq!(inertia(&Generic { length: 0.5 }), 0.25);
+    assert_eq!(inertia_at_neutral(&Generic { length: 0.5_f32 }), 0.25_f32);
+    assert_eq!(inertia_at_neutral(&Generic { length: 0.5 }), 0.25);
     let end = Generic { length: 0.5 }.frame_placement(frame!(Generic<f64>, "rod"), &SVector::from([0.0]));
     assert_eq!(end.translation.vector, Vector3::zeros());
 }
@@ -379,8 +379,8 @@ struct Winged {
 fn stability_and_wind_axes_turn_by_their_angles() {
     let (m, mut random) = (Winged {}, support::random::Random::new(5));
     for _ in 0..10 {
-        let q = random.configuration(&m);
-        let v: SVector<f64, 6> = random.vector(30.0);
+        let q = random.random_configuration(&m);
+        let v: SVector<f64, 6> = random.random_vector(30.0);
         let (alpha, beta) = (m.attack(&q, &v), m.slip(&q, &v));
         let about_y = Rotation3::from_axis_angle(&Vector3::y_axis(), -alpha);
         let both = about_y * Rotation3::from_axis_angle(&Vector3::z_axis(), beta);
@@ -438,8 +438,8 @@ fn forces_between_points_push_them_apart() {
     let (m, mut random) = (Pushed {}, support::random::Random::new(3));
     assert_eq!(Pushed::INPUTS, ["piston"]);
     for _ in 0..10 {
-        let q = random.configuration(&m);
-        let v: SVector<f64, 12> = random.vector(2.0);
+        let q = random.random_configuration(&m);
+        let v: SVector<f64, 12> = random.random_vector(2.0);
         let u = [7.0].into();
         let derivative_along_motion = |f: &dyn Fn(&SVector<f64, 14>) -> f64| {
             (f(&m.integrate(&q, &(v * 1e-5))) - f(&m.integrate(&q, &(v * -1e-5)))) / 2e-5

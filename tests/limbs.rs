@@ -113,15 +113,15 @@ fn quadruped<T: Real>() -> Quadruped<T> {
 }
 
 /// Returns a random configuration, velocity and acceleration of the quadruped.
-fn state(random: &mut Random) -> (SVector<f64, 15>, [SVector<f64, 14>; 2]) {
-    (random.configuration(&quadruped()), [random.vector(2.0), random.vector(2.0)])
+fn random_state(random: &mut Random) -> (SVector<f64, 15>, [SVector<f64, 14>; 2]) {
+    (random.random_configuration(&quadruped()), [random.random_vector(2.0), random.random_vector(2.0)])
 }
 
 #[test]
 fn functions_agree() {
     let (robot, mut random) = (quadruped::<f64>(), Random::new(7));
     for _ in 0..20 {
-        let (q, [v, a]) = state(&mut random);
+        let (q, [v, a]) = random_state(&mut random);
         let (m, h) = (robot.mass_matrix(&q), robot.bias_forces(&q, &v));
         let tau = robot.inverse_dynamics(&q, &v, &a);
         assert!((m * a + h - tau).amax() < 1e-12 * (1.0 + tau.amax()));
@@ -140,7 +140,7 @@ fn functions_agree() {
 }
 
 /// Returns the derivatives of `f` by differences, a column for each velocity.
-fn differences(f: impl Fn(f64, &SVector<f64, 14>) -> SVector<f64, 14>) -> SMatrix<f64, 14, 14> {
+fn difference_columns(f: impl Fn(f64, &SVector<f64, 14>) -> SVector<f64, 14>) -> SMatrix<f64, 14, 14> {
     const STEP: f64 = 1e-6;
     let difference_column = |k: usize| {
         let axis = SVector::from_fn(|i, _| f64::from(u8::from(i == k)));
@@ -155,22 +155,32 @@ fn derivatives_are_limits_of_differences() {
     let is_close =
         |x: &SMatrix<f64, 14, 14>, y: &SMatrix<f64, 14, 14>| (x - y).amax() < 1e-7 * (1.0 + y.amax());
     for _ in 0..5 {
-        let (q, [v, a]) = state(&mut random);
+        let (q, [v, a]) = random_state(&mut random);
         let displaced_configuration =
             |step: f64, axis: &SVector<f64, 14>| robot.integrate(&q, &(axis * step));
         let tau = robot.inverse_dynamics(&q, &v, &a);
         let (by_q, by_v) = robot.inverse_dynamics_derivatives(&q, &v, &a);
         assert!(is_close(
             &by_q,
-            &differences(|h, axis| robot.inverse_dynamics(&displaced_configuration(h, axis), &v, &a))
+            &difference_columns(|h, axis| robot.inverse_dynamics(&displaced_configuration(h, axis), &v, &a))
         ));
-        assert!(is_close(&by_v, &differences(|h, axis| robot.inverse_dynamics(&q, &(v + axis * h), &a))));
+        assert!(is_close(
+            &by_v,
+            &difference_columns(|h, axis| robot.inverse_dynamics(&q, &(v + axis * h), &a))
+        ));
         let (by_q, by_v, inverse) = robot.forward_dynamics_derivatives(&q, &v, &tau);
         assert!(is_close(
             &by_q,
-            &differences(|h, axis| robot.forward_dynamics(&displaced_configuration(h, axis), &v, &tau))
+            &difference_columns(|h, axis| robot.forward_dynamics(
+                &displaced_configuration(h, axis),
+                &v,
+                &tau
+            ))
         ));
-        assert!(is_close(&by_v, &differences(|h, axis| robot.forward_dynamics(&q, &(v + axis * h), &tau))));
+        assert!(is_close(
+            &by_v,
+            &difference_columns(|h, axis| robot.forward_dynamics(&q, &(v + axis * h), &tau))
+        ));
         assert!(is_close(&(inverse * robot.mass_matrix(&q)), &SMatrix::identity()));
         assert!(is_close(&robot.mass_matrix_inverse(&q), &inverse));
     }
@@ -182,7 +192,7 @@ fn every_type_of_scalars_gives_the_same() {
     let (double, single) = (quadruped::<f64>(), quadruped::<f32>());
     let lanes = quadruped::<Lanes<f64, 2>>();
     for _ in 0..20 {
-        let (q, [v, a]) = state(&mut random);
+        let (q, [v, a]) = random_state(&mut random);
         let (tau, m) = (double.inverse_dynamics(&q, &v, &a), double.mass_matrix(&q));
         let (q32, v32, a32) = (q.map(|x| x as f32), v.map(|x| x as f32), a.map(|x| x as f32));
         let is_close = |x: f32, y: f64, scale: f64| (f64::from(x) - y).abs() < 2e-5 * (1.0 + scale);
@@ -204,7 +214,7 @@ fn every_type_of_scalars_gives_the_same() {
 fn three_fingers_agree() {
     let (gripper, mut random) = (Gripper { mass: 0.3 }, Random::new(3));
     for _ in 0..20 {
-        let mut vector = || SVector::<f32, 6>::from_fn(|_, _| random.uniform(1.5) as f32);
+        let mut vector = || SVector::<f32, 6>::from_fn(|_, _| random.uniform_number(1.5) as f32);
         let (q, v, a) = (vector(), vector(), vector());
         let (m, tau) = (gripper.mass_matrix(&q), gripper.inverse_dynamics(&q, &v, &a));
         assert!((m * a + gripper.bias_forces(&q, &v) - tau).amax() < 1e-6);
@@ -238,7 +248,7 @@ struct Carts {
 fn a_spring_between_two_of_three_carts_pulls_those() {
     let (m, mut random) = (Carts {}, Random::new(5));
     for _ in 0..20 {
-        let (q, v): (SVector<f64, 3>, _) = (random.vector(0.5), random.vector(1.0));
+        let (q, v): (SVector<f64, 3>, _) = (random.random_vector(0.5), random.random_vector(1.0));
         let pull = 5.0 * (q[1] + 2.0 - q[0] - 1.0);
         let expected = SVector::from([-pull, pull, 0.0]);
         assert!((m.bias_forces(&q, &v) - expected).amax() < 1e-12);

@@ -6,12 +6,12 @@ use linkwork_models::{AnymalB, Panda, PandaArm, SimpleHumanoid, Solo12, Ur5};
 
 const NONE: f64 = f64::INFINITY;
 
-fn vector<T: Real, const N: usize>(entries: [T; N]) -> SVector<T, N> {
+fn vector_from_entries<T: Real, const N: usize>(entries: [T; N]) -> SVector<T, N> {
     SVector::from(entries)
 }
 
 /// Returns the value of an attribute in the `<limit>` of a joint, searched for as text.
-fn written(file: &str, joint: &str, attribute: &str) -> Option<f64> {
+fn limit_attribute(file: &str, joint: &str, attribute: &str) -> Option<f64> {
     let from = file.find(&format!("<joint name=\"{joint}\""))?;
     let text = &file[from..];
     let text = &text[..text.find("</joint>")?];
@@ -23,7 +23,7 @@ fn written(file: &str, joint: &str, attribute: &str) -> Option<f64> {
 
 /// Compares the limits of a robot without coupled joints with the text of its file. Returns the number of
 /// bounds.
-fn compare<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, file: &str) -> usize
+fn compare_limits<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, file: &str) -> usize
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64> + Limits<NQ, NV, Scalar = f64>,
 {
@@ -36,7 +36,7 @@ where
     ];
     for (attribute, limits, none) in all {
         for (name, limit) in M::VELOCITIES.iter().zip(&limits) {
-            let expected = written(file, name, attribute);
+            let expected = limit_attribute(file, name, attribute);
             assert_eq!(*limit, expected.unwrap_or(none), "{attribute} of {name}");
             found += usize::from(expected.is_some());
         }
@@ -49,11 +49,11 @@ fn robots_have_the_limits_of_their_files() {
     let text_of_urdf = |file: &str| {
         std::fs::read_to_string(format!("{}/../models/urdf/{file}.urdf", env!("CARGO_MANIFEST_DIR"))).unwrap()
     };
-    assert_eq!(compare(&Ur5, &text_of_urdf("ur5")), 24);
-    assert_eq!(compare(&PandaArm, &text_of_urdf("panda")), 28);
-    assert_eq!(compare(&Solo12, &text_of_urdf("solo12")), 48);
-    assert!(compare(&AnymalB, &text_of_urdf("anymal_b")) > 0);
-    assert!(compare(&SimpleHumanoid, &text_of_urdf("simple_humanoid")) > 0);
+    assert_eq!(compare_limits(&Ur5, &text_of_urdf("ur5")), 24);
+    assert_eq!(compare_limits(&PandaArm, &text_of_urdf("panda")), 28);
+    assert_eq!(compare_limits(&Solo12, &text_of_urdf("solo12")), 48);
+    assert!(compare_limits(&AnymalB, &text_of_urdf("anymal_b")) > 0);
+    assert!(compare_limits(&SimpleHumanoid, &text_of_urdf("simple_humanoid")) > 0);
 }
 
 /// Checks that the arm has the limits of Franka Emika's *Robot and interface specifications* (2021).
@@ -61,8 +61,8 @@ fn robots_have_the_limits_of_their_files() {
 fn the_panda_has_the_limits_of_its_data_sheet() {
     let lower = [-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973, 0.0];
     let speed = [2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61, 0.2];
-    assert_eq!(Panda.lower_limits(), vector(lower));
-    assert_eq!(Panda.velocity_limits(), vector(speed));
+    assert_eq!(Panda.lower_limits(), vector_from_entries(lower));
+    assert_eq!(Panda.velocity_limits(), vector_from_entries(speed));
     assert_eq!(Panda.effort_limits()[4], 12.0);
     // The second finger follows the first and has the same limits.
     assert_eq!((Panda.upper_limits()[7], Panda.effort_limits()[7]), (0.04, 100.0));
@@ -80,12 +80,12 @@ fn files_say_limits_in_many_ways() {
     assert_eq!(Several::VELOCITIES, ["leader", "wheel", "endless", "rail", "free"]);
     // −2 q + 0.5 from −2 to 1.5 is q from −0.5 to 1.25; the follower's maximum velocity of 4 is 2 of the
     // leader's. The effort limit of the leader is its own.
-    assert_eq!(Several.lower_limits(), vector([-0.5, -NONE, -NONE, -NONE, -NONE]));
-    assert_eq!(Several.upper_limits(), vector([1.25, NONE, NONE, 0.5, NONE]));
-    assert_eq!(Several.velocity_limits(), vector([2.0, 50.0, NONE, 0.0, NONE]));
-    assert_eq!(Several.effort_limits(), vector([10.0, 7.0, 5.0, 0.0, NONE]));
-    assert_eq!(Ignored.effort_limits(), vector([NONE; 5]));
-    assert_eq!(Ignored.clamp_configuration(&vector([9.0; 5])), vector([9.0; 5]));
+    assert_eq!(Several.lower_limits(), vector_from_entries([-0.5, -NONE, -NONE, -NONE, -NONE]));
+    assert_eq!(Several.upper_limits(), vector_from_entries([1.25, NONE, NONE, 0.5, NONE]));
+    assert_eq!(Several.velocity_limits(), vector_from_entries([2.0, 50.0, NONE, 0.0, NONE]));
+    assert_eq!(Several.effort_limits(), vector_from_entries([10.0, 7.0, 5.0, 0.0, NONE]));
+    assert_eq!(Ignored.effort_limits(), vector_from_entries([NONE; 5]));
+    assert_eq!(Ignored.clamp_configuration(&vector_from_entries([9.0; 5])), vector_from_entries([9.0; 5]));
 }
 
 #[test]
@@ -122,7 +122,7 @@ struct Hand<T> {
 }
 
 /// Returns a velocity and an effort with all entries `x`, clamped to the limits, in generic code.
-fn clamped<M: Limits<NQ, NV>, const NQ: usize, const NV: usize>(
+fn clamp_to_limits<M: Limits<NQ, NV>, const NQ: usize, const NV: usize>(
     m: &M,
     x: f64,
 ) -> [SVector<M::Scalar, NV>; 2] {
@@ -133,20 +133,26 @@ fn clamped<M: Limits<NQ, NV>, const NQ: usize, const NV: usize>(
 #[test]
 fn structs_declare_limits() {
     let hand = Hand { reach: 1.0, strength: 4.0 };
-    assert_eq!(hand.lower_limits(), vector([-1.0, -NONE, 0.0]));
-    assert_eq!(hand.upper_limits(), vector([2.0, NONE, NONE]));
-    assert_eq!(hand.velocity_limits(), vector([0.5, NONE, NONE]));
-    assert_eq!(hand.effort_limits(), vector([4.0, NONE, NONE]));
+    assert_eq!(hand.lower_limits(), vector_from_entries([-1.0, -NONE, 0.0]));
+    assert_eq!(hand.upper_limits(), vector_from_entries([2.0, NONE, NONE]));
+    assert_eq!(hand.velocity_limits(), vector_from_entries([0.5, NONE, NONE]));
+    assert_eq!(hand.effort_limits(), vector_from_entries([4.0, NONE, NONE]));
     // Both limits apply: the second is the narrower one for a longer hand.
     let long = Hand { reach: 8.0, strength: 4.0 };
     assert_eq!((long.lower_limits()[0], long.upper_limits()[0]), (-8.0, 3.0));
     assert_eq!(long.prepare().upper_limits(), long.upper_limits());
-    assert_eq!(long.clamp_configuration(&vector([9.0, 9.0, -9.0])), vector([3.0, 9.0, 0.0]));
-    let not_a_number = long.clamp_configuration(&vector([f64::NAN, 0.0, 0.0]))[0];
+    assert_eq!(
+        long.clamp_configuration(&vector_from_entries([9.0, 9.0, -9.0])),
+        vector_from_entries([3.0, 9.0, 0.0])
+    );
+    let not_a_number = long.clamp_configuration(&vector_from_entries([f64::NAN, 0.0, 0.0]))[0];
     assert!(not_a_number.is_nan());
     let single = Hand { reach: 8.0_f32, strength: 4.0 };
-    assert_eq!(single.upper_limits(), vector([3.0, f32::INFINITY, f32::INFINITY]));
-    assert_eq!(clamped(&&single, -5.0), [vector([-0.5, -5.0, -5.0]), [-4.0, -5.0, -5.0].into()]);
+    assert_eq!(single.upper_limits(), vector_from_entries([3.0, f32::INFINITY, f32::INFINITY]));
+    assert_eq!(
+        clamp_to_limits(&&single, -5.0),
+        [vector_from_entries([-0.5, -5.0, -5.0]), [-4.0, -5.0, -5.0].into()]
+    );
 }
 
 /// Slide that rotates as a function of time.
@@ -167,7 +173,7 @@ struct Turning {
 fn limits_do_not_depend_on_time() {
     let turning = Turning { rate: 2.0, bead_range: 0.25 };
     assert_eq!(turning.upper_limits()[0], 0.25);
-    assert_eq!(at(&turning, 3.0).clamp_configuration(&vector([-1.0]))[0], -0.25);
+    assert_eq!(at(&turning, 3.0).clamp_configuration(&vector_from_entries([-1.0]))[0], -0.25);
     assert_eq!(Mechanism::neutral(&turning)[0], 0.0);
 }
 

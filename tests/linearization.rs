@@ -9,12 +9,12 @@ use support::random::Random;
 const DIFFERENCE: f64 = 1e-8;
 
 /// Returns the derivative of `f` at zero by central differences of fourth order.
-fn slope<const R: usize>(f: impl Fn(f64) -> SVector<f64, R>) -> SVector<f64, R> {
+fn derivative_at_zero<const R: usize>(f: impl Fn(f64) -> SVector<f64, R>) -> SVector<f64, R> {
     let h = 1e-3;
     ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
 }
 
-fn unit<const N: usize>(i: usize) -> SVector<f64, N> {
+fn unit_vector<const N: usize>(i: usize) -> SVector<f64, N> {
     SVector::from_fn(|j, _| if i == j { 1.0 } else { 0.0 })
 }
 
@@ -26,7 +26,7 @@ fn check_columns<const R: usize, const C: usize>(
     f: impl Fn(SVector<f64, C>) -> SVector<f64, R>,
 ) {
     let expected = SMatrix::<f64, R, C>::from_columns(&std::array::from_fn::<_, C, _>(|i| {
-        slope(|s| f(unit::<C>(i) * s))
+        derivative_at_zero(|s| f(unit_vector::<C>(i) * s))
     }));
     assert_similar(what, matrix.as_slice(), expected.as_slice(), DIFFERENCE);
 }
@@ -42,10 +42,10 @@ macro_rules! check_differences {
         let m = &$instant;
         let mut random = Random::new(21);
         for _ in 0..3 {
-            let q = random.configuration(m);
+            let q = random.random_configuration(m);
             let (v, a, tau): (SVector<f64, NV>, SVector<f64, NV>, SVector<f64, NV>) =
-                (random.vector(1.0), random.vector(1.0), random.vector(1.0));
-            let u: SVector<f64, NU> = random.vector(1.0);
+                (random.random_vector(1.0), random.random_vector(1.0), random.random_vector(1.0));
+            let u: SVector<f64, NU> = random.random_vector(1.0);
 
             let (by_q, by_v) = $at.inverse_dynamics_derivatives($($t,)? &q, &v, &a);
             check_columns("∂τ/∂q", &by_q, |d| Mechanism::inverse_dynamics(m, 0.0, &m.integrate(&q, &d), &v, &a));
@@ -66,7 +66,7 @@ macro_rules! check_differences {
                 let (dq, dv) = (SVector::from_fn(|i, _| d[i]), SVector::from_fn(|i, _| d[NV + i]));
                 let (start, w) = (m.integrate(&q, &dq), v + dv);
                 // Rate of change of the displacement from one motion to the other.
-                let apart = slope(|t| m.difference(&m.integrate(&q, &(v * t)), &m.integrate(&start, &(w * t))));
+                let apart = derivative_at_zero(|t| m.difference(&m.integrate(&q, &(v * t)), &m.integrate(&start, &(w * t))));
                 let change = Mechanism::forward_dynamics(m, 0.0, &start, &w, &Mechanism::generalized_forces(m, 0.0, &start, &w, &u));
                 SVector::<f64, TWICE>::from_fn(|i, _| if i < NV { apart[i] } else { change[i - NV] })
             });
@@ -293,8 +293,8 @@ struct Swing<T> {
 fn scalar_types() {
     let (narrow, wide) = (Swing { g: 9.81_f32, length: 0.4 }, Swing { g: 9.81_f64, length: 0.4 });
     let mut random = Random::new(22);
-    let q = random.configuration(&wide);
-    let (v, u) = (random.vector::<3>(1.0), random.vector::<1>(1.0));
+    let q = random.random_configuration(&wide);
+    let (v, u) = (random.random_vector::<3>(1.0), random.random_vector::<1>(1.0));
     let (a, b) = narrow.linearize(&q.map(|x| x as f32), &v.map(|x| x as f32), &u.map(|x| x as f32));
     let expected = wide.linearize(&q, &v, &u);
     assert_similar("A", a.map(f64::from).as_slice(), expected.0.as_slice(), 1e-5);

@@ -108,7 +108,7 @@ fn moments_of_inertia_are_those_of_energies() {
         assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{found} {expected}")
     };
     for _ in 0..5 {
-        let q: SVector<f64, 9> = random.configuration(&m);
+        let q: SVector<f64, 9> = random.random_configuration(&m);
         let place = m.frame_placement(frame!(Bodies, "hull"), &q);
         let rotation_rates = |w: [f64; 3]| {
             let w = linkwork::nalgebra::Vector3::from(w);
@@ -134,7 +134,8 @@ fn moments_of_inertia_are_those_of_energies() {
 fn bodies_share_momentum_and_energy() {
     let (m, mut random) = (Bodies { mass: 1.7 }, Random::new(5));
     for _ in 0..5 {
-        let (q, v): (SVector<f64, 9>, SVector<f64, 8>) = (random.configuration(&m), random.vector(2.0));
+        let (q, v): (SVector<f64, 9>, SVector<f64, 8>) =
+            (random.random_configuration(&m), random.random_vector(2.0));
         let whole = m.momentum(&q, &v);
         let (linear, spin) = (whole.fixed_rows::<3>(0).into_owned(), whole.fixed_rows::<3>(3).into_owned());
         assert!((m.linear(&q, &v) - linear).amax() < 1e-12);
@@ -151,7 +152,7 @@ fn bodies_share_momentum_and_energy() {
 const TOLERANCE: f64 = 1e-9;
 
 /// Returns the derivatives of `of` along every direction, a column for each, by differences of sixth order.
-fn slopes<const N: usize, const NY: usize>(
+fn derivative_columns<const N: usize, const NY: usize>(
     of: impl Fn(&SVector<f64, N>) -> SVector<f64, NY>,
 ) -> SMatrix<f64, NY, N> {
     let step = 2e-3;
@@ -165,7 +166,7 @@ fn slopes<const N: usize, const NY: usize>(
     SMatrix::from_fn(|i, j| columns[j][i])
 }
 
-fn close<const R: usize, const C: usize>(
+fn assert_close_matrices<const R: usize, const C: usize>(
     what: &str,
     found: &SMatrix<f64, R, C>,
     expected: &SMatrix<f64, R, C>,
@@ -174,21 +175,37 @@ fn close<const R: usize, const C: usize>(
     assert!((found - expected).amax() <= TOLERANCE * scale, "{what}: {found}{expected}");
 }
 
-fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NY: usize>(m: &M)
+fn check_output_derivatives<M, const NQ: usize, const NV: usize, const NU: usize, const NY: usize>(m: &M)
 where
     M: Derivatives<NQ, NV, NU, Scalar = f64> + OutputDerivatives<NQ, NV, NU, NY, Scalar = f64>,
     M: Outputs<NQ, NV, NU, NY, Scalar = f64>,
 {
     for seed in 0..3 {
         let mut random = Random::new(seed);
-        let q = m.integrate(&m.neutral(), &random.vector(1.2));
-        let (v, a, u) = (random.vector(2.0), random.vector(3.0), random.vector(4.0));
-        let t = random.uniform(1.0);
+        let q = m.integrate(&m.neutral(), &random.random_vector(1.2));
+        let (v, a, u) = (random.random_vector(2.0), random.random_vector(3.0), random.random_vector(4.0));
+        let t = random.uniform_number(1.0);
         let found = m.output_derivatives(t, &q, &v, &a, &u);
-        close("by q", &found.by_q, &slopes(|d| m.outputs(t, &m.integrate(&q, d), &v, &a, &u)));
-        close("by v", &found.by_v, &slopes(|d| m.outputs(t, &q, &(v + d), &a, &u)));
-        close("by a", &found.by_a, &slopes(|d| m.outputs(t, &q, &v, &(a + d), &u)));
-        close("by u", &found.by_u, &slopes(|d| m.outputs(t, &q, &v, &a, &(u + d))));
+        assert_close_matrices(
+            "by q",
+            &found.by_q,
+            &derivative_columns(|d| m.outputs(t, &m.integrate(&q, d), &v, &a, &u)),
+        );
+        assert_close_matrices(
+            "by v",
+            &found.by_v,
+            &derivative_columns(|d| m.outputs(t, &q, &(v + d), &a, &u)),
+        );
+        assert_close_matrices(
+            "by a",
+            &found.by_a,
+            &derivative_columns(|d| m.outputs(t, &q, &v, &(a + d), &u)),
+        );
+        assert_close_matrices(
+            "by u",
+            &found.by_u,
+            &derivative_columns(|d| m.outputs(t, &q, &v, &a, &(u + d))),
+        );
 
         // In the total derivatives, accelerations are functions of state and inputs.
         let now = at(m, t);
@@ -198,9 +215,21 @@ where
         };
         let motion = now.linear_motion(&q, &v, &u);
         let found = m.output_derivatives(t, &q, &v, &motion.acceleration, &u).in_motion(&motion);
-        close("by q in motion", &found.by_q, &slopes(|d| outputs_in_motion(&m.integrate(&q, d), &v, &u)));
-        close("by v in motion", &found.by_v, &slopes(|d| outputs_in_motion(&q, &(v + d), &u)));
-        close("by u in motion", &found.by_u, &slopes(|d| outputs_in_motion(&q, &v, &(u + d))));
+        assert_close_matrices(
+            "by q in motion",
+            &found.by_q,
+            &derivative_columns(|d| outputs_in_motion(&m.integrate(&q, d), &v, &u)),
+        );
+        assert_close_matrices(
+            "by v in motion",
+            &found.by_v,
+            &derivative_columns(|d| outputs_in_motion(&q, &(v + d), &u)),
+        );
+        assert_close_matrices(
+            "by u in motion",
+            &found.by_u,
+            &derivative_columns(|d| outputs_in_motion(&q, &v, &(u + d))),
+        );
         assert!(found.by_a.amax() == 0.0);
     }
 }
@@ -208,29 +237,33 @@ where
 #[test]
 fn measurements_change_as_their_derivatives_say() {
     let carrier = Carrier { mass: 1.3, reach: 0.4 };
-    check(&carrier);
-    check(&carrier.prepare());
-    check(&Driven { rate: 3.0 });
+    check_output_derivatives(&carrier);
+    check_output_derivatives(&carrier.prepare());
+    check_output_derivatives(&Driven { rate: 3.0 });
 }
 
 #[test]
 fn measurements_change_with_parameters() {
     let mut random = Random::new(5);
     let m = Carrier { mass: 1.3, reach: 0.4 };
-    let q = m.integrate(&Carrier::neutral(&m), &random.vector(1.0));
-    let (v, a) = (random.vector(1.0), random.vector(1.0));
+    let q = m.integrate(&Carrier::neutral(&m), &random.random_vector(1.0));
+    let (v, a) = (random.random_vector(1.0), random.random_vector(1.0));
     assert_eq!(Carrier::PARAMETERS, ["mass", "reach"]);
     let perturbed_mechanism = |d: &SVector<f64, 2>| Carrier { mass: m.mass + d[0], reach: m.reach + d[1] };
-    close(
+    assert_close_matrices(
         "altitude",
         &m.altitude_by_parameters(&q),
-        &slopes(|d| SVector::from([perturbed_mechanism(d).altitude(&q)])),
+        &derivative_columns(|d| SVector::from([perturbed_mechanism(d).altitude(&q)])),
     );
-    close("camera", &m.camera_by_parameters(&q, &v), &slopes(|d| perturbed_mechanism(d).camera(&q, &v)));
-    close(
+    assert_close_matrices(
+        "camera",
+        &m.camera_by_parameters(&q, &v),
+        &derivative_columns(|d| perturbed_mechanism(d).camera(&q, &v)),
+    );
+    assert_close_matrices(
         "accelerometer",
         &m.accelerometer_by_parameters(&q, &v, &a),
-        &slopes(|d| perturbed_mechanism(d).accelerometer(&q, &v, &a)),
+        &derivative_columns(|d| perturbed_mechanism(d).accelerometer(&q, &v, &a)),
     );
 }
 
@@ -242,8 +275,8 @@ fn all_outputs_stand_in_one_vector() {
     assert_eq!(index_of(&NAMES, "current"), Some(7));
     let mut random = Random::new(6);
     let m = Carrier { mass: 1.3, reach: 0.4 };
-    let q = m.integrate(&Carrier::neutral(&m), &random.vector(1.0));
-    let (v, a, u) = (random.vector(1.0), random.vector(1.0), random.vector(1.0));
+    let q = m.integrate(&Carrier::neutral(&m), &random.random_vector(1.0));
+    let (v, a, u) = (random.random_vector(1.0), random.random_vector(1.0), random.random_vector(1.0));
     let all: SVector<f64, 11> = m.outputs(0.0, &q, &v, &a, &u);
     assert_eq!(all.fixed_rows::<3>(3), m.accelerometer(&q, &v, &a));
     assert_eq!(all[6], m.altitude(&q));
@@ -326,8 +359,8 @@ fn elements_deliver_what_energies_gain() {
     let mut random = Random::new(25);
     for _ in 0..20 {
         let (q, v): (SVector<f64, 6>, SVector<f64, 5>) =
-            (random.configuration(&Loaded {}), random.vector(2.0));
-        let u = random.vector(3.0);
+            (random.random_configuration(&Loaded {}), random.random_vector(2.0));
+        let u = random.random_vector(3.0);
         let m = Loaded {};
         let assert_close_values = |found: f64, expected: f64| {
             assert!((found - expected).abs() < 1e-10 * (1.0 + expected.abs()), "{found} {expected}");

@@ -19,16 +19,16 @@ struct FreeBodies;
 #[mechanism(mjcf = "data/mjcf/coupled.xml")]
 struct Coupled;
 
-fn check<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, name: &str)
+fn check_robot<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M, name: &str)
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let cases = Record::load(&format!("mujoco/{name}.json")).records("cases");
+    let cases = Record::load(&format!("mujoco/{name}.json")).records_with_key("cases");
     assert!(cases.len() >= 4);
     for (i, case) in cases.iter().enumerate() {
         let label_of_case = |what: &str| format!("{name}, case {i}: {what}");
-        let (q, v, u) = (&case.vector("q"), &case.vector("v"), &case.vector("u"));
-        let mass_matrix = case.symmetric::<NV>("M");
+        let (q, v, u) = (&case.vector_with_key("q"), &case.vector_with_key("v"), &case.vector_with_key("u"));
+        let mass_matrix = case.symmetric_matrix_with_key::<NV>("M");
         assert_close(
             label_of_case("mass matrix"),
             robot.mass_matrix(0.0, q).as_slice(),
@@ -36,22 +36,28 @@ where
             TOLERANCE,
         );
         let bias = robot.bias_forces(0.0, q, v);
-        assert_close(label_of_case("bias forces"), bias.as_slice(), &case.numbers("bias"), TOLERANCE);
+        assert_close(
+            label_of_case("bias forces"),
+            bias.as_slice(),
+            &case.numbers_with_key("bias"),
+            TOLERANCE,
+        );
         let forces = robot.generalized_forces(0.0, q, v, u);
-        assert_close(label_of_case("forces"), forces.as_slice(), &case.numbers("forces"), TOLERANCE);
+        assert_close(label_of_case("forces"), forces.as_slice(), &case.numbers_with_key("forces"), TOLERANCE);
         // MuJoCo's friction is a constraint and is not part of these reference values; here it is a force.
-        let tau = forces + case.vector("friction");
+        let tau = forces + case.vector_with_key("friction");
         let a = robot.forward_dynamics(0.0, q, v, &tau);
-        assert_close(label_of_case("accelerations"), a.as_slice(), &case.numbers("a"), FORWARD);
+        assert_close(label_of_case("accelerations"), a.as_slice(), &case.numbers_with_key("a"), FORWARD);
     }
 }
 
 /// Checks the placements of bodies and sites against reference values of MuJoCo.
 macro_rules! check_frames {
     ($robot:ident, $name:literal) => {
-        for (i, case) in Record::load(concat!("mujoco/", $name, ".json")).records("cases").iter().enumerate()
+        for (i, case) in
+            Record::load(concat!("mujoco/", $name, ".json")).records_with_key("cases").iter().enumerate()
         {
-            let placements = $robot.frame_placements(&case.vector("q"));
+            let placements = $robot.frame_placements(&case.vector_with_key("q"));
             for (frame, expected) in case.named_lists("frames") {
                 let index = $robot::FRAMES.iter().position(|known| *known == frame);
                 let placement = placements[index.unwrap_or_else(|| panic!("no frame `{frame}`"))];
@@ -70,7 +76,7 @@ fn joints_shapes_classes_and_servos() {
         ["yaw", "pitch", "reach", "roll.wx", "roll.wy", "roll.wz", "body4_slide", "spin", "tilt"]
     );
     assert_eq!(Everything::INPUTS, ["yaw", "pitch_servo", "reach_velocity", "tilt", "belt", "cord"]);
-    check(&Everything, "everything");
+    check_robot(&Everything, "everything");
     check_frames!(Everything, "everything");
 }
 
@@ -78,7 +84,7 @@ fn joints_shapes_classes_and_servos() {
 fn bodies_that_fly_and_masses_that_are_scaled() {
     assert_eq!(FreeBodies::NU, 0);
     assert!((FreeBodies.total_mass() - 7.5).abs() > 1.0, "what stands on the ground moves nothing");
-    check(&FreeBodies, "free_bodies");
+    check_robot(&FreeBodies, "free_bodies");
     check_frames!(FreeBodies, "free_bodies");
 }
 
@@ -86,7 +92,7 @@ fn bodies_that_fly_and_masses_that_are_scaled() {
 fn joints_that_follow_and_that_are_held() {
     assert_eq!(Coupled::VELOCITIES, ["turn", "left"]);
     assert_eq!(Coupled::INPUTS, ["squeeze"]);
-    check(&Coupled, "coupled");
+    check_robot(&Coupled, "coupled");
     check_frames!(Coupled, "coupled");
 }
 
@@ -99,7 +105,41 @@ fn cables_and_sites() {
     struct Cables;
 
     assert_eq!(Cables::INPUTS, ["pull", "elbow", "winch", "thrust", "spin", "reach", "twist"]);
-    check(&Cables, "cables");
+    check_robot(&Cables, "cables");
+}
+
+/// Motors, filters, integrals, cylinders and muscles with their states, and polynomial springs and dampers.
+/// The script `peers/drives.py` computed the reference values.
+#[test]
+fn drives_with_states() {
+    #[mechanism(mjcf = "data/mjcf/drives.xml", derivatives)]
+    #[derive(Clone, Copy)]
+    struct Drives;
+
+    assert_eq!(Drives::INPUTS[6..11], ["triceps", "servo_pos", "servo_vel", "servo_ff", "holding"]);
+    assert_eq!(Drives::INPUTS[14..], ["wound_pos", "wound_vel", "wound_ff", "wound_voltage"]);
+    let drives = Drives::FILE;
+    let whole = drives.extended();
+    let rates = |q: &SVector<f64, 6>, v: &SVector<f64, 18>, u: &SVector<f64, 18>| {
+        whole.forward_dynamics(0.0, q, v, &whole.generalized_forces(0.0, q, v, u))
+    };
+    for case in Record::load("mujoco/drives.json").records_with_key("cases") {
+        let (q, u) = (case.vector_with_key("q"), case.vector_with_key("u"));
+        let v =
+            SVector::from_column_slice(&[case.numbers_with_key("v"), case.numbers_with_key("x")].concat());
+        let expected = [case.numbers_with_key("a"), case.numbers_with_key("rates")].concat();
+        assert_close("rates", rates(&q, &v, &u).as_slice(), &expected, FORWARD);
+
+        let linear = at(&whole, 0.0).linear_motion(&q, &v, &u);
+        let step = SVector::<f64, 18>::from_fn(|k, _| (1.3 * k as f64).cos());
+        let displaced = |h: f64| {
+            let q = whole.integrate(&q, &(step * h));
+            rates(&q, &(v + step * h), &(u + step * h))
+        };
+        let slope = (displaced(1e-6) - displaced(-1e-6)) / 2e-6;
+        let found = (linear.by_q + linear.by_v + linear.by_u) * step;
+        assert_close("derivatives", found.as_slice(), slope.as_slice(), 1e-6);
+    }
 }
 
 /// The drag of a medium acts on each body as on the box with the same inertia.
@@ -108,7 +148,7 @@ fn a_medium_brakes() {
     #[mechanism(mjcf = "data/mjcf/medium.xml")]
     struct Medium;
 
-    check(&Medium, "medium");
+    check_robot(&Medium, "medium");
 }
 
 /// A connection constrains two points to coincide, a weld constrains two bodies. The out-of-plane conditions
@@ -119,12 +159,12 @@ fn loops() {
     struct Loops;
 
     assert_eq!((Loops::NV, Loops::NC, Loops::NS), (16, 2 + 6 + 3, 5));
-    for (i, case) in Record::load("mujoco/loops.json").records("cases").iter().enumerate() {
-        let (q, v) = (case.vector("q"), case.vector("v"));
+    for (i, case) in Record::load("mujoco/loops.json").records_with_key("cases").iter().enumerate() {
+        let (q, v) = (case.vector_with_key("q"), case.vector_with_key("v"));
         assert!(Loops.constraint_residuals(&q).amax() < 1e-12, "case {i}");
         assert!(Loops.constraint_rates(&q, &v).amax() < 1e-12, "case {i}");
         let (a, _) = Loops.constrained_dynamics(&q, &v, &SVector::zeros());
-        assert_close(format!("loops, case {i}"), a.as_slice(), &case.numbers("a"), 1e-7);
+        assert_close(format!("loops, case {i}"), a.as_slice(), &case.numbers_with_key("a"), 1e-7);
     }
 }
 
@@ -137,9 +177,9 @@ fn conditions() {
 
     // `right` is a function of `left`, since their sum is constrained.
     assert_eq!((Conditions::NV, Conditions::NC, Conditions::NU), (7, 3, 4));
-    for (i, case) in Record::load("mujoco/conditions.json").records("cases").iter().enumerate() {
+    for (i, case) in Record::load("mujoco/conditions.json").records_with_key("cases").iter().enumerate() {
         let all_and_arm_numbers = |what: &str| {
-            let all = case.numbers(what);
+            let all = case.numbers_with_key(what);
             let kept: Vec<f64> = all.iter().copied().take(7).collect();
             (all, kept)
         };

@@ -21,7 +21,7 @@ thread_local! {
     static COUNT: Cell<usize> = const { Cell::new(0) };
 }
 
-fn count() {
+fn count_heap_call() {
     // During the destruction of a thread the counter no longer exists.
     let _ = COUNT.try_with(|count| count.set(count.get() + 1));
 }
@@ -29,13 +29,13 @@ fn count() {
 // SAFETY: every call is passed to the system's allocator unchanged.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
+        count_heap_call();
         // SAFETY: the caller guarantees the conditions of the allocator.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        count();
+        count_heap_call();
         // SAFETY: the caller guarantees the conditions of the allocator.
         unsafe { System.dealloc(pointer, layout) }
     }
@@ -58,15 +58,15 @@ fn heap_calls_are_seen() {
 }
 
 /// Checks that no function of the trait `Mechanism` and no integrator allocates memory.
-fn check<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M)
+fn check_all_functions<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M)
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
     let mut random = Random::new(11);
-    let q = &random.configuration(m);
-    let [v, a, dv] = [1.0, 1.0, 0.1].map(|bound| random.vector(bound));
+    let q = &random.random_configuration(m);
+    let [v, a, dv] = [1.0, 1.0, 0.1].map(|bound| random.random_vector(bound));
     let (v, a, dv): (&SVector<f64, NV>, &SVector<f64, NV>, &SVector<f64, NV>) = (&v, &a, &dv);
-    let u = &random.vector(1.0);
+    let u = &random.random_vector(1.0);
 
     assert_eq!(heap_calls(|| m.neutral()), 0, "neutral");
     assert_eq!(heap_calls(|| m.integrate(q, dv)), 0, "integrate");
@@ -110,9 +110,9 @@ macro_rules! check_kinematics {
     ($mechanism:expr, $type:ident, $frame:literal) => {
         let m = $mechanism;
         let frame = frame!($type, $frame);
-        let q = &Random::new(12).configuration(&m);
-        let (v, a) = (&Random::new(13).vector(1.0), &Random::new(14).vector(1.0));
-        let u = &Random::new(15).vector(1.0);
+        let q = &Random::new(12).random_configuration(&m);
+        let (v, a) = (&Random::new(13).random_vector(1.0), &Random::new(14).random_vector(1.0));
+        let u = &Random::new(15).random_vector(1.0);
         assert_eq!(heap_calls(|| m.dissipated_power(q, v)), 0, "dissipated_power");
         assert_eq!(heap_calls(|| m.control_power(q, v, u)), 0, "control_power");
         assert_eq!(heap_calls(|| m.disturbance_power(q, v)), 0, "disturbance_power");
@@ -129,18 +129,18 @@ macro_rules! check_kinematics {
 
 #[test]
 fn generated_functions() {
-    check(&CartPole);
-    check(&Kinova);
-    check(&Panda);
-    check(&PandaMimic);
-    check(&Solo12);
-    check(&Humanoid);
-    check(&workshop());
-    check(&Spacecraft {});
-    check(&OnScrew {});
-    check(&OnUniversal {});
-    check(&OnPlanar {});
-    check(&OnFree {});
+    check_all_functions(&CartPole);
+    check_all_functions(&Kinova);
+    check_all_functions(&Panda);
+    check_all_functions(&PandaMimic);
+    check_all_functions(&Solo12);
+    check_all_functions(&Humanoid);
+    check_all_functions(&workshop());
+    check_all_functions(&Spacecraft {});
+    check_all_functions(&OnScrew {});
+    check_all_functions(&OnUniversal {});
+    check_all_functions(&OnPlanar {});
+    check_all_functions(&OnFree {});
     check_kinematics!(Panda, Panda, "panda_hand_tcp");
     check_kinematics!(Solo12, Solo12, "HR_FOOT");
     check_kinematics!(Humanoid, Humanoid, "r_wrist");
@@ -155,9 +155,12 @@ struct PandaWithDerivatives;
 #[test]
 fn derivatives() {
     let m = PandaWithDerivatives;
-    let q = &Random::new(15).configuration(&m);
-    let (v, a, u) =
-        (&Random::new(16).vector(1.0), &Random::new(17).vector(1.0), &Random::new(18).vector(1.0));
+    let q = &Random::new(15).random_configuration(&m);
+    let (v, a, u) = (
+        &Random::new(16).random_vector(1.0),
+        &Random::new(17).random_vector(1.0),
+        &Random::new(18).random_vector(1.0),
+    );
     assert_eq!(heap_calls(|| m.inverse_dynamics_derivatives(q, v, a)), 0, "inverse_dynamics_derivatives");
     assert_eq!(heap_calls(|| m.forward_dynamics_derivatives(q, v, a)), 0, "forward_dynamics_derivatives");
     assert_eq!(heap_calls(|| m.mass_matrix_inverse(q)), 0, "mass_matrix_inverse");
@@ -175,7 +178,7 @@ fn batches() {
     let (m, mut random) = (Solo12InLanes, Random::new(19));
     let mut q = [0.0; 19 * COUNT];
     for k in 0..COUNT {
-        let state = random.configuration(&m);
+        let state = random.random_configuration(&m);
         (0..19).for_each(|i| q[i * COUNT + k] = state[i]);
     }
     let mut v = [0.1; 18 * COUNT];
@@ -208,9 +211,9 @@ struct Arm {
 fn on_request() {
     let m = Arm { g: 9.81, m: 0.7, l: 0.4 };
     assert_eq!(heap_calls(|| m.prepare()), 0, "prepare");
-    check(&m.prepare());
-    let q = &Random::new(20).configuration(&m);
-    let (v, a) = (&Random::new(21).vector(1.0), &Random::new(22).vector(1.0));
+    check_all_functions(&m.prepare());
+    let q = &Random::new(20).random_configuration(&m);
+    let (v, a) = (&Random::new(21).random_vector(1.0), &Random::new(22).random_vector(1.0));
     let standard = m.standard_parameters();
     assert_eq!(heap_calls(|| m.standard_parameters()), 0, "standard_parameters");
     assert_eq!(heap_calls(|| m.base_parameters(&standard)), 0, "base_parameters");
@@ -234,7 +237,8 @@ fn check_constrained<M, const NQ: usize, const NV: usize, const NU: usize, const
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Mechanism<NQ, NV, NU, Scalar = f64>,
 {
     let mut random = Random::new(20);
-    let (any, tau): (SVector<f64, NV>, SVector<f64, NV>) = (random.vector(1.0), random.vector(1.0));
+    let (any, tau): (SVector<f64, NV>, SVector<f64, NV>) =
+        (random.random_vector(1.0), random.random_vector(1.0));
     assert_eq!(heap_calls(|| m.assemble(0.0, near, &[0])), 0, "assemble");
     let q = &m.assemble(0.0, near, &[]).expect("a configuration is near");
     assert_eq!(heap_calls(|| m.project_velocity(0.0, q, &any)), 0, "project_velocity");

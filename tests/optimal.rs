@@ -37,8 +37,8 @@ struct Flyer {
     back: Force,
 }
 
-fn positive<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
-    let m = SMatrix::<f64, N, N>::from_fn(|_, _| random.uniform(1.0));
+fn random_positive_definite<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
+    let m = SMatrix::<f64, N, N>::from_fn(|_, _| random.uniform_number(1.0));
     m * m.transpose() + SMatrix::identity() * 0.1
 }
 
@@ -47,14 +47,15 @@ fn positive<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
 fn blocks_obey_riccatis_equation() {
     let mut random = Random::new(1);
     let m = Flyer {};
-    let q = m.integrate(&Flyer::neutral(&m), &random.vector(1.0));
-    let (v, u) = (random.vector(1.0), random.vector(3.0));
+    let q = m.integrate(&Flyer::neutral(&m), &random.random_vector(1.0));
+    let (v, u) = (random.random_vector(1.0), random.random_vector(3.0));
     let steps = [
         discrete::transition(&m, &Rk4::step(0.1), 0.0, &q, &v, &u).expect("it moves"),
         discrete::transition(&m, &SemiImplicitEuler::step(0.1), 0.0, &q, &v, &u).expect("it moves"),
     ];
-    let (s, c, r) = (positive::<12>(&mut random), positive::<14>(&mut random), 0.3);
-    let (g, w) = (random.vector::<14>(1.0), random.vector::<12>(1.0));
+    let (s, c, r) =
+        (random_positive_definite::<12>(&mut random), random_positive_definite::<14>(&mut random), 0.3);
+    let (g, w) = (random.random_vector::<14>(1.0), random.random_vector::<12>(1.0));
     let block =
         |m: &SMatrix<f64, 14, 14>, i: usize, j: usize| m.fixed_view::<6, 6>(6 * i, 6 * j).into_owned();
     let mixed_block = |i: usize| c.fixed_view::<6, 2>(6 * i, 12).into_owned();
@@ -126,7 +127,7 @@ struct Flapper {
 #[test]
 fn costs_of_numbers_go_through_their_derivatives() {
     let mut random = Random::new(7);
-    let mut numbers = |n: usize| (0..n).map(|_| random.uniform(1.0)).collect::<Vec<f64>>();
+    let mut numbers = |n: usize| (0..n).map(|_| random.uniform_number(1.0)).collect::<Vec<f64>>();
     let jacobian = SMatrix::<f64, 6, 8>::from_column_slice(&numbers(48));
     let mut gradient = SVector::<f64, 6>::from_column_slice(&numbers(6));
     let half = SMatrix::<f64, 6, 6>::from_column_slice(&numbers(36));
@@ -168,15 +169,15 @@ fn costs_of_numbers_go_through_their_derivatives() {
 #[test]
 fn steps_that_are_chained_are_steps() {
     let (mut random, m) = (Random::new(3), Flapper {});
-    let q = m.integrate(&Flapper::neutral(&m), &random.vector(1.0));
-    let (v, u) = (random.vector(1.0), random.vector(3.0));
+    let q = m.integrate(&Flapper::neutral(&m), &random.random_vector(1.0));
+    let (v, u) = (random.random_vector(1.0), random.random_vector(3.0));
     let step = discrete::transition(&m, &SemiImplicitEuler::step(0.1), 0.0, &q, &v, &u).expect("it moves");
     assert!(step.chained.is_some());
-    let s = positive::<14>(&mut random);
+    let s = random_positive_definite::<14>(&mut random);
     let block_of_second_derivatives = |i: usize, j: usize| s.fixed_view::<7, 7>(7 * i, 7 * j).into_owned();
     let after = Value {
-        q: random.vector(1.0),
-        v: random.vector(1.0),
+        q: random.random_vector(1.0),
+        v: random.random_vector(1.0),
         qq: block_of_second_derivatives(0, 0),
         qv: block_of_second_derivatives(0, 1),
         vv: block_of_second_derivatives(1, 1),
@@ -220,20 +221,20 @@ struct Problem {
 }
 
 impl Problem {
-    fn total(&self, states: &[State], inputs: &[SVector<f64, 1>]) -> f64 {
+    fn total_cost(&self, states: &[State], inputs: &[SVector<f64, 1>]) -> f64 {
         let (q, v) = states[STEPS];
         let effort: f64 = inputs.iter().map(|u| 0.5 * 1e-3 * u[0] * u[0]).sum();
         effort + 50.0 * (q - self.goal).norm_squared() + 5.0 * v.norm_squared()
     }
 
-    fn last(&self, (q, v): &State) -> Value<f64, 2> {
+    fn terminal_value(&self, (q, v): &State) -> Value<f64, 2> {
         let one = SMatrix::<f64, 2, 2>::identity();
         Value { q: (q - self.goal) * 100.0, v: v * 10.0, qq: one * 100.0, vv: one * 10.0, ..Value::zeros() }
     }
 
     /// Returns the feedback policies of all instants, the first one first, and the largest component of the
     /// cost gradient with respect to the inputs. Returns `None` if the costs are not convex.
-    fn policies<M>(
+    fn policies_of_instants<M>(
         &self,
         m: &M,
         states: &[State],
@@ -243,7 +244,7 @@ impl Problem {
     where
         M: SecondDerivatives<2, 2, 1, Scalar = f64>,
     {
-        let (mut to_go, mut policies, mut slope) = (self.last(&states[STEPS]), Vec::new(), 0.0_f64);
+        let (mut to_go, mut policies, mut slope) = (self.terminal_value(&states[STEPS]), Vec::new(), 0.0_f64);
         // The adjoint of the trajectory is the weight of the dynamics' curvature and gives the gradient,
         // which is zero at the optimum.
         let mut adjoint = (to_go.q, to_go.v);
@@ -268,7 +269,7 @@ impl Problem {
         Some((policies, slope))
     }
 
-    fn rollout<M>(
+    fn rollout_policies<M>(
         &self,
         m: &M,
         states: &[State],
@@ -306,14 +307,18 @@ fn dynamic_programming_converges_quadratically() {
         let mut slopes = Vec::new();
         for iteration in 0..200 {
             let curved = iteration >= curved_from;
-            let Some((policies, slope)) = problem.policies(&m, &states, &inputs, curved) else { break };
+            let Some((policies, slope)) = problem.policies_of_instants(&m, &states, &inputs, curved) else {
+                break;
+            };
             slopes.push(slope);
             if slope < 1e-12 {
                 break;
             }
-            let now = problem.total(&states, &inputs);
-            let tried = (0..20).map(|k| problem.rollout(&m, &states, &inputs, &policies, 0.5_f64.powi(k)));
-            let mut better = tried.filter(|(states, inputs)| problem.total(states, inputs) < now + 1e-12);
+            let now = problem.total_cost(&states, &inputs);
+            let tried =
+                (0..20).map(|k| problem.rollout_policies(&m, &states, &inputs, &policies, 0.5_f64.powi(k)));
+            let mut better =
+                tried.filter(|(states, inputs)| problem.total_cost(states, inputs) < now + 1e-12);
             let Some(next) = better.next() else { break };
             (states, inputs) = next;
         }
@@ -342,10 +347,11 @@ fn limits_bound_the_change_of_inputs() {
     let mut kinds = [0; 3];
     for _ in 0..300 {
         let mut cost = Quadratic::zeros();
-        (cost.uu, cost.u) = (positive::<2>(&mut random), random.vector(2.0));
-        (cost.qq, cost.vv) = (positive::<6>(&mut random), positive::<6>(&mut random));
-        cost.qu = SMatrix::from_fn(|_, _| random.uniform(0.3));
-        let (u, reach) = (random.vector::<2>(0.5), SVector::from([0.6, f64::INFINITY]));
+        (cost.uu, cost.u) = (random_positive_definite::<2>(&mut random), random.random_vector(2.0));
+        (cost.qq, cost.vv) =
+            (random_positive_definite::<6>(&mut random), random_positive_definite::<6>(&mut random));
+        cost.qu = SMatrix::from_fn(|_, _| random.uniform_number(0.3));
+        let (u, reach) = (random.random_vector::<2>(0.5), SVector::from([0.6, f64::INFINITY]));
         let limits =
             InputLimits::around(&u, &-reach, &reach.map(|x| x.min(0.7))).expect("they are consistent");
         let (mut policy, mut to_go) = (Policy::zeros(), Value::zeros());
@@ -374,7 +380,7 @@ fn limits_bound_the_change_of_inputs() {
         assert!((policy.expected[0] + policy.expected[1] - best).abs() < 1e-12);
         let held = (0..2).filter(|i| policy.by_q.row(*i).amax() == 0.0).count();
         kinds[held] += 1;
-        let dq = random.vector::<6>(1e-2);
+        let dq = random.random_vector::<6>(1e-2);
         let du = policy.inputs(1.0, &dq, &SVector::zeros());
         let predicted = total_cost_change(&du) + dq.dot(&(cost.qu * du)) + 0.5 * dq.dot(&(cost.qq * dq));
         assert!((predicted - best - to_go.at(&dq, &SVector::zeros())).abs() < 1e-12);
@@ -402,7 +408,8 @@ fn a_weak_motor_is_used_at_its_limits() {
     let mut violation = f64::INFINITY;
     let (mut at_limit, mut regularisation) = (0, 1e-6);
     for _ in 0..600 {
-        let (mut to_go, mut adjoint) = (problem.last(&states[STEPS]), (SVector::zeros(), SVector::zeros()));
+        let (mut to_go, mut adjoint) =
+            (problem.terminal_value(&states[STEPS]), (SVector::zeros(), SVector::zeros()));
         adjoint = (to_go.q + adjoint.0, to_go.v + adjoint.1);
         (violation, at_limit) = (0.0, 0);
         for (k, ((q, v), u)) in states.iter().zip(&inputs).enumerate().rev() {
@@ -422,7 +429,7 @@ fn a_weak_motor_is_used_at_its_limits() {
         if violation < 1e-9 {
             break;
         }
-        let now = problem.total(&states, &inputs);
+        let now = problem.total_cost(&states, &inputs);
         let mut tried = (0..20).map(|k| {
             let (mut all, mut new) = (vec![states[0]], Vec::new());
             for ((policy, u), (q, v)) in policies.iter().zip(&inputs).zip(&states) {
@@ -434,7 +441,7 @@ fn a_weak_motor_is_used_at_its_limits() {
             }
             (all, new)
         });
-        let next = tried.find(|(states, inputs)| problem.total(states, inputs) < now + 1e-13);
+        let next = tried.find(|(states, inputs)| problem.total_cost(states, inputs) < now + 1e-13);
         // With more regularisation the change of the inputs is shorter, and its gains are smaller.
         match next {
             Some(next) => ((states, inputs), regularisation) = (next, (regularisation * 0.2).max(1e-6)),

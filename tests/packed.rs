@@ -60,7 +60,7 @@ macro_rules! check {
         let mut random = Random::new(41);
         assert!($robot::MASS_MATRIX_ENTRIES.is_sorted_by_key(|(i, j)| (j, i)));
         for _ in 0..5 {
-            let q = random.configuration(&robot);
+            let q = random.random_configuration(&robot);
             let mut full = SMatrix::<f64, { $robot::NV }, { $robot::NV }>::zeros();
             for ((i, j), entry) in $robot::MASS_MATRIX_ENTRIES.into_iter().zip(&robot.mass_matrix_packed(&q))
             {

@@ -35,8 +35,8 @@ fn with_the_figures_of_the_file_it_is_the_robot_of_the_file() {
     assert_same_dynamics(&robot, &plain, 20, TOLERANCE);
     assert_same_dynamics(&robot.prepare(), &plain, 20, TOLERANCE);
     let mut random = Random::new(3);
-    let q = random.configuration(&plain);
-    let [v, a] = [random.vector(2.0), random.vector(2.0)];
+    let q = random.random_configuration(&plain);
+    let [v, a] = [random.random_vector(2.0), random.random_vector(2.0)];
     let assert_similar_values = |what: &str, a: &[f64], b: &[f64]| assert_similar(what, a, b, TOLERANCE);
     let (one, other) =
         (robot.inverse_dynamics_derivatives(&q, &v, &a), plain.inverse_dynamics_derivatives(&q, &v, &a));
@@ -225,9 +225,13 @@ struct SingleWrist;
 
 /// Returns other inertial parameters of a physically consistent body: part of the known body's density, and
 /// two point masses.
-fn other(random: &mut Random, link: &Inertial<f64>) -> Inertial<f64> {
-    let mut point =
-        || Inertial::point(link.mass * (0.06 + random.uniform(0.05)), random.vector::<3>(0.06).into());
+fn other_inertial(random: &mut Random, link: &Inertial<f64>) -> Inertial<f64> {
+    let mut point = || {
+        Inertial::point(
+            link.mass * (0.06 + random.uniform_number(0.05)),
+            random.random_vector::<3>(0.06).into(),
+        )
+    };
     let (a, b) = (point(), point());
     let [x, y, z] = link.com;
     let shifted_inertial =
@@ -240,7 +244,7 @@ fn other(random: &mut Random, link: &Inertial<f64>) -> Inertial<f64> {
 fn same_torques(one: &Panda, other: &Panda) {
     let mut random = Random::new(2);
     for _ in 0..20 {
-        let [q, v, a] = [random.vector(2.0), random.vector(2.0), random.vector(3.0)];
+        let [q, v, a] = [random.random_vector(2.0), random.random_vector(2.0), random.random_vector(3.0)];
         let (one, other) = (one.inverse_dynamics(&q, &v, &a), other.inverse_dynamics(&q, &v, &a));
         assert_similar("torques", one.as_slice(), other.as_slice(), 1e-8);
     }
@@ -251,7 +255,7 @@ fn identified_base_parameters_are_put_back() {
     let mut random = Random::new(17);
     for _ in 0..3 {
         let mut truth = Panda::FILE;
-        truth.set_inertials(&truth.inertials().map(|link| other(&mut random, &link)));
+        truth.set_inertials(&truth.inertials().map(|link| other_inertial(&mut random, &link)));
         assert_eq!(truth.validate(), Ok(()));
         let base = truth.base_parameters(&truth.standard_parameters());
         let mut found = Panda::FILE;
@@ -282,7 +286,7 @@ fn noise_gives_bodies_all_the_same() {
     let file = Panda::FILE;
     let base = file.base_parameters(&file.standard_parameters());
     for (noise, most) in [(0.02, 0.05), (0.3, 0.5)] {
-        let noisy = base.map(|x| x * (1.0 + random.uniform(noise)));
+        let noisy = base.map(|x| x * (1.0 + random.uniform_number(noise)));
         let mut found = file;
         approach(&mut found, &noisy, 1e-6).unwrap();
         assert_eq!(found.validate(), Ok(()));

@@ -14,17 +14,17 @@ use linkwork_compiler::lower::lower;
 use linkwork_compiler::mechanics::passive::passive_forces;
 use linkwork_compiler::mechanics::{self, aba, crba, energy, forces, frames, ldl, momentum, rnea};
 use linkwork_compiler::mechanism::{Model, Quantity};
-use linkwork_compiler::passes::{Passes, Variant, in_common_axes, sizes, variants};
+use linkwork_compiler::passes::{Passes, Variant, in_common_axes, link_sizes, model_variants};
 use linkwork_compiler::syntax::Requests;
-use linkwork_compiler::vectorise::{Limbs, find};
-use linkwork_compiler::{compile_with, derive_with, read};
+use linkwork_compiler::vectorise::{Limbs, find_limb_groups};
+use linkwork_compiler::{compile_with, derive_with, read_source};
 use proptest::prelude::*;
-use random_limbs::creatures;
-use random_robot::robots;
-use random_tree::trees;
+use random_limbs::random_creatures;
+use random_robot::random_robots;
+use random_tree::random_trees;
 use std::path::Path;
-use support::model::{symbols, try_model, with_model};
-use support::random::config;
+use support::model::{random_symbol_values, try_model, with_model};
+use support::random::property_test_config;
 
 /// Tolerance of results, relative to the largest entry.
 const TOLERANCE: f64 = 1e-10;
@@ -45,8 +45,8 @@ fn assert_near(what: &str, seed: u64, tolerance: f64, new: &[f64], old: &[f64]) 
 }
 
 /// Returns all functions of a model as expressions. Functions that depend on the axes of links come last.
-fn functions<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<(&'static str, Vec<Expr<'g>>)> {
-    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
+fn functions_of_model<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<(&'static str, Vec<Expr<'g>>)> {
+    let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
     let (mass, moment) = energy::mass_and_moment(model, joints);
     vec![
         ("mass matrix", crba::mass_matrix(model, joints).concat()),
@@ -58,24 +58,24 @@ fn functions<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<(&'static str, 
         ("mass and moment", [vec![mass], moment.0.to_vec()].concat()),
         ("generalized momentum", momentum::generalized_momentum(model, joints, &v)),
         ("momentum rate", momentum::momentum_rate(model, joints, &v)),
-        ("momentum", frames::flat(&momentum::centroidal_momentum(model, joints, &v))),
+        ("momentum", frames::spatial_components(&momentum::centroidal_momentum(model, joints, &v))),
         ("inputs", forces::generalized_forces(model, joints)),
-        ("frames", placements(model, joints)),
+        ("frames", frame_placements(model, joints)),
     ]
 }
 
 /// Returns rotation and position of all named frames in the ground frame.
-fn placements<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
+fn frame_placements<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let g = model.graph;
     let mut world: Vec<(Mat3<'g>, Vec3<'g>)> = Vec::new();
     for joint in joints {
         let (r, p) = joint.parent.map_or((Mat3::identity(g), Vec3::zero(g)), |parent| world[parent.0]);
-        world.push((r * joint.rotation.matrix(), p + r * joint.translation));
+        world.push((r * joint.rotation.rotation_matrix(), p + r * joint.translation));
     }
     let mut all = Vec::new();
     for frame in &model.frames {
         let (r, p) = frame.link.map_or((Mat3::identity(g), Vec3::zero(g)), |link| world[link.0]);
-        all.extend((r * frame.pose.rotation.matrix()).0.concat());
+        all.extend((r * frame.pose.rotation.rotation_matrix()).0.concat());
         all.extend((p + r * frame.pose.translation).0);
     }
     all
@@ -85,17 +85,20 @@ fn placements<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
 /// dynamics. Variants with common axes are compared only in functions that do not depend on the axes of
 /// links.
 fn check_forms(model: &Model<'_>, seed: u64) {
-    let at = symbols(model, seed);
-    let joints = kinematics::joints(model);
-    let old: Vec<_> = functions(model, &joints).into_iter().map(|(name, e)| (name, eval(&e, &at))).collect();
+    let at = random_symbol_values(model, seed);
+    let joints = kinematics::joints_of_model(model);
+    let old: Vec<_> =
+        functions_of_model(model, &joints).into_iter().map(|(name, e)| (name, eval(&e, &at))).collect();
     let check_variant = |variant: &Variant<'_>, count: usize| {
-        for ((name, new), (_, old)) in functions(&variant.model, &variant.joints).iter().zip(&old[..count]) {
+        for ((name, new), (_, old)) in
+            functions_of_model(&variant.model, &variant.joints).iter().zip(&old[..count])
+        {
             assert_near(name, seed, TOLERANCE, &eval(new, &at), old);
         }
         check_forward(variant, seed);
     };
     for passes in CHOICES {
-        let variants = variants(model, passes);
+        let variants = model_variants(model, passes);
         variants.iter().for_each(|variant| check_variant(variant, old.len()));
         in_common_axes(&variants).iter().for_each(|variant| check_variant(variant, old.len() - 2));
     }
@@ -103,14 +106,14 @@ fn check_forms(model: &Model<'_>, seed: u64) {
 
 fn check_forward(variant: &Variant<'_>, seed: u64) {
     let (model, joints) = (&variant.model, &variant.joints);
-    let at = symbols(model, seed);
-    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
+    let at = random_symbol_values(model, seed);
+    let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
     let tau = rnea::inverse_dynamics(model, joints, &v, Some(&a));
     let h = rnea::inverse_dynamics(model, joints, &v, None);
     let r: Vec<Expr<'_>> = tau.iter().zip(&h).map(|(t, h)| *t - *h).collect();
     let expected = eval(&a, &at);
     let mass = crba::mass_matrix(model, joints);
-    let solved = eval(&ldl::solve(mass, r.clone(), joints), &at);
+    let solved = eval(&ldl::solve_symmetric(mass, r.clone(), joints), &at);
     assert_near("factorisation", seed, 10.0 * TOLERANCE, &solved, &expected);
     let wrenches = rnea::wrenches(model, joints, &v, None);
     for articulated in
@@ -125,12 +128,18 @@ fn check_forward(variant: &Variant<'_>, seed: u64) {
 /// with passes.
 fn check_programs(name: &str, model: &Model<'_>, new: &Output, old: &Output, tolerance: f64) {
     for seed in 0..3 {
-        let at = symbols(model, seed);
+        let at = random_symbol_values(model, seed);
         for (new, old) in new.functions.iter().zip(&old.functions) {
-            let (a, b) = (new.program.run(&at), old.program.run(&at));
+            let (a, b) = (new.program.interpret_program(&at), old.program.interpret_program(&at));
             assert_near(&format!("{name}: {}", new.name), seed, tolerance, &a, &b);
             if let Some(lanes) = &new.program.simd {
-                assert_near(&format!("{name}: {} in lanes", new.name), seed, tolerance, &lanes.run(&at), &b);
+                assert_near(
+                    &format!("{name}: {} in lanes", new.name),
+                    seed,
+                    tolerance,
+                    &lanes.interpret_program(&at),
+                    &b,
+                );
             }
         }
     }
@@ -139,7 +148,8 @@ fn check_programs(name: &str, model: &Model<'_>, new: &Output, old: &Output, tol
     }
     for (new, old) in new.functions.iter().zip(&old.functions) {
         if ["mass_matrix", "inverse_dynamics"].contains(&new.name.as_str()) {
-            let (after, before) = (new.program.counts.total(), old.program.counts.total());
+            let (after, before) =
+                (new.program.counts.total_operations(), old.program.counts.total_operations());
             assert!(after <= before, "{name}: {}: {after} operations, {before} without passes", new.name);
         }
     }
@@ -151,15 +161,15 @@ const OFF: Passes =
 /// Checks that functions of prepared numbers have the results of the functions of parameters.
 fn check_prepared(name: &str, model: &Model<'_>, prepared: &Prepared, old: &Output, tolerance: f64) {
     for seed in 0..3 {
-        let at = symbols(model, seed);
-        let numbers = prepared.numbers.run(&at);
+        let at = random_symbol_values(model, seed);
+        let numbers = prepared.numbers.interpret_program(&at);
         let of_state = |s| match Quantity::from_symbol(s) {
             Quantity::Prepared(k) => numbers[k],
             Quantity::Parameter(_) => f64::NAN,
             _ => at(s),
         };
         for (new, old) in prepared.functions.iter().zip(&old.functions) {
-            let (a, b) = (new.program.run(&of_state), old.program.run(&at));
+            let (a, b) = (new.program.interpret_program(&of_state), old.program.interpret_program(&at));
             assert_near(&format!("{name}: {}, prepared", new.name), seed, tolerance, &a, &b);
         }
     }
@@ -170,7 +180,7 @@ fn check_robot(name: &str, options: &str) {
     let arguments = format!("urdf = \"../models/urdf/{name}.urdf\"{options}");
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let source = read(parse_tokens(&arguments), parse_tokens("pub struct Robot;"), folder, &mut cx)
+    let source = read_source(parse_tokens(&arguments), parse_tokens("pub struct Robot;"), folder, &mut cx)
         .expect("it is read");
     let (model, old) = compile_with(&source, &graph, OFF, &mut cx).expect("it compiles");
     for passes in CHOICES {
@@ -199,9 +209,9 @@ fn robots_move_as_without_passes() {
 /// lanes. Forces between limbs may have different expressions in each limb; then no lanes exist.
 fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
     const TOLERANCE: f64 = 1e-11;
-    let at = symbols(model, seed);
-    let joints = &kinematics::joints(model);
-    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
+    let at = random_symbol_values(model, seed);
+    let joints = &kinematics::joints_of_model(model);
+    let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
     let mass = eval(&crba::mass_matrix(model, joints).concat(), &at);
     let bias = eval(&rnea::inverse_dynamics(model, joints, &v, None), &at);
     let tau = eval(&rnea::inverse_dynamics(model, joints, &v, Some(&a)), &at);
@@ -210,9 +220,9 @@ fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
         Quantity::Force(k) => tau[k],
         _ => at(s),
     };
-    let all = CHOICES.into_iter().flat_map(|passes| variants(model, passes)).collect::<Vec<_>>();
+    let all = CHOICES.into_iter().flat_map(|passes| model_variants(model, passes)).collect::<Vec<_>>();
     for variant in all.iter().chain(&in_common_axes(&all)) {
-        let groups = find(&variant.model, &variant.joints);
+        let groups = find_limb_groups(&variant.model, &variant.joints);
         assert!(!groups.is_empty(), "the limbs are alike");
         let Some(limbs) =
             Limbs::new(&variant.model, &variant.joints, &groups, || passive_forces(&variant.model, true))
@@ -242,16 +252,16 @@ fn check_limbs(model: &Model<'_>, interacts: bool, seed: u64) {
         assert_near("forward dynamics", seed, 100.0 * TOLERANCE, &eval(&found, &with_tau), &expected);
         // The lowered program has the same results.
         let program = lower(&limb_lanes::inverse_dynamics(&limbs, true));
-        assert_near("program", seed, TOLERANCE, &program.run(&at), &tau);
+        assert_near("program", seed, TOLERANCE, &program.interpret_program(&at), &tau);
     }
 }
 
 proptest! {
-    #![proptest_config(config(150))]
+    #![proptest_config(property_test_config(150))]
 
     #[test]
-    fn alike_limbs_as_lanes_are_the_same_mechanism(creature in creatures(3), seed in 0_u64..1000) {
-        let source = creature.source();
+    fn alike_limbs_as_lanes_are_the_same_mechanism(creature in random_creatures(3), seed in 0_u64..1000) {
+        let source = creature.creature_source();
         let interacts = source.1.contains(" between");
         // Models with an element between a limb and itself are rejected.
         let refused = try_model(&source, |_, model| check_limbs(model, interacts, seed)).is_err();
@@ -259,17 +269,17 @@ proptest! {
     }
 
     #[test]
-    fn noise_costs_no_digits(robot in robots(8), seed in 0_u64..1000) {
-        with_model(&robot.source(), |_, model| check_digits(model, seed));
+    fn noise_costs_no_digits(robot in random_robots(8), seed in 0_u64..1000) {
+        with_model(&robot.robot_source(), |_, model| check_digits(model, seed));
     }
 }
 
 /// Checks that every variant of a model has the same functions up to rounding, and that no length of a
 /// variant exceeds those of the model by more than a factor of 10.
 fn check_digits(model: &Model<'_>, seed: u64) {
-    let at = symbols(model, seed);
-    let joints = kinematics::joints(model);
-    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
+    let at = random_symbol_values(model, seed);
+    let joints = kinematics::joints_of_model(model);
+    let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
     let mass = eval(&crba::mass_matrix(model, &joints).concat(), &at);
     let tau = eval(&rnea::inverse_dynamics(model, &joints, &v, Some(&a)), &at);
     let expected = eval(&a, &at);
@@ -281,19 +291,19 @@ fn check_digits(model: &Model<'_>, seed: u64) {
     let acceleration_error = |variant: &Model<'_>, joints: &[Joint<'_>]| -> f64 {
         let h = rnea::inverse_dynamics(variant, joints, &v, None);
         let rest = h.iter().enumerate().map(|(k, h)| force_symbol(k) - *h).collect();
-        let found = eval(&ldl::solve(crba::mass_matrix(variant, joints), rest, joints), &with_tau);
+        let found = eval(&ldl::solve_symmetric(crba::mass_matrix(variant, joints), rest, joints), &with_tau);
         found.iter().zip(&expected).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
     };
     let (n, own) = (model.nv(), acceleration_error(model, &joints));
-    let extent: f64 = sizes(model).iter().sum();
-    let all = CHOICES.into_iter().flat_map(|passes| variants(model, passes)).collect::<Vec<_>>();
+    let extent: f64 = link_sizes(model).iter().sum();
+    let all = CHOICES.into_iter().flat_map(|passes| model_variants(model, passes)).collect::<Vec<_>>();
     // Joints share common axes if they are parallel within the rounding of files.
     let common = in_common_axes(&all);
     let both =
         all.iter().map(|variant| (variant, 1e-12)).chain(common.iter().map(|variant| (variant, 5e-12)));
     for (variant, tolerance) in both {
         for link in &variant.model.links {
-            let place = link.placement.translation.values().expect("they are numbers");
+            let place = link.placement.translation.constant_components().expect("they are numbers");
             assert!(place.iter().all(|c| c.abs() <= 10.0 * extent), "{place:?} of {extent} (seed {seed})");
         }
         let found = eval(&rnea::inverse_dynamics(&variant.model, &variant.joints, &v, Some(&a)), &at);
@@ -316,11 +326,11 @@ fn check_digits(model: &Model<'_>, seed: u64) {
 }
 
 proptest! {
-    #![proptest_config(config(40))]
+    #![proptest_config(property_test_config(40))]
 
     #[test]
-    fn forms_are_the_same_mechanism(tree in trees(4), seed in 0_u64..1000) {
-        with_model(&tree.source(), |_, model| check_forms(model, seed));
+    fn forms_are_the_same_mechanism(tree in random_trees(4), seed in 0_u64..1000) {
+        with_model(&tree.tree_source(), |_, model| check_forms(model, seed));
     }
 
     /// Robots of pins and sleeves, most of them parallel to the joint before.
@@ -355,9 +365,9 @@ proptest! {
     }
 
     #[test]
-    fn programs_are_the_same_functions(tree in trees(6), seed in 0_u64..1000) {
+    fn programs_are_the_same_functions(tree in random_trees(6), seed in 0_u64..1000) {
         let _ = seed;
-        with_model(&tree.source(), |_, model| {
+        with_model(&tree.tree_source(), |_, model| {
             let mut cx = Diagnostics::new();
             let prepare = Requests { prepare: true, ..Requests::default() };
             let new = derive_with(model, prepare, Passes::default(), &mut cx);
@@ -383,9 +393,13 @@ fn parallel_joints_share_their_axes() {
     let joints_in_common_axes = |axes| {
         let mut turning = Vec::new();
         with_model(&(String::new(), arm_with_axes(axes)), |_, model| {
-            let variant = in_common_axes(&variants(model, Passes::default())).into_iter().next();
+            let variant = in_common_axes(&model_variants(model, Passes::default())).into_iter().next();
             let Some(variant) = variant else { return };
-            turning = variant.joints.iter().map(|joint| joint.rotation.matrix().values().is_none()).collect();
+            turning = variant
+                .joints
+                .iter()
+                .map(|joint| joint.rotation.rotation_matrix().constant_entries().is_none())
+                .collect();
         });
         turning
     };
@@ -414,8 +428,9 @@ fn figures_next_to_zero_cost_no_digits() {
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
     let item = format!("pub struct Robot {{ {fields} }}");
-    let source = read(parse_tokens("gravity = -9.81 * y"), parse_tokens(&item), Path::new(""), &mut cx)
-        .expect("it is read");
+    let source =
+        read_source(parse_tokens("gravity = -9.81 * y"), parse_tokens(&item), Path::new(""), &mut cx)
+            .expect("it is read");
     let (model, old) = compile_with(&source, &graph, OFF, &mut cx).expect("it compiles");
     for passes in CHOICES {
         let (_, new) = compile_with(&source, &graph, passes, &mut cx).expect("it compiles");

@@ -6,7 +6,7 @@ use linkwork::simulate::Sample;
 use linkwork::{Real, at, mechanism, simulate};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::{compile, read};
+use linkwork_compiler::{compile, read_source};
 use std::path::Path;
 use support::compare::{assert_close, assert_same_dynamics};
 use support::random::Random;
@@ -55,7 +55,7 @@ struct Arm<T> {
     speed: Vector,
 }
 
-fn arm<T: Real>() -> Arm<T> {
+fn arm_with_parameters<T: Real>() -> Arm<T> {
     let convert_number = |x: f64| linkwork::nalgebra::convert::<f64, T>(x);
     Arm {
         g: convert_number(9.7),
@@ -70,15 +70,15 @@ fn arm<T: Real>() -> Arm<T> {
 
 #[test]
 fn a_prepared_mechanism_is_the_mechanism() {
-    let arm = arm::<f64>();
+    let arm = arm_with_parameters::<f64>();
     let prepared: PreparedArm<f64> = arm.prepare();
     assert_same_dynamics(&prepared, &arm, 20, TOLERANCE);
     assert_eq!(PreparedArm::<f64>::VELOCITIES, Arm::<f64>::VELOCITIES);
     let mut random = Random::new(5);
     for _ in 0..10 {
-        let q = random.configuration(&arm);
-        let [v, a] = [random.vector(2.0), random.vector(2.0)];
-        let u = random.vector(3.0);
+        let q = random.random_configuration(&arm);
+        let [v, a] = [random.random_vector(2.0), random.random_vector(2.0)];
+        let u = random.random_vector(3.0);
         macro_rules! same {
             ($($function:ident($($argument:expr),*)$(.$part:tt)?;)*) => {$(
                 assert_close(
@@ -127,7 +127,7 @@ fn a_prepared_mechanism_is_the_mechanism() {
 
 #[test]
 fn in_single_precision() {
-    let (single, double) = (arm::<f32>().prepare(), arm::<f64>());
+    let (single, double) = (arm_with_parameters::<f32>().prepare(), arm_with_parameters::<f64>());
     let q = double.neutral();
     let mass = single.mass_matrix(&q.cast::<f32>()).cast::<f64>();
     assert_close("mass matrix", mass.as_slice(), double.mass_matrix(&q).as_slice(), 1e-6);
@@ -249,15 +249,17 @@ const MAIN: [&str; 4] = ["inverse_dynamics", "bias_forces", "mass_matrix", "forw
 
 /// Returns the numbers of operations of the main functions, first as generated, then with prepared
 /// parameters.
-fn operations(arguments: &str, item: &str) -> ([usize; 4], Option<[usize; 4]>) {
+fn main_and_prepared_counts(arguments: &str, item: &str) -> ([usize; 4], Option<[usize; 4]>) {
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let source = read(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
+    let source = read_source(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
     let main_operation_counts = |functions: &[linkwork_compiler::derive::Function]| {
-        MAIN.map(|name| functions.iter().find(|f| f.name == name).map_or(0, |f| f.program.counts.total()))
+        MAIN.map(|name| {
+            functions.iter().find(|f| f.name == name).map_or(0, |f| f.program.counts.total_operations())
+        })
     };
     (
         main_operation_counts(&output.functions),
@@ -268,7 +270,7 @@ fn operations(arguments: &str, item: &str) -> ([usize; 4], Option<[usize; 4]>) {
 /// Returns the source of a 6R arm with the geometry of the PUMA 560 (Armstrong, Khatib and Burdick 1986)
 /// whose bodies have no symmetry. The arguments choose whether lengths and inertial parameters are parameters
 /// or numbers.
-fn puma(lengths: bool, parameters: bool) -> String {
+fn puma_source(lengths: bool, parameters: bool) -> String {
     let [a2, a3, d3, d4] = match lengths {
         true => ["a2", "a3", "d3", "d4"],
         false => ["0.4318", "0.0203", "0.15005", "0.4318"],
@@ -303,7 +305,7 @@ fn puma(lengths: bool, parameters: bool) -> String {
 
 /// Returns the source of a chain of `n` rods along x whose joints have these axes in turn. Lengths and masses
 /// are numbers or parameters.
-fn chain(n: usize, axes: &[&str], parameters: bool) -> String {
+fn chain_source(n: usize, axes: &[&str], parameters: bool) -> String {
     let mut fields = String::new();
     for k in 0..n {
         let number_or_parameter_name =
@@ -334,19 +336,29 @@ fn chain(n: usize, axes: &[&str], parameters: bool) -> String {
 #[test]
 fn parameters_cost_next_to_nothing() {
     for (name, numbers, parameters, expected) in [
-        ("puma, masses", puma(false, false), puma(false, true), [470, 412, 245, 799]),
-        ("puma, lengths too", puma(false, false), puma(true, true), [470, 412, 245, 799]),
-        ("chain of 4", chain(4, &["z", "y"], false), chain(4, &["z", "y"], true), [177, 157, 70, 278]),
-        ("chain of 8", chain(8, &["z", "y"], false), chain(8, &["z", "y"], true), [473, 449, 422, 1186]),
+        ("puma, masses", puma_source(false, false), puma_source(false, true), [470, 412, 245, 799]),
+        ("puma, lengths too", puma_source(false, false), puma_source(true, true), [470, 412, 245, 799]),
+        (
+            "chain of 4",
+            chain_source(4, &["z", "y"], false),
+            chain_source(4, &["z", "y"], true),
+            [177, 157, 70, 278],
+        ),
+        (
+            "chain of 8",
+            chain_source(8, &["z", "y"], false),
+            chain_source(8, &["z", "y"], true),
+            [473, 449, 422, 1186],
+        ),
         (
             "chain about three axes",
-            chain(8, &["z", "y", "x"], false),
-            chain(8, &["z", "y", "x"], true),
+            chain_source(8, &["z", "y", "x"], false),
+            chain_source(8, &["z", "y", "x"], true),
             [423, 399, 378, 1092],
         ),
     ] {
-        let (numbers, _) = operations("gravity = -9.81 * z", &numbers);
-        let (whole, prepared) = operations("gravity = -9.81 * z, prepare", &parameters);
+        let (numbers, _) = main_and_prepared_counts("gravity = -9.81 * z", &numbers);
+        let (whole, prepared) = main_and_prepared_counts("gravity = -9.81 * z, prepare", &parameters);
         let prepared = prepared.expect("it was asked for");
         for k in 0..4 {
             let (with, without) = (prepared[k] as f64, numbers[k] as f64);

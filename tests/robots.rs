@@ -14,7 +14,7 @@ const FORWARD: f64 = 1e-9;
 /// Tolerance of frame placements, Jacobians and velocities against the reference values.
 const KINEMATICS: f64 = 1e-12;
 
-fn table(robot: &str) -> Record {
+fn reference_table(robot: &str) -> Record {
     Record::load(&format!("robots/{robot}.json"))
 }
 
@@ -23,10 +23,15 @@ fn check_dynamics<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    for (i, case) in table(name).records("cases").iter().enumerate() {
+    for (i, case) in reference_table(name).records_with_key("cases").iter().enumerate() {
         let label_of_case = |what: &str| format!("{name}, case {i}: {what}");
-        let (q, v, a, tau) = (&case.vector("q"), &case.vector("v"), &case.vector("a"), &case.vector("tau"));
-        let mass_matrix = case.symmetric::<NV>("M");
+        let (q, v, a, tau) = (
+            &case.vector_with_key("q"),
+            &case.vector_with_key("v"),
+            &case.vector_with_key("a"),
+            &case.vector_with_key("tau"),
+        );
+        let mass_matrix = case.symmetric_matrix_with_key::<NV>("M");
 
         assert_close(
             label_of_case("mass matrix"),
@@ -35,13 +40,23 @@ where
             DYNAMICS,
         );
         let bias = robot.bias_forces(0.0, q, v);
-        assert_close(label_of_case("bias forces"), bias.as_slice(), &case.numbers("nle"), DYNAMICS);
+        assert_close(label_of_case("bias forces"), bias.as_slice(), &case.numbers_with_key("nle"), DYNAMICS);
         let inverse = robot.inverse_dynamics(0.0, q, v, a);
-        assert_close(label_of_case("inverse dynamics"), inverse.as_slice(), &case.numbers("rnea"), DYNAMICS);
+        assert_close(
+            label_of_case("inverse dynamics"),
+            inverse.as_slice(),
+            &case.numbers_with_key("rnea"),
+            DYNAMICS,
+        );
         let forward = robot.forward_dynamics(0.0, q, v, tau);
-        assert_close(label_of_case("forward dynamics"), forward.as_slice(), &case.numbers("aba"), FORWARD);
+        assert_close(
+            label_of_case("forward dynamics"),
+            forward.as_slice(),
+            &case.numbers_with_key("aba"),
+            FORWARD,
+        );
         let energies = [robot.kinetic_energy(0.0, q, v), robot.potential_energy(0.0, q)];
-        let expected = [case.number("kinetic_energy"), case.number("potential_energy")];
+        let expected = [case.number_with_key("kinetic_energy"), case.number_with_key("potential_energy")];
         assert_close(label_of_case("energies"), &energies, &expected, DYNAMICS);
         let momentum = robot.generalized_momentum(0.0, q, v);
         assert_close(label_of_case("p = M v"), momentum.as_slice(), (mass_matrix * v).as_slice(), DYNAMICS);
@@ -54,7 +69,7 @@ fn check_inputs<M, const NQ: usize, const NV: usize, const NU: usize>(robot: &M,
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let joints = table(name).strings("velocities");
+    let joints = reference_table(name).strings_with_key("velocities");
     let joints = &joints[joints.len() - NU..];
     assert_eq!(M::INPUTS[..], *joints);
     assert_eq!(M::VELOCITIES[NV - NU..], *joints);
@@ -71,8 +86,8 @@ where
 /// Checks the placements of all links, in any order.
 macro_rules! check_frames {
     ($robot:ident, $name:literal) => {
-        for (i, case) in table($name).records("cases").iter().enumerate() {
-            let placements = $robot.frame_placements(&case.vector("q"));
+        for (i, case) in reference_table($name).records_with_key("cases").iter().enumerate() {
+            let placements = $robot.frame_placements(&case.vector_with_key("q"));
             for (link, expected) in case.named_lists("frames") {
                 let index = $robot::FRAMES.iter().position(|frame| *frame == link);
                 let placement = placements[index.unwrap_or_else(|| panic!("no frame `{link}`"))];
@@ -87,32 +102,43 @@ macro_rules! check_frames {
 /// Checks the motion of the last link, and of the robot as a whole.
 macro_rules! check_kinematics {
     ($robot:ident, $name:literal, $last:literal) => {
-        assert_eq!(table($name).string("last_link"), $last);
+        assert_eq!(reference_table($name).string_with_key("last_link"), $last);
         let last = frame!($robot, $last);
-        for (i, case) in table($name).records("cases").iter().enumerate() {
+        for (i, case) in reference_table($name).records_with_key("cases").iter().enumerate() {
             let label_of_case = |what: &str| format!("{}, case {i}: {what}", $name);
-            let (q, v, a) = (&case.vector("q"), &case.vector("v"), &case.vector("a"));
+            let (q, v, a) =
+                (&case.vector_with_key("q"), &case.vector_with_key("v"), &case.vector_with_key("a"));
 
             let velocity = $robot.frame_velocity(last, q, v);
-            assert_close(label_of_case("velocity"), velocity.as_slice(), &case.numbers("v_last"), KINEMATICS);
+            assert_close(
+                label_of_case("velocity"),
+                velocity.as_slice(),
+                &case.numbers_with_key("v_last"),
+                KINEMATICS,
+            );
             let acceleration = $robot.frame_acceleration(last, q, v, a);
             assert_close(
                 label_of_case("acceleration"),
                 acceleration.as_slice(),
-                &case.numbers("a_last_classical"),
+                &case.numbers_with_key("a_last_classical"),
                 KINEMATICS,
             );
             let jacobian = $robot.frame_jacobian(last, q);
-            let expected = case.matrix::<6, { $robot::NV }>("J_last");
+            let expected = case.matrix_with_key::<6, { $robot::NV }>("J_last");
             assert_close(label_of_case("Jacobian"), jacobian.as_slice(), expected.as_slice(), KINEMATICS);
 
             let center = $robot.center_of_mass(q);
-            assert_close(label_of_case("centre of mass"), center.as_slice(), &case.numbers("com"), DYNAMICS);
+            assert_close(
+                label_of_case("centre of mass"),
+                center.as_slice(),
+                &case.numbers_with_key("com"),
+                DYNAMICS,
+            );
             let momentum = $robot.momentum(q, v);
             assert_close(
                 label_of_case("momentum"),
                 momentum.as_slice(),
-                &case.numbers("centroidal_momentum"),
+                &case.numbers_with_key("centroidal_momentum"),
                 DYNAMICS,
             );
         }
@@ -165,10 +191,11 @@ mod panda_mimic {
     #[test]
     fn dynamics() {
         let robot = PandaMimic;
-        for (i, case) in table("panda_mimic").records("cases").iter().enumerate() {
+        for (i, case) in reference_table("panda_mimic").records_with_key("cases").iter().enumerate() {
             let label_of_case = |what: &str| format!("panda with mimic, case {i}: {what}");
-            let (q, v, a) = (&case.vector("q"), &case.vector("v"), &case.vector("a"));
-            let mass_matrix = case.symmetric::<{ PandaMimic::NV }>("M");
+            let (q, v, a) =
+                (&case.vector_with_key("q"), &case.vector_with_key("v"), &case.vector_with_key("a"));
+            let mass_matrix = case.symmetric_matrix_with_key::<{ PandaMimic::NV }>("M");
             assert_close(
                 label_of_case("mass matrix"),
                 robot.mass_matrix(q).as_slice(),
@@ -178,17 +205,17 @@ mod panda_mimic {
             assert_close(
                 label_of_case("bias forces"),
                 robot.bias_forces(q, v).as_slice(),
-                &case.numbers("nle"),
+                &case.numbers_with_key("nle"),
                 DYNAMICS,
             );
             let forces = robot.inverse_dynamics(q, v, a);
             assert_close(
                 label_of_case("inverse dynamics"),
                 forces.as_slice(),
-                &case.numbers("rnea"),
+                &case.numbers_with_key("rnea"),
                 DYNAMICS,
             );
-            let acceleration = robot.forward_dynamics(q, v, &case.vector("rnea"));
+            let acceleration = robot.forward_dynamics(q, v, &case.vector_with_key("rnea"));
             assert_close(label_of_case("forward dynamics"), acceleration.as_slice(), a.as_slice(), FORWARD);
         }
     }
@@ -207,8 +234,8 @@ mod panda_mimic {
     /// first.
     #[test]
     fn following_is_moving_alike() {
-        for case in table("panda_mimic").records("cases") {
-            let (q, v) = (case.vector::<8>("q"), case.vector::<8>("v"));
+        for case in reference_table("panda_mimic").records_with_key("cases") {
+            let (q, v) = (case.vector_with_key::<8>("q"), case.vector_with_key::<8>("v"));
             let (q_free, v_free) = (q.insert_row(8, q[7]), v.insert_row(8, v[7]));
             let energies = [PandaMimic.kinetic_energy(&q, &v), PandaMimic.potential_energy(&q)];
             let expected = [Panda.kinetic_energy(&q_free, &v_free), Panda.potential_energy(&q_free)];
@@ -227,8 +254,9 @@ mod panda_mimic {
 /// Locked joints stay at zero: rows and columns of the other joints remain.
 #[test]
 fn locked_joints_stay_at_zero() {
-    for case in table("panda").records("cases") {
-        let [q, v, a] = ["q", "v", "a"].map(|key| case.vector::<9>(key).fixed_rows::<7>(0).into_owned());
+    for case in reference_table("panda").records_with_key("cases") {
+        let [q, v, a] =
+            ["q", "v", "a"].map(|key| case.vector_with_key::<9>(key).fixed_rows::<7>(0).into_owned());
         let with_fingers = |x: SVector<f64, 7>| x.insert_rows(7, 2, 0.0);
         let [q_free, v_free, a_free] = [q, v, a].map(|x| SVector::from_fn(|i, _| with_fingers(x)[i]));
 

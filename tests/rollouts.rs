@@ -44,7 +44,8 @@ impl States {
         let mut random = Random::new(41);
         let mut states = States { q: vec![0.0; NQ * count], v: vec![0.0; NV * count] };
         for k in 0..count {
-            let (dv, v): (SVector<f64, NV>, SVector<f64, NV>) = (random.vector(1.0), random.vector(0.5));
+            let (dv, v): (SVector<f64, NV>, SVector<f64, NV>) =
+                (random.random_vector(1.0), random.random_vector(0.5));
             let q = m.integrate(&m.neutral(), &dv);
             (0..NQ).for_each(|i| states.q[i * count + k] = q[i]);
             (0..NV).for_each(|i| states.v[i * count + k] = v[i]);
@@ -54,16 +55,16 @@ impl States {
 }
 
 /// Returns state `k` from a structure of arrays with `count` states.
-fn column<const N: usize>(numbers: &[f64], count: usize, k: usize) -> SVector<f64, N> {
+fn state_column<const N: usize>(numbers: &[f64], count: usize, k: usize) -> SVector<f64, N> {
     SVector::from_fn(|i, _| numbers[i * count + k])
 }
 
-fn bits(numbers: &[f64]) -> Vec<u64> {
+fn bits_of_numbers(numbers: &[f64]) -> Vec<u64> {
     numbers.iter().map(|x| x.to_bits()).collect()
 }
 
 /// Returns the inputs of a proportional-derivative law whose set point depends on the index of the state.
-fn law<const L: usize, const N: usize>(
+fn proportional_derivative_law<const L: usize, const N: usize>(
     first: usize,
     t: Lanes<f64, L>,
     q: &SVector<Lanes<f64, L>, N>,
@@ -74,13 +75,14 @@ fn law<const L: usize, const N: usize>(
 }
 
 fn one_law<const N: usize>(k: usize, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
-    law::<1, N>(k, Lanes([t]), &q.map(|x| Lanes([x])), &v.map(|x| Lanes([x]))).map(|x| x.0[0])
+    proportional_derivative_law::<1, N>(k, Lanes([t]), &q.map(|x| Lanes([x])), &v.map(|x| Lanes([x])))
+        .map(|x| x.0[0])
 }
 
 /// Integrates the states one after another with the integrators for single states, as a reference.
 fn one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut States, count: usize) {
     for k in 0..count {
-        let (q, v) = (column::<6>(&states.q, count, k), column::<6>(&states.v, count, k));
+        let (q, v) = (state_column::<6>(&states.q, count, k), state_column::<6>(&states.v, count, k));
         let mut state = State { t: 0.5, q, v };
         let mut memory = method.memory();
         let inputs = ContinuousInputs(move |t, q: &SVector<f64, 6>, v: &SVector<f64, 6>| one_law(k, t, q, v));
@@ -97,32 +99,38 @@ fn one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut States, co
 
 #[test]
 fn a_rollout_is_that_of_the_integrator_state_by_state() {
-    fn check<S: Lockstep<f64> + Copy>(method: S) {
+    fn check_method<S: Lockstep<f64> + Copy>(method: S) {
         for count in [1, 5, 8, 19] {
             let mut expected = States::new(&Ur5, count);
             one_by_one(method, 50, &mut expected, count);
             let rollout = Rollout::new(method, 50).from_time(0.5);
             let compare_bits = |found: &States, what: &str| {
-                assert_eq!(bits(&found.q), bits(&expected.q), "{what}, {count} states");
-                assert_eq!(bits(&found.v), bits(&expected.v), "{what}, {count} states");
+                assert_eq!(bits_of_numbers(&found.q), bits_of_numbers(&expected.q), "{what}, {count} states");
+                assert_eq!(bits_of_numbers(&found.v), bits_of_numbers(&expected.v), "{what}, {count} states");
             };
             let mut four = States::new(&Ur5, count);
-            Ur5.lanes::<4>().roll_out(&rollout, &mut four.q, &mut four.v, law, unwatched).expect("finite");
+            Ur5.lanes::<4>()
+                .roll_out(&rollout, &mut four.q, &mut four.v, proportional_derivative_law, unwatched)
+                .expect("finite");
             compare_bits(&four, "four lanes");
             let mut eight = States::new(&Ur5, count);
-            Ur5.lanes::<8>().roll_out(&rollout, &mut eight.q, &mut eight.v, law, unwatched).expect("finite");
+            Ur5.lanes::<8>()
+                .roll_out(&rollout, &mut eight.q, &mut eight.v, proportional_derivative_law, unwatched)
+                .expect("finite");
             compare_bits(&eight, "eight lanes");
         }
     }
-    check(Rk4::step(2e-3));
-    check(SemiImplicitEuler::step(1e-3));
+    check_method(Rk4::step(2e-3));
+    check_method(SemiImplicitEuler::step(1e-3));
 }
 
 #[test]
 fn threads_change_nothing() {
     let (count, rollout) = (203, Rollout::new(Rk4::step(2e-3), 20));
     let mut expected = States::new(&Ur5, count);
-    Ur5.lanes::<8>().roll_out(&rollout, &mut expected.q, &mut expected.v, law, unwatched).expect("finite");
+    Ur5.lanes::<8>()
+        .roll_out(&rollout, &mut expected.q, &mut expected.v, proportional_derivative_law, unwatched)
+        .expect("finite");
     for threads in 1..5 {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         let mut states = States::new(&Ur5, count);
@@ -134,11 +142,17 @@ fn threads_change_nothing() {
         };
         let lanes = Ur5.lanes::<4>();
         pool.install(|| {
-            lanes.roll_out_in_parallel(&rollout, &mut states.q, &mut states.v, law, record_progress)
+            lanes.roll_out_in_parallel(
+                &rollout,
+                &mut states.q,
+                &mut states.v,
+                proportional_derivative_law,
+                record_progress,
+            )
         })
         .expect("finite");
-        assert_eq!(bits(&states.q), bits(&expected.q), "{threads} threads");
-        assert_eq!(bits(&states.v), bits(&expected.v), "{threads} threads");
+        assert_eq!(bits_of_numbers(&states.q), bits_of_numbers(&expected.q), "{threads} threads");
+        assert_eq!(bits_of_numbers(&states.v), bits_of_numbers(&expected.v), "{threads} threads");
         assert_eq!(seen.into_inner(), count);
     }
 }
@@ -165,7 +179,7 @@ fn a_free_rollout_keeps_its_energy() {
         );
     }
     for k in 0..count {
-        let quaternion: SVector<f64, 4> = column::<19>(&states.q, count, k).fixed_rows::<4>(3).into();
+        let quaternion: SVector<f64, 4> = state_column::<19>(&states.q, count, k).fixed_rows::<4>(3).into();
         assert!((quaternion.norm() - 1.0).abs() < 1e-15);
     }
 }
@@ -174,7 +188,7 @@ fn a_free_rollout_keeps_its_energy() {
 fn arrays_of_states_are_evaluated_state_by_state() {
     for count in [1, 3, 8, 21] {
         let states = States::new(&Solo12, count);
-        let a: Vec<f64> = Random::new(43).vector::<{ 18 * 21 }>(3.0).as_slice()[..18 * count].to_vec();
+        let a: Vec<f64> = Random::new(43).random_vector::<{ 18 * 21 }>(3.0).as_slice()[..18 * count].to_vec();
         let (mut tau, mut back, mut mass) = (a.clone(), a.clone(), vec![0.0; 18 * 18 * count]);
         let lanes = Solo12.lanes::<8>();
         lanes.inverse_dynamics_all(0.0, &states.q, &states.v, &a, &mut tau).expect("lengths");
@@ -185,14 +199,17 @@ fn arrays_of_states_are_evaluated_state_by_state() {
         let single_lane = |x: SVector<f64, 18>| x.map(|x| Lanes([x]));
         for k in 0..count {
             let (q, v) = (
-                &column::<19>(&states.q, count, k).map(|q| Lanes([q])),
-                &single_lane(column(&states.v, count, k)),
+                &state_column::<19>(&states.q, count, k).map(|q| Lanes([q])),
+                &single_lane(state_column(&states.v, count, k)),
             );
-            let expected = Solo12.inverse_dynamics_lanes(q, v, &single_lane(column(&a, count, k)));
-            assert_eq!(single_lane(column(&tau, count, k)), expected);
-            assert_eq!(single_lane(column(&back, count, k)), Solo12.forward_dynamics_lanes(q, v, &expected));
+            let expected = Solo12.inverse_dynamics_lanes(q, v, &single_lane(state_column(&a, count, k)));
+            assert_eq!(single_lane(state_column(&tau, count, k)), expected);
+            assert_eq!(
+                single_lane(state_column(&back, count, k)),
+                Solo12.forward_dynamics_lanes(q, v, &expected)
+            );
             let m = Solo12.mass_matrix_lanes::<1>(q).map(|m| m[0]);
-            assert_eq!(column::<324>(&mass, count, k).as_slice(), m.as_slice());
+            assert_eq!(state_column::<324>(&mass, count, k).as_slice(), m.as_slice());
         }
     }
 }
@@ -215,9 +232,12 @@ fn a_state_that_fails_leaves_the_others_alone() {
     let source = integrate::Error::NotFinite { t: 0.0 };
     assert_eq!(error, Err(Error::Motion { state: 2, count: 2, source }));
     for k in 0..count {
-        let expected =
-            if k == 2 || k == 9 { SVector::from([0.0, start[count + k]]) } else { column(&good, count, k) };
-        assert_eq!(column::<2>(&q, count, k), expected, "state {k}");
+        let expected = if k == 2 || k == 9 {
+            SVector::from([0.0, start[count + k]])
+        } else {
+            state_column(&good, count, k)
+        };
+        assert_eq!(state_column::<2>(&q, count, k), expected, "state {k}");
     }
     let mut all_lost = vec![0.0; 2 * count];
     let error = lanes.roll_out(&rollout, &mut all_lost, &mut vec![0.0; 2 * count], zero_inputs, unwatched);
@@ -239,9 +259,17 @@ fn what_does_not_fit_is_an_error() {
 
     let (mut q, mut v) = (q.clone(), q.clone());
     let rollout = Rollout::new(Rk4::step(-1.0), 3);
-    let error = lanes.roll_out(&rollout, &mut q, &mut v, law, unwatched).expect_err("a negative step");
+    let error = lanes
+        .roll_out(&rollout, &mut q, &mut v, proportional_derivative_law, unwatched)
+        .expect_err("a negative step");
     assert_eq!(error.to_string(), "the step must be finite and positive, found -1");
-    let error = lanes.roll_out(&Rollout::new(Rk4::step(1e-3), 3), &mut q, &mut v[1..], law, unwatched);
+    let error = lanes.roll_out(
+        &Rollout::new(Rk4::step(1e-3), 3),
+        &mut q,
+        &mut v[1..],
+        proportional_derivative_law,
+        unwatched,
+    );
     assert_eq!(error.expect_err("too short").to_string(), "`v` must hold 30 numbers, found 29");
 }
 
@@ -250,21 +278,37 @@ fn a_rollout_can_be_cancelled() {
     let (count, rollout) = (40, Rollout::new(Rk4::step(2e-3), 5));
     let (start, mut all) = (States::new(&Ur5, count), States::new(&Ur5, count));
     let lanes = Ur5.lanes::<8>();
-    lanes.roll_out(&rollout, &mut all.q, &mut all.v, law, unwatched).expect("finite");
+    lanes.roll_out(&rollout, &mut all.q, &mut all.v, proportional_derivative_law, unwatched).expect("finite");
     let cancel_after_sixteen =
         |p: Progress| if p.done < 16 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
     let mut states = States::new(&Ur5, count);
-    let error = lanes.roll_out(&rollout, &mut states.q, &mut states.v, law, cancel_after_sixteen);
+    let error = lanes.roll_out(
+        &rollout,
+        &mut states.q,
+        &mut states.v,
+        proportional_derivative_law,
+        cancel_after_sixteen,
+    );
     assert_eq!(error, Err(Error::Cancelled { done: 16 }));
     for k in 0..count {
         let expected = if k < 16 { &all.q } else { &start.q };
-        assert_eq!(column::<6>(&states.q, count, k), column::<6>(expected, count, k), "state {k}");
+        assert_eq!(
+            state_column::<6>(&states.q, count, k),
+            state_column::<6>(expected, count, k),
+            "state {k}"
+        );
     }
     let mut states = States::new(&Ur5, count);
-    let error = lanes.roll_out_in_parallel(&rollout, &mut states.q, &mut states.v, law, cancel_after_sixteen);
+    let error = lanes.roll_out_in_parallel(
+        &rollout,
+        &mut states.q,
+        &mut states.v,
+        proportional_derivative_law,
+        cancel_after_sixteen,
+    );
     let Err(Error::Cancelled { done }) = error else { panic!("{error:?}") };
     let has_same_configuration =
-        |k: usize, of: &States| column::<6>(&states.q, count, k) == column::<6>(&of.q, count, k);
+        |k: usize, of: &States| state_column::<6>(&states.q, count, k) == state_column::<6>(&of.q, count, k);
     assert_eq!((0..count).filter(|k| has_same_configuration(*k, &all)).count(), done);
     assert!((0..count).all(|k| has_same_configuration(k, &all) || has_same_configuration(k, &start)));
 }

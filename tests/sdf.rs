@@ -45,7 +45,7 @@ fn the_same_tree_of_nested_frames() {
     assert_same_dynamics(&Sdf, &Urdf, 20, TOLERANCE);
     let mut random = Random::new(2);
     for _ in 0..20 {
-        let q = random.configuration(&Sdf);
+        let q = random.random_configuration(&Sdf);
         let (all, twins) = (Sdf.frame_placements(&q), Urdf.frame_placements(&q));
         for link in
             ["base", "upper", "plate", "carriage", "wheel", "hand::palm", "hand::tip::pad", "deck", "socket"]

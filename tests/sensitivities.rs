@@ -74,7 +74,7 @@ struct Hoop {
 }
 
 /// Returns the derivatives of `f` with respect to each parameter, by differences of fourth order.
-fn slopes<M: Copy, const NV: usize, const NP: usize>(
+fn parameter_derivatives<M: Copy, const NV: usize, const NP: usize>(
     at: M,
     parameters: [fn(&mut M) -> &mut f64; NP],
     f: impl Fn(&M) -> SVector<f64, NV>,
@@ -120,13 +120,13 @@ fn arm() {
     ];
     let mut random = Random::new(31);
     for _ in 0..5 {
-        let q = random.configuration(&arm);
-        let [v, a, tau] = [random.vector(2.0), random.vector(2.0), random.vector(5.0)];
+        let q = random.random_configuration(&arm);
+        let [v, a, tau] = [random.random_vector(2.0), random.random_vector(2.0), random.random_vector(5.0)];
         let inverse = arm.inverse_dynamics_by_parameters(&q, &v, &a);
-        let expected = slopes(arm, parameters, |arm| arm.inverse_dynamics(&q, &v, &a));
+        let expected = parameter_derivatives(arm, parameters, |arm| arm.inverse_dynamics(&q, &v, &a));
         assert_similar("∂τ/∂p", inverse.as_slice(), expected.as_slice(), TOLERANCE);
         let forward = arm.forward_dynamics_by_parameters(&q, &v, &tau);
-        let expected = slopes(arm, parameters, |arm| arm.forward_dynamics(&q, &v, &tau));
+        let expected = parameter_derivatives(arm, parameters, |arm| arm.forward_dynamics(&q, &v, &tau));
         assert_similar("∂v̇/∂p", forward.as_slice(), expected.as_slice(), TOLERANCE);
         let prepared = arm.prepare();
         let again = prepared.inverse_dynamics_by_parameters(&q, &v, &a);
@@ -142,13 +142,13 @@ fn robot_with_a_load() {
     let parameters: [fn(&mut Quadruped) -> &mut f64; 3] =
         [|robot| &mut robot.load, |robot| &mut robot.height, |robot| &mut robot.stiffness];
     let mut random = Random::new(32);
-    let q = random.configuration(&robot);
-    let [v, a, tau] = [random.vector(2.0), random.vector(2.0), random.vector(5.0)];
+    let q = random.random_configuration(&robot);
+    let [v, a, tau] = [random.random_vector(2.0), random.random_vector(2.0), random.random_vector(5.0)];
     let inverse = robot.inverse_dynamics_by_parameters(&q, &v, &a);
-    let expected = slopes(robot, parameters, |robot| robot.inverse_dynamics(&q, &v, &a));
+    let expected = parameter_derivatives(robot, parameters, |robot| robot.inverse_dynamics(&q, &v, &a));
     assert_similar("∂τ/∂p", inverse.as_slice(), expected.as_slice(), TOLERANCE);
     let forward = robot.forward_dynamics_by_parameters(&q, &v, &tau);
-    let expected = slopes(robot, parameters, |robot| robot.forward_dynamics(&q, &v, &tau));
+    let expected = parameter_derivatives(robot, parameters, |robot| robot.forward_dynamics(&q, &v, &tau));
     assert_similar("∂v̇/∂p", forward.as_slice(), expected.as_slice(), TOLERANCE);
 }
 
@@ -237,14 +237,15 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize, const NP:
 {
     let mut random = Random::new(37);
     for _ in 0..3 {
-        let q = m.integrate(&m.neutral(), &random.vector(1.0));
-        let (v, u, t) = (random.vector(1.5), random.vector(4.0), random.uniform(1.0));
+        let q = m.integrate(&m.neutral(), &random.random_vector(1.0));
+        let (v, u, t) = (random.random_vector(1.5), random.random_vector(4.0), random.uniform_number(1.0));
         let step_mechanism = |m: &M| discrete::step(m, method, t, &q, &v, &u).expect("it moves");
         let end = step_mechanism(&m);
         let (by_q, by_v) = discrete::by_parameters(&m, method, t, &q, &v, &u).expect("it moves");
-        let expected = slopes(m, parameters, |other| m.difference(&end.0, &step_mechanism(other).0));
+        let expected =
+            parameter_derivatives(m, parameters, |other| m.difference(&end.0, &step_mechanism(other).0));
         assert_similar(&format!("{what}: ∂q/∂p"), by_q.as_slice(), expected.as_slice(), TOLERANCE);
-        let expected = slopes(m, parameters, |other| step_mechanism(other).1);
+        let expected = parameter_derivatives(m, parameters, |other| step_mechanism(other).1);
         assert_similar(&format!("{what}: ∂v/∂p"), by_v.as_slice(), expected.as_slice(), TOLERANCE);
     }
 }

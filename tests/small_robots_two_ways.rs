@@ -123,8 +123,8 @@ macro_rules! assert_same_kinematics {
         let assert_same_values = |what: &str, a: &[f64], b: &[f64]| assert_close(what, a, b, TOLERANCE);
         let mut random = Random::new(2);
         for _ in 0..10 {
-            let q = random.configuration(&written);
-            let (v, a, u) = (random.vector(2.0), random.vector(2.0), random.vector(2.0));
+            let q = random.random_configuration(&written);
+            let (v, a, u) = (random.random_vector(2.0), random.random_vector(2.0), random.random_vector(2.0));
             let forces = written.generalized_forces(&q, &u);
             assert_same_values("inputs", forces.as_slice(), read.generalized_forces(&q, &u).as_slice());
             assert_same_values("total mass", &[written.total_mass()], &[read.total_mass()]);

@@ -70,7 +70,7 @@ static POWER: [f64; 4] = [-1.5, 0.0, 0.4, 1.6];
 static HEIGHT: [f64; 3] = [-10.0, 800.0, 9000.0];
 static SPEED: [f64; 3] = [0.0, 40.0, 300.0];
 
-fn tables() -> (Table<2>, Table<1>, Table<3>) {
+fn aircraft_tables() -> (Table<2>, Table<1>, Table<3>) {
     let (mut lift, mut drag, mut thrust) = (Vec::new(), Vec::new(), Vec::new());
     for a in ANGLES {
         lift.extend(ELEVATOR.map(|d| (0.2 + 5.0 * a - 3.0 * a * a) * (1.0 + 0.3 * d + d * d)));
@@ -88,8 +88,8 @@ fn tables() -> (Table<2>, Table<1>, Table<3>) {
     (lift, drag, Table::new([&POWER, &HEIGHT, &SPEED], thrust.leak()).unwrap())
 }
 
-fn tabulated<T: Real>(mass: T, area: T) -> Tabulated<T> {
-    let (lift, drag, thrust) = tables();
+fn tabulated_aircraft<T: Real>(mass: T, area: T) -> Tabulated<T> {
+    let (lift, drag, thrust) = aircraft_tables();
     Tabulated { mass, area, lift: lift.smooth(), drag: drag.smooth(), thrust: thrust.smooth() }
 }
 
@@ -99,25 +99,25 @@ struct State {
     u: SVector<f64, 2>,
 }
 
-fn states() -> Vec<State> {
+fn random_states() -> Vec<State> {
     let mut random = Random::new(5);
     let random_state = |k: usize| {
-        let turn: SVector<f64, 4> = random.vector::<4>(1.0).normalize();
-        let r: SVector<f64, 3> = random.vector(100.0);
-        let mut v: SVector<f64, 6> = random.vector(1.0);
+        let turn: SVector<f64, 4> = random.random_vector::<4>(1.0).normalize();
+        let r: SVector<f64, 3> = random.random_vector(100.0);
+        let mut v: SVector<f64, 6> = random.random_vector(1.0);
         v[0] += 60.0;
         v[2] += 4.0 * k as f64;
         let q = SVector::from_column_slice(&[r[0], r[1], -1000.0 - r[2], turn[0], turn[1], turn[2], turn[3]]);
-        State { q, v, u: random.vector(1.0) }
+        State { q, v, u: random.random_vector(1.0) }
     };
     (0..4).map(random_state).collect()
 }
 
 #[test]
 fn a_table_of_a_parabola_is_the_parabola_in_every_function() {
-    let (table, formula) = (tabulated(900.0, 16.0), Written { mass: 900.0, area: 16.0 });
+    let (table, formula) = (tabulated_aircraft(900.0, 16.0), Written { mass: 900.0, area: 16.0 });
     let prepared = table.prepare();
-    for State { q, v, u } in states() {
+    for State { q, v, u } in random_states() {
         let same =
             |what: &str, found: &[f64], expected: &[f64]| assert_similar(what, found, expected, FORMULA);
         let (tau, expected) = (table.generalized_forces(&q, &v, &u), formula.generalized_forces(&q, &v, &u));
@@ -135,17 +135,17 @@ fn a_table_of_a_parabola_is_the_parabola_in_every_function() {
 
 #[test]
 fn tables_agree_with_differences_of_high_order() {
-    let (lift, drag, thrust) = tables();
+    let (lift, drag, thrust) = aircraft_tables();
     for linear in [true, false] {
         let aircraft_with_tables = |smooth: bool| {
             if smooth {
-                tabulated(900.0, 16.0)
+                tabulated_aircraft(900.0, 16.0)
             } else {
                 Tabulated { mass: 900.0, area: 16.0, lift: lift.extrapolated(), drag, thrust }
             }
         };
         let aircraft = aircraft_with_tables(!linear);
-        for State { q, v, u } in states() {
+        for State { q, v, u } in random_states() {
             let (state, input) = aircraft.linearize(&q, &v, &u);
             let zero = SVector::<f64, 6>::zeros();
             let acceleration_at_change =
@@ -156,15 +156,15 @@ fn tables_agree_with_differences_of_high_order() {
             for k in 0..6 {
                 let unit = SVector::<f64, 6>::from_fn(|i, _| f64::from(u8::from(i == k)));
                 let none = SVector::<f64, 2>::zeros();
-                let by_q = slope(|s| acceleration_at_change(&(unit * s), &zero, &none));
-                let by_v = slope(|s| acceleration_at_change(&zero, &(unit * s), &none));
+                let by_q = derivative_at_zero(|s| acceleration_at_change(&(unit * s), &zero, &none));
+                let by_v = derivative_at_zero(|s| acceleration_at_change(&zero, &(unit * s), &none));
                 let acceleration_rows = |j: usize| state.fixed_view::<6, 1>(6, j).into_owned();
                 assert_similar("by q", acceleration_rows(k).as_slice(), by_q.as_slice(), DIFFERENCE);
                 assert_similar("by v", acceleration_rows(6 + k).as_slice(), by_v.as_slice(), DIFFERENCE);
             }
             for k in 0..2 {
                 let unit = SVector::<f64, 2>::from_fn(|i, _| f64::from(u8::from(i == k)));
-                let by_u = slope(|s| acceleration_at_change(&zero, &zero, &(unit * s)));
+                let by_u = derivative_at_zero(|s| acceleration_at_change(&zero, &zero, &(unit * s)));
                 let column = input.fixed_view::<6, 1>(6, k).into_owned();
                 assert_similar("by u", column.as_slice(), by_u.as_slice(), DIFFERENCE);
             }
@@ -173,7 +173,7 @@ fn tables_agree_with_differences_of_high_order() {
 }
 
 /// Returns the derivative of `f` at zero by central differences of eighth order.
-fn slope<const R: usize>(f: impl Fn(f64) -> SVector<f64, R>) -> SVector<f64, R> {
+fn derivative_at_zero<const R: usize>(f: impl Fn(f64) -> SVector<f64, R>) -> SVector<f64, R> {
     let h = 2e-3;
     let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
     let mut sum = SVector::zeros();
@@ -186,9 +186,9 @@ fn slope<const R: usize>(f: impl Fn(f64) -> SVector<f64, R>) -> SVector<f64, R> 
 
 #[test]
 fn several_states_at_once_look_up_each_for_itself() {
-    let aircraft = tabulated(900.0, 16.0);
-    let wide = tabulated(Lanes::<f64, 4>::splat(900.0), Lanes::splat(16.0));
-    let states = states();
+    let aircraft = tabulated_aircraft(900.0, 16.0);
+    let wide = tabulated_aircraft(Lanes::<f64, 4>::splat(900.0), Lanes::splat(16.0));
+    let states = random_states();
     let lanes_of_states = |f: &dyn Fn(&State) -> f64| Lanes::<f64, 4>::from_fn(|k| f(&states[k]));
     let q = SVector::<_, 7>::from_fn(|i, _| lanes_of_states(&|s| s.q[i]));
     let v = SVector::<_, 6>::from_fn(|i, _| lanes_of_states(&|s| s.v[i]));

@@ -9,14 +9,14 @@ mod random;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Units;
-use linkwork_compiler::{compile, expand, read};
+use linkwork_compiler::{compile, expand, read_source};
 use std::path::Path;
 
 /// Returns the units of a mechanism, or its error messages.
-pub fn units(arguments: &str, item: &str) -> Result<Units, Vec<String>> {
+pub fn units_of_mechanism(arguments: &str, item: &str) -> Result<Units, Vec<String>> {
     let mut cx = Diagnostics::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models");
-    let source = read(arguments.parse().unwrap(), item.parse().unwrap(), &folder, &mut cx);
+    let source = read_source(arguments.parse().unwrap(), item.parse().unwrap(), &folder, &mut cx);
     let graph = Graph::new();
     let model = source.and_then(|source| compile(&source, &graph, &mut cx).map(|(model, _)| model));
     model.map(|model| model.units).ok_or_else(|| cx.messages())
@@ -24,7 +24,7 @@ pub fn units(arguments: &str, item: &str) -> Result<Units, Vec<String>> {
 
 /// Returns the source of a mechanism with a body on a sleeve and one on a pin, and with the additional fields
 /// `more`.
-fn machine(more: &str) -> String {
+fn machine_source(more: &str) -> String {
     format!(
         "struct Machine {{ {more}
         #[body(mass = 1)] cart: Body,
@@ -35,13 +35,13 @@ fn machine(more: &str) -> String {
 }
 
 fn of_machine(more: &str) -> Result<Units, Vec<String>> {
-    units("", &machine(more))
+    units_of_mechanism("", &machine_source(more))
 }
 
 /// Checks the units of the parameters `a`, `b`, … of a machine. The length of `expected` is the number of
 /// parameters.
 #[track_caller]
-fn check(fields: &str, expected: &[&str]) {
+fn check_units(fields: &str, expected: &[&str]) {
     let names: String = ('a'..='f').take(expected.len()).map(|c| format!("{c}: f64, ")).collect();
     match of_machine(&format!("{names}{fields}")) {
         Ok(units) => assert_eq!(units.parameters, expected, "{fields}"),
@@ -50,7 +50,7 @@ fn check(fields: &str, expected: &[&str]) {
 }
 
 /// Returns the text of a line of a compiler message if the line is a note.
-fn note(line: &str) -> Option<&str> {
+fn note_of_line(line: &str) -> Option<&str> {
     line.strip_prefix("= note: ")
 }
 
@@ -62,7 +62,7 @@ fn is_note(text: &str) -> bool {
 
 /// Checks the errors of a machine with the parameters `a`, `b`, `c`, and the notes of these errors.
 #[track_caller]
-fn refuse(fields: &str, expected: &[&str]) {
+fn check_unit_errors(fields: &str, expected: &[&str]) {
     let has =
         |name: &&&str| fields.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == **name);
     let names: String = ["a", "b", "c"].iter().filter(has).map(|n| format!("{n}: f64, ")).collect();
@@ -71,7 +71,7 @@ fn refuse(fields: &str, expected: &[&str]) {
         Ok(units) => panic!("{fields} is accepted with {units:?}"),
         Err(messages) => {
             let first: Vec<&str> = messages.iter().map(|m| m.lines().next().unwrap_or_default()).collect();
-            let notes: Vec<&str> = messages.iter().flat_map(|m| m.lines()).filter_map(note).collect();
+            let notes: Vec<&str> = messages.iter().flat_map(|m| m.lines()).filter_map(note_of_line).collect();
             let (told, errors): (Vec<&str>, Vec<&str>) = expected.iter().partition(|text| is_note(text));
             assert_eq!(first, errors, "{fields}");
             assert_eq!(notes.len(), told.len(), "{fields}: {notes:?}");
@@ -84,57 +84,57 @@ fn refuse(fields: &str, expected: &[&str]) {
 
 #[test]
 fn every_place_gives_a_unit() {
-    check(
+    check_units(
         "#[body(mass = a, com = b * x, inertia = diagonal(c, c, c))] k: Body, #[joint(arm -> k)] j: Ball,",
         &["kg", "m", "kg·m²"],
     );
-    check(
+    check_units(
         "#[body(mass = 1, inertia = cuboid(a, b, b, 2 * b).rotated(z(c)))] k: Body, \
          #[joint(arm -> k)] j: Ball,",
         &["kg", "m", "rad"],
     );
-    check(
+    check_units(
         "#[body(mass = 1, inertia = sphere(1, 1))] k: Body, \
          #[joint(arm.at(a / 2 * x).rotated(z(b)) -> k, about = z, pitch = c)] j: Screw,",
         &["m", "rad", "m/rad"],
     );
-    check(
+    check_units(
         "#[acts(on = rail, stiffness = a, free_length = b)] s: Spring, \
          #[acts(on = hinge, stiffness = c, free_angle = d)] t: Spring,",
         &["N/m", "m", "N·m/rad", "rad"],
     );
-    check(
+    check_units(
         "#[acts(on = rail, damping = a)] s: Dashpot, #[acts(on = hinge, damping = b)] t: Dashpot,",
         &["N·s/m", "N·m·s/rad"],
     );
-    check(
+    check_units(
         "#[acts(on = rail, inertance = a)] s: Inerter, #[acts(on = hinge, inertance = b)] t: Inerter,",
         &["kg", "kg·m²"],
     );
-    check(
+    check_units(
         "#[acts(on = rail, coulomb = a, stiction = b, stribeck_speed = c, viscous = d, speed = e)] s: \
          Friction,",
         &["N", "N", "m/s", "N·s/m", "m/s"],
     );
-    check(
+    check_units(
         "#[particle(mass = 1)] p: Particle, #[joint(ground -> p, along = (x, y))] table: Stage, \
          #[acts(between = (ground, p), mu = a)] s: Gravity, \
          #[acts(between = (cart, p), constant = b)] t: Gravity, \
          #[acts(between = (arm, p), strength = c)] u: Attraction,",
         &["m³/s²", "m³/(kg·s²)", "N·m²"],
     );
-    check(
+    check_units(
         "#[acts(on = rail, force = a * stretch + b * pow(stretch, 3))] s: Spring, \
          #[acts(on = hinge, energy = c * stretch * stretch / 2)] t: Spring, \
          #[acts(on = rail, force = d * speed * abs(speed))] u: Dashpot,",
         &["N/m", "kg/(m²·s²)", "N·m", "kg/m"],
     );
-    check(
+    check_units(
         "#[acts(on = rail, value = a * cos(b * t))] s: Force, \
          #[acts(on = hinge, value = c * exp(-t / d))] t_: Torque,",
         &["N", "1/s", "N·m", "s"],
     );
-    check(
+    check_units(
         "#[energy(a / 2 * rail * rail)] s: Potential, \
          #[dissipation(b * rate(rail) * rate(rail))] t_: Rayleigh, #[energy(c)] u: Potential,",
         &["N/m", "N·s/m", "J"],
@@ -143,41 +143,41 @@ fn every_place_gives_a_unit() {
 
 #[test]
 fn expressions_carry_units() {
-    check(
+    check_units(
         "#[acts(on = cart, value = sqrt(a * b) * x)] s: Force, #[energy(a * rail + b * rail)] t_: Potential,",
         &["N", "N"],
     );
     // The square root of a product whose factors have their units from other uses.
-    check(
+    check_units(
         "#[acts(on = rail, damping = 2 * c * sqrt(a * b))] s: Dashpot, \
          #[acts(on = rail, stiffness = a)] k: Spring, #[body(mass = b)] w: Body, \
          #[joint(cart -> w)] j: Weld,",
         &["N/m", "kg", "1"],
     );
-    check(
+    check_units(
         "#[output(a * dot(v(arm / ground / ground), x))] s: Scalar, \
          #[acts(on = cart, value = a * v(cart / ground / ground))] t_: Force,",
         &["N·s/m"],
     );
-    check(
+    check_units(
         "#[acts(on = arm, value = a * omega(arm / ground) + b * alpha_ * rate(hinge) * z)] s: Torque, \
          #[define(atan2(a, b))] alpha_: Scalar,",
         &["N·m·s", "N·m·s"].map(|_| "kg·m²/s"),
     );
-    check(
+    check_units(
         "#[acts(on = rail, value = min(a, max(b, c * r2)))] s: Force, \
          #[define(dot(r(arm.at(x) / ground), r(arm.at(d * x) / ground)))] r2: Scalar,",
         &["N", "N", "kg/(m·s²)", "m"],
     );
-    check("#[acts(on = rail, value = a * pow(rail / b, c))] s: Force,", &["N", "m", "1"]);
-    check("#[acts(on = rail, value = a * pow(rail, b))] s: Force,", &["any", "1"]);
+    check_units("#[acts(on = rail, value = a * pow(rail / b, c))] s: Force,", &["N", "m", "1"]);
+    check_units("#[acts(on = rail, value = a * pow(rail, b))] s: Force,", &["any", "1"]);
     // A ratio of two parameters determines neither unit.
-    check("#[acts(on = hinge, value = 3 * sin(a / b))] s: Torque,", &["any", "any"]);
-    check(
+    check_units("#[acts(on = hinge, value = 3 * sin(a / b))] s: Torque,", &["any", "any"]);
+    check_units(
         "#[acts(on = cart, value = [a, 0, b] - c * unit(r(arm.at(x) / ground)))] s: Force,",
         &["N", "N", "N"],
     );
-    check(
+    check_units(
         "#[frame(ground, z(a), eigenaxis(x, b * t))] f: Frame, \
          #[acts(on = cart, value = c * f.x + d * cross(f.y, x))] s: Force,",
         &["rad", "1/s", "N", "N"],
@@ -229,7 +229,7 @@ fn coordinates_inputs_and_outputs_have_units_too() {
 
 #[test]
 fn robots_of_files_have_units() {
-    let units = units("urdf = \"urdf/solo12.urdf\", base = free", "struct Robot;").unwrap();
+    let units = units_of_mechanism("urdf = \"urdf/solo12.urdf\", base = free", "struct Robot;").unwrap();
     assert_eq!(units.configuration[..8], ["m", "m", "m", "1", "1", "1", "1", "rad"]);
     assert_eq!(units.velocities[..7], ["m/s", "m/s", "m/s", "rad/s", "rad/s", "rad/s", "rad/s"]);
     assert!(units.inputs.iter().all(|unit| unit == "N·m"));
@@ -237,28 +237,28 @@ fn robots_of_files_have_units() {
 
 #[test]
 fn a_parameter_is_one_thing() {
-    refuse(
+    check_unit_errors(
         "#[acts(on = rail, stiffness = a)] s: Spring, #[acts(on = hinge, stiffness = a)] t_: Spring,",
         &[
             "`a` is a torque or an energy (N·m) here, but a stiffness (N/m) elsewhere",
             "`a` is a stiffness (N/m) in",
         ],
     );
-    refuse(
+    check_unit_errors(
         "#[body(mass = a, com = a / 2 * y)] w: Body, #[joint(cart -> w)] j: Weld,",
         &["`a` is a length (m) here, but a mass (kg) elsewhere", "`a` is a mass (kg) in"],
     );
-    refuse(
+    check_unit_errors(
         "#[energy(a * rail)] e: Potential, #[body(mass = 2 * a)] w: Body, #[joint(cart -> w)] j: Weld,",
         &["`a` is a force (N) here, but a mass (kg) elsewhere", "`a` is a mass (kg) in"],
     );
     // Each conflict is reported once, independent of the number of wrong uses.
-    refuse(
+    check_unit_errors(
         "#[body(mass = a, com = a * y, inertia = rod(a, a, y))] w: Body, #[joint(cart -> w)] j: Weld,",
         &["`a` is a length (m) here, but a mass (kg) elsewhere", "`a` is a mass (kg) in"],
     );
     // The conflict follows through another parameter: a b is a mass, and so is b.
-    refuse(
+    check_unit_errors(
         "#[body(mass = a * b)] w: Body, #[body(mass = b, com = a * y)] w2: Body, \
          #[joint(cart -> w)] j: Weld, #[joint(cart -> w2)] j2: Weld,",
         &[
@@ -272,7 +272,7 @@ fn a_parameter_is_one_thing() {
 /// A mechanism that cannot move, with a parameter of two conflicting units: both errors are reported.
 #[test]
 fn units_are_told_with_what_holds_the_mechanism() {
-    refuse(
+    check_unit_errors(
         "#[joint(arm.at(a * x) -> ground.at(3 * x))] stop: Weld,
         #[acts(on = rail, stiffness = a)] coil: Spring,",
         &[
@@ -288,39 +288,39 @@ fn like_is_added_to_like() {
     let known = "#[body(mass = a, com = b * y)] w: Body, #[joint(cart -> w)] j: Weld,";
     let sites = ["`a` is a mass (kg) in", "`b` is a length (m) in"];
     let message_with_sites = |first: &'static str| [first, sites[0], sites[1]];
-    refuse(
+    check_unit_errors(
         &format!("{known} #[energy(3.5 * (a + b))] e: Potential,"),
         &message_with_sites("a length (m) cannot be added to a mass (kg)"),
     );
-    refuse(
+    check_unit_errors(
         &format!("{known} #[energy(3.5 * (a - b))] e: Potential,"),
         &message_with_sites("a length (m) cannot be subtracted from a mass (kg)"),
     );
-    refuse(
+    check_unit_errors(
         &format!("{known} #[energy(3.5 * max(a, b))] e: Potential,"),
         &message_with_sites("`max` cannot compare a mass (kg) with a length (m)"),
     );
-    refuse(
+    check_unit_errors(
         &format!("{known} #[energy(3.5 * norm([a, 0, b]))] e: Potential,"),
         &message_with_sites("this component is a length (m), but another is a mass (kg)"),
     );
-    refuse(
+    check_unit_errors(
         &format!("{known} #[energy(3.5 * atan2(a, b))] e: Potential,"),
         &message_with_sites("`atan2` cannot compare a mass (kg) with a length (m)"),
     );
-    refuse(
+    check_unit_errors(
         "#[energy(a * rail + a * hinge)] e: Potential,",
         &["a force (N) cannot be added to a torque or an energy (N·m)", "`a` is a force (N) in"],
     );
-    refuse(
+    check_unit_errors(
         "#[energy(3.5 * (a * rail + a * hinge))] e: Potential,",
         &["these terms cannot have one unit: they differ by 1/m"],
     );
-    refuse(
+    check_unit_errors(
         "#[energy(a * (rail + hinge))] e: Potential,",
         &["a plain number cannot be added to a length (m)"],
     );
-    refuse(
+    check_unit_errors(
         "#[energy(a * sin(b))] e: Potential, #[body(mass = b)] w: Body, #[joint(cart -> w)] j: Weld,",
         &["`b` is a plain number here, but a mass (kg) elsewhere", "`b` is a mass (kg) in"],
     );
@@ -338,17 +338,17 @@ fn what_moves_is_added_to_like() {
         ("kinetic_energy(arm) + rail", "a length (m) cannot be added to a torque or an energy (N·m)"),
         ("max(f, hinge)", "`max` cannot compare a force (N) with a plain number"),
     ] {
-        refuse(&format!("{input} #[output({sum})] o: Scalar,"), &[message]);
-        refuse(
+        check_unit_errors(&format!("{input} #[output({sum})] o: Scalar,"), &[message]);
+        check_unit_errors(
             &format!("{input} #[output(2 * inner)] o: Scalar, #[define({sum})] inner: Scalar,"),
             &[message],
         );
     }
-    refuse(
+    check_unit_errors(
         &format!("{input} #[output(f * x + rail * y)] o: Vector,"),
         &["a length (m) cannot be added to a force (N)"],
     );
-    refuse(
+    check_unit_errors(
         &format!("{input} #[acts(on = hinge, value = f)] o: Torque,"),
         &["expected a torque or an energy (N·m), found a force (N)"],
     );
@@ -359,11 +359,11 @@ fn what_moves_is_added_to_like() {
 #[test]
 fn the_number_of_gravity_is_an_acceleration() {
     let is_valid_hover_force = |gravity: &str, number: &str| {
-        let item = machine(&format!(
+        let item = machine_source(&format!(
             "m: f64, #[body(mass = m)] load: Body, #[joint(cart -> load)] fixed: Weld,
             #[acts(on = load, value = {number} * m * y)] lift: Force,"
         ));
-        units(gravity, &item).is_ok()
+        units_of_mechanism(gravity, &item).is_ok()
     };
     assert!(
         is_valid_hover_force("gravity = -9.81 * y", "9.81")
@@ -418,18 +418,21 @@ fn attributes_pin_units_down() {
     assert!(error_message_of_unit("2 * kg").contains("expected a unit"));
     assert!(error_message_of_unit("kg +").contains("missing operand after this operator"));
     assert!(error_message_of_unit("").contains("missing unit"));
-    refuse(
+    check_unit_errors(
         "#[unit(m)] a: f64, #[output(3.5 * a)] e: Scalar, #[body(mass = a)] w: Body, \
          #[joint(cart -> w)] j: Weld,",
         &["`a` is declared as a length (m), but used as a mass (kg)", "it is a mass (kg) in"],
     );
-    refuse("#[unit(m)] #[unit(m)] a: f64, #[output(3.5 * a)] e: Scalar,", &["a parameter has one `#[unit]`"]);
+    check_unit_errors(
+        "#[unit(m)] #[unit(m)] a: f64, #[output(3.5 * a)] e: Scalar,",
+        &["a parameter has one `#[unit]`"],
+    );
 }
 
 /// The struct keeps its fields without the attribute, and its documentation states all units.
 #[test]
 fn units_are_documented() {
-    let item = machine(
+    let item = machine_source(
         "/// A length.\n#[unit(m)] a: f64, b: f64, #[acts(on = rail, stiffness = b, free_length = a)] s: \
          Spring,
         #[output(r(arm / ground))] place: Vector,",
@@ -495,7 +498,7 @@ fn constraints_and_multipliers_have_units() {
         ("line.y", "velocities", "m/s", "N"),
         ("line.spin", "velocities", "rad/s", "N·m"),
     ];
-    let found = units("", item).unwrap().constraints;
+    let found = units_of_mechanism("", item).unwrap().constraints;
     assert_eq!(found, expected.map(|(.., unit, multiplier)| [unit, multiplier].map(str::to_string)));
     let text = expand("".parse().unwrap(), item.parse().unwrap(), Path::new("")).tokens.to_string();
     for (k, (name, what, unit, multiplier)) in expected.into_iter().enumerate() {
@@ -514,9 +517,9 @@ fn large_structs_are_read_in_time() {
     let energies: String =
         (0..n).map(|k| format!("#[energy(1.5 * {})] e{k}: Potential, ", product_of_parameters(k))).collect();
     let mut cx = Diagnostics::new();
-    let source = read(
+    let source = read_source(
         "".parse().unwrap(),
-        machine(&format!("{fields}{energies}")).parse().unwrap(),
+        machine_source(&format!("{fields}{energies}")).parse().unwrap(),
         Path::new(""),
         &mut cx,
     );

@@ -73,7 +73,7 @@ fn order_of_joints() {
 #[test]
 fn file_and_struct_say_the_same() {
     assert_same_dynamics(&Everything, &Written {}, 20, TOLERANCE);
-    let q = Random::new(18).configuration(&Everything);
+    let q = Random::new(18).random_configuration(&Everything);
     for (name, placement) in Everything::FRAMES.iter().zip(Everything.frame_placements(&q)) {
         let k = Written::FRAMES.iter().position(|frame| frame == name).expect("the same names");
         let expected = Written {}.frame_placements(&q)[k].to_homogeneous();
@@ -94,8 +94,8 @@ fn passive_forces_are_honoured() {
 
     let mut random = Random::new(19);
     for speed in [0.0, 0.01, 1.0] {
-        let q = random.configuration(&Passive);
-        let v = random.vector(speed);
+        let q = random.random_configuration(&Passive);
+        let v = random.random_vector(speed);
         let mut expected = Everything.bias_forces(&q, &v);
         expected[6] += 0.3 * v[6] + 0.1 * (v[6] / 0.02).tanh();
         expected[8] += 2.0 * v[8];
@@ -121,8 +121,8 @@ fn follower_with_factor_and_offset() {
     assert_eq!(Following::INPUTS, ["b_turn", "z_slide"]);
     let mut random = Random::new(20);
     for _ in 0..10 {
-        let q = random.configuration(&Following);
-        let (v, a) = (random.vector(1.0), random.vector(1.0));
+        let q = random.random_configuration(&Following);
+        let (v, a) = (random.random_vector(1.0), random.random_vector(1.0));
         // The coordinates are seven of the free joint, then b_turn.
         let q_free = q.insert_row(8, 0.2 - 0.5 * q[7]);
         let (v_free, a_free) = (relation * v, relation * a);
@@ -194,7 +194,7 @@ fn single_precision() {
     )]
     struct Single;
 
-    let q = Random::new(21).configuration(&Everything);
+    let q = Random::new(21).random_configuration(&Everything);
     let v = SVector::<f64, 12>::repeat(0.5);
     let forces = Single.inverse_dynamics(&q.cast::<f32>(), &v.cast::<f32>(), &v.cast::<f32>());
     let expected = Everything.inverse_dynamics(&q, &v, &v);
@@ -211,7 +211,7 @@ fn rounded_frames_are_those_that_were_meant() {
 
     let mut random = Random::new(23);
     for _ in 0..10 {
-        let (q, v, a) = (random.vector(3.0), random.vector(1.0), random.vector(1.0));
+        let (q, v, a) = (random.random_vector(3.0), random.random_vector(1.0), random.random_vector(1.0));
         let (written, meant) = (Written.inverse_dynamics(&q, &v, &a), Meant.inverse_dynamics(&q, &v, &a));
         let difference = (written - meant).norm() / written.norm();
         assert!(difference > 1e-9 && difference < 1e-4, "{difference}");
@@ -293,8 +293,8 @@ fn kinematics_are_those_of_the_whole_robot() {
     assert_eq!(Outside::FRAMES, Everything::FRAMES);
     let mut random = Random::new(24);
     for _ in 0..10 {
-        let q = random.configuration(&Everything);
-        let (v, a) = (random.vector(1.0), random.vector(1.0));
+        let q = random.random_configuration(&Everything);
+        let (v, a) = (random.random_vector(1.0), random.random_vector(1.0));
         for (one, other) in Outside.frame_placements(&q).iter().zip(Everything.frame_placements(&q)) {
             let expected = other.to_homogeneous();
             assert_close("placement", one.to_homogeneous().as_slice(), expected.as_slice(), TOLERANCE);

@@ -87,13 +87,13 @@ fn with_numbers(tokens: TokenStream, values: &[(&str, f64)]) -> TokenStream {
 }
 
 /// Returns the error messages of the compiler for the mechanism with these numbers.
-fn compiled((values, elements): (&[(&str, f64)], &str), change: (&str, f64)) -> Vec<String> {
+fn compiler_messages((values, elements): (&[(&str, f64)], &str), change: (&str, f64)) -> Vec<String> {
     let values: Vec<(&str, f64)> =
         values.iter().map(|(name, x)| (*name, if *name == change.0 { change.1 } else { *x })).collect();
     // No parameter of these mechanisms has the name of an attribute.
     let elements = with_numbers(elements.parse().unwrap(), &values);
     let item = quote::quote!(struct Machine { #elements });
-    linkwork_compiler::check("gravity = -9.81 * y".parse().unwrap(), item, Path::new(""))
+    linkwork_compiler::check_mechanism("gravity = -9.81 * y".parse().unwrap(), item, Path::new(""))
 }
 
 /// A parameter, a value without physical meaning, the fault, and a part of the message.
@@ -137,7 +137,7 @@ macro_rules! check {
     ($name:ident, $text:ident, $rows:ident) => {
         assert_eq!($name::<f64>::sound().validate(), Ok(()));
         assert_eq!($name::<f32>::sound().validate(), Ok(()));
-        assert_eq!(compiled($text, ("", 0.0)), Vec::<String>::new());
+        assert_eq!(compiler_messages($text, ("", 0.0)), Vec::<String>::new());
         for (parameter, value, fault, figure) in $rows {
             let mut wrong = $name::<f64>::sound();
             wrong.set(parameter, value);
@@ -145,7 +145,7 @@ macro_rules! check {
             assert_eq!(error.fault, fault, "{parameter} = {value}: {error}");
             assert!(error.parameters.contains(&parameter), "{error}");
             assert!(error.figure.contains(figure), "{error}");
-            let said = compiled($text, (parameter, value));
+            let said = compiler_messages($text, (parameter, value));
             assert_eq!(said.len(), 1, "{parameter} = {value}: {said:?}");
             // One of four lanes is wrong.
             let mut lanes = $name::<f64x4>::sound();

@@ -19,7 +19,7 @@ pub struct Routine {
 
 /// Returns all functions by their linker names.
 #[must_use]
-pub fn routines(text: &str) -> BTreeMap<String, Routine> {
+pub fn parse_routines(text: &str) -> BTreeMap<String, Routine> {
     let mut found = BTreeMap::new();
     let (mut names, mut routine) = (BTreeSet::new(), None);
     for line in text.lines() {
@@ -32,16 +32,16 @@ pub fn routines(text: &str) -> BTreeMap<String, Routine> {
         {
             found.insert(name.to_string(), reader.routine);
         } else if let Some((_, reader)) = &mut routine
-            && let Some(instruction) = instruction(line)
+            && let Some(instruction) = instruction_of_line(line)
         {
-            reader.read(instruction);
+            reader.read_instruction(instruction);
         }
     }
     found
 }
 
 /// Returns the instruction of a line, without its comment.
-fn instruction(line: &str) -> Option<&str> {
+fn instruction_of_line(line: &str) -> Option<&str> {
     let text = line.strip_prefix('\t')?.split('#').next()?.trim_end();
     let is_one = text.starts_with(|c: char| c.is_ascii_alphabetic()) && !text.starts_with("nop");
     is_one.then_some(text)
@@ -57,19 +57,19 @@ struct Reader {
 }
 
 impl Reader {
-    fn read(&mut self, instruction: &str) {
+    fn read_instruction(&mut self, instruction: &str) {
         self.routine.instructions += 1;
         let (name, operands) = instruction.split_once('\t').unwrap_or((instruction, ""));
         match name {
             "pushq" => self.routine.stack += 8,
             "subq" => self.take_stack(operands),
             "leaq" if operands.ends_with("(%rsp), %r11") && operands.starts_with('-') => {
-                self.routine.stack += number(&operands[1..]);
+                self.routine.stack += parse_integer(&operands[1..]);
                 self.probing = true;
             }
             "jne" => self.probing = false,
-            "movq" => self.copy(operands),
-            "callq" | "jmp" | "jmpq" => self.call(operands),
+            "movq" => self.record_address_copy(operands),
+            "callq" | "jmp" | "jmpq" => self.record_call(operands),
             _ => {}
         }
         if let Some((function, register)) = operands.split_once("@GOTPCREL(%rip), ") {
@@ -78,7 +78,7 @@ impl Reader {
     }
 
     /// Records that an instruction copies the address of a function from one register to another.
-    fn copy(&mut self, operands: &str) {
+    fn record_address_copy(&mut self, operands: &str) {
         if let Some((from, to)) = operands.split_once(", ")
             && let Some(function) = self.addresses.get(from)
         {
@@ -90,11 +90,11 @@ impl Reader {
         if let Some(bytes) = operands.strip_suffix(", %rsp").and_then(|bytes| bytes.strip_prefix('$'))
             && !self.probing
         {
-            self.routine.stack += number(bytes);
+            self.routine.stack += parse_integer(bytes);
         }
     }
 
-    fn call(&mut self, target: &str) {
+    fn record_call(&mut self, target: &str) {
         if let Some(address) = target.strip_prefix('*') {
             let direct = address.strip_suffix("@GOTPCREL(%rip)").map(str::to_string);
             match direct.or_else(|| self.addresses.get(address).cloned()) {
@@ -108,7 +108,7 @@ impl Reader {
     }
 }
 
-fn number(text: &str) -> usize {
+fn parse_integer(text: &str) -> usize {
     let end = text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len());
     text[..end].parse().unwrap_or(0)
 }
@@ -165,7 +165,7 @@ _ZN4work5inner17h0123456789abcdefE:
 
     #[test]
     fn calls_and_stack_are_found() {
-        let found = routines(TEXT);
+        let found = parse_routines(TEXT);
         assert_eq!(found.len(), 2);
         let outer = &found["_ZN4work5outer17h0123456789abcdefE"];
         let calls: Vec<String> = outer.calls.iter().map(|call| name_in_source(call)).collect();

@@ -16,36 +16,36 @@ const NUMBERS: [&str; 6] = ["m", "c", "a", "b", "e", "l"];
 const SIZES: [f64; 6] = [2.0, 0.2, 0.03, 0.04, 0.02, 0.4];
 
 /// Returns the values of link `k` as text.
-fn numbers(k: usize) -> [String; 6] {
+fn link_values_text(k: usize) -> [String; 6] {
     SIZES.map(|size| format!("{:.4}", size * (1.0 + 0.1 / k as f64)))
 }
 
 /// Returns the names of the parameters of link `k` of `n`. The last link carries no other, so that its length
 /// is not used.
-fn names(k: usize, n: usize) -> impl Iterator<Item = String> {
+fn link_parameter_names(k: usize, n: usize) -> impl Iterator<Item = String> {
     let count = if k < n { 6 } else { 5 };
     NUMBERS.into_iter().take(count).map(move |name| format!("{name}{k}"))
 }
 
 /// Returns the index of the axis of joint `k`: x, y or z.
-fn axis(k: usize) -> usize {
+fn axis_of_joint(k: usize) -> usize {
     [2, 1, 0][k % 3]
 }
 
 /// Returns a chain of `n` links on pins about changing axes, in the struct `name`. With `symbolic`, mass,
 /// length, centre of mass and inertia of each link are parameters; otherwise they are numbers.
-pub fn chain(name: &str, n: usize, symbolic: bool) -> Source {
+pub fn chain_source(name: &str, n: usize, symbolic: bool) -> Source {
     let mut item = format!("pub struct {name} {{\n");
     let mut parent = "ground".to_string();
     for k in 1..=n {
-        let values = if symbolic { NUMBERS.map(|name| format!("{name}{k}")) } else { numbers(k) };
+        let values = if symbolic { NUMBERS.map(|name| format!("{name}{k}")) } else { link_values_text(k) };
         let [m, c, a, b, e, l] = values;
         if symbolic {
-            for parameter in names(k, n) {
+            for parameter in link_parameter_names(k, n) {
                 let _ = writeln!(item, "pub {parameter}: f64,");
             }
         }
-        let axis = ["x", "y", "z"][axis(k)];
+        let axis = ["x", "y", "z"][axis_of_joint(k)];
         let _ = writeln!(
             item,
             "#[body(mass = {m}, com = {c} * z, inertia = diagonal({a}, {b}, {e}))] link{k}: Body,"
@@ -58,19 +58,19 @@ pub fn chain(name: &str, n: usize, symbolic: bool) -> Source {
 }
 
 /// Returns the expression of a struct with parameters that is the same robot as the chain with numbers.
-pub fn value(name: &str, n: usize) -> String {
-    let fields = (1..=n).flat_map(|k| names(k, n).zip(numbers(k)));
+pub fn chain_value_expression(name: &str, n: usize) -> String {
+    let fields = (1..=n).flat_map(|k| link_parameter_names(k, n).zip(link_values_text(k)));
     let fields: Vec<String> = fields.map(|(name, number)| format!("{name}: {number}")).collect();
     format!("{name} {{ {} }}", fields.join(", "))
 }
 
 /// Returns the same robot as a URDF file.
-pub fn urdf(n: usize) -> String {
+pub fn chain_as_urdf(n: usize) -> String {
     let mut text = "<robot name=\"chain\">\n  <link name=\"link0\"/>\n".to_string();
     let mut length = "0".to_string();
     for k in 1..=n {
-        let [m, c, a, b, e, l] = numbers(k);
-        let axis = ["1 0 0", "0 1 0", "0 0 1"][axis(k)];
+        let [m, c, a, b, e, l] = link_values_text(k);
+        let axis = ["1 0 0", "0 1 0", "0 0 1"][axis_of_joint(k)];
         let _ = write!(
             text,
             r#"  <link name="link{k}">

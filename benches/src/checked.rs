@@ -30,7 +30,7 @@ pub struct Cost {
 
 impl Library {
     /// Builds the runtime in the dev profile.
-    pub fn built() -> Result<Library, Box<dyn Error>> {
+    pub fn build_runtime() -> Result<Library, Box<dyn Error>> {
         let cargo = std::env::var_os("CARGO").unwrap_or("cargo".into());
         let build =
             ["build", "--quiet", "--locked", "-p", "linkwork", "--message-format=json-render-diagnostics"];
@@ -44,7 +44,7 @@ impl Library {
 }
 
 /// Runs rustc on a library of this text, with the options of the dev profile, up to its metadata.
-pub fn check(library: &Library, text: &str) -> Result<Cost, Box<dyn Error>> {
+pub fn check_with_rustc(library: &Library, text: &str) -> Result<Cost, Box<dyn Error>> {
     let folder = std::env::temp_dir().join(format!("linkwork-expansion-{}", std::process::id()));
     std::fs::create_dir_all(&folder)?;
     let file = folder.join("expanded.rs");
@@ -66,16 +66,16 @@ pub fn check(library: &Library, text: &str) -> Result<Cost, Box<dyn Error>> {
         .arg(dependencies)
         .args([&"--out-dir".into(), &folder, &file])
         .spawn()?;
-    let cost = watched(&mut child);
+    let cost = wait_for_process(&mut child);
     std::fs::remove_dir_all(&folder)?;
     cost
 }
 
 /// Waits for a process, and returns its cost as far as the system reports it.
-fn watched(child: &mut Child) -> Result<Cost, Box<dyn Error>> {
+fn wait_for_process(child: &mut Child) -> Result<Cost, Box<dyn Error>> {
     let mut cost = Cost::default();
     loop {
-        cost = seen(child.id()).unwrap_or(cost);
+        cost = cost_of_process(child.id()).unwrap_or(cost);
         if let Some(status) = child.try_wait()? {
             return if status.success() { Ok(cost) } else { Err("rustc refuses the output".into()) };
         }
@@ -84,7 +84,7 @@ fn watched(child: &mut Child) -> Result<Cost, Box<dyn Error>> {
 }
 
 /// Returns the cost of a process so far.
-fn seen(process: u32) -> Option<Cost> {
+fn cost_of_process(process: u32) -> Option<Cost> {
     let status = read_to_string(format!("/proc/{process}/status")).ok()?;
     let memory = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kilobytes: f64 = memory.split_whitespace().next()?.parse().ok()?;

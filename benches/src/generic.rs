@@ -26,7 +26,7 @@ pub enum Motion {
 
 impl Motion {
     /// Returns the number of entries of `q` and of `v`.
-    fn sizes(self) -> (usize, usize) {
+    fn coordinate_counts(self) -> (usize, usize) {
         match self {
             Motion::Turn(_) | Motion::Slide(_) => (1, 1),
             Motion::Free => (7, 6),
@@ -34,16 +34,16 @@ impl Motion {
     }
 
     /// Returns column `k` of the motion subspace.
-    fn subspace(self, k: usize) -> Spatial {
+    fn subspace_column(self, k: usize) -> Spatial {
         match self {
             Motion::Turn(axis) => Spatial::new(Vector3::zeros(), *axis),
             Motion::Slide(axis) => Spatial::new(*axis, Vector3::zeros()),
-            Motion::Free => Spatial::unit(k),
+            Motion::Free => Spatial::unit_vector(k),
         }
     }
 
     /// Returns the motion subspace times the rates.
-    fn twist(self, rates: &[f64]) -> Spatial {
+    fn twist_from_rates(self, rates: &[f64]) -> Spatial {
         match self {
             Motion::Turn(axis) => Spatial::new(Vector3::zeros(), *axis * rates[0]),
             Motion::Slide(axis) => Spatial::new(*axis * rates[0], Vector3::zeros()),
@@ -52,9 +52,9 @@ impl Motion {
     }
 
     /// Returns the placement of the link in the joint's frame.
-    fn placement(self, q: &[f64]) -> Placement {
+    fn placement_in_joint_frame(self, q: &[f64]) -> Placement {
         match self {
-            Motion::Turn(axis) => Placement::new(rotation(&axis, q[0]), Vector3::zeros()),
+            Motion::Turn(axis) => Placement::new(rotation_about_axis(&axis, q[0]), Vector3::zeros()),
             Motion::Slide(axis) => Placement::new(Matrix3::identity(), *axis * q[0]),
             Motion::Free => {
                 let quaternion = Quaternion::new(q[6], q[3], q[4], q[5]);
@@ -66,7 +66,7 @@ impl Motion {
 }
 
 /// Returns the rotation matrix about the axis `n` by Rodrigues's formula.
-fn rotation(n: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
+fn rotation_about_axis(n: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
     let (s, c) = angle.sin_cos();
     let (u, k) = (n * s, n * (1.0 - c));
     Matrix3::new(
@@ -147,18 +147,18 @@ pub struct Data(Vec<LinkData>);
 impl Model {
     /// Reads a URDF file.
     pub fn from_urdf(text: &str, options: &Options<'_>) -> Result<Model, String> {
-        urdf::read(text, options)
+        urdf::read_urdf(text, options)
     }
 
     /// Allocates the intermediate results.
-    pub fn data(&self) -> Data {
+    pub fn allocate_data(&self) -> Data {
         let initial_link_data = |link: &Link| LinkData {
             placement: link.placement,
             twist: Spatial::zero(),
             acceleration: Spatial::zero(),
             wrench: Spatial::zero(),
             composite: link.inertia,
-            articulated: Articulated::rigid(&link.inertia),
+            articulated: Articulated::from_rigid_inertia(&link.inertia),
             column: Spatial::zero(),
             inverse: 0.0,
             force: 0.0,
@@ -166,9 +166,9 @@ impl Model {
         Data(self.links.iter().map(initial_link_data).collect())
     }
 
-    fn place(&self, data: &mut Data, q: &[f64]) {
+    fn compute_placements(&self, data: &mut Data, q: &[f64]) {
         for (link, d) in self.links.iter().zip(&mut data.0) {
-            d.placement = link.placement.then(&link.motion.placement(&q[link.q..]));
+            d.placement = link.placement.compose_with(&link.motion.placement_in_joint_frame(&q[link.q..]));
         }
     }
 
@@ -182,13 +182,13 @@ impl Model {
         a: Option<&[f64]>,
         tau: &mut [f64],
     ) {
-        self.place(data, q);
+        self.compute_placements(data, q);
         self.move_outward(data, v, a);
         for (k, link) in self.links.iter().enumerate().rev() {
             let d = &data.0[k];
             let (wrench, placement) = (d.wrench, d.placement);
-            for dof in 0..link.motion.sizes().1 {
-                tau[link.v + dof] = link.motion.subspace(dof).dot(&wrench);
+            for dof in 0..link.motion.coordinate_counts().1 {
+                tau[link.v + dof] = link.motion.subspace_column(dof).dot(&wrench);
             }
             if let Some(p) = link.parent {
                 data.0[p].wrench += placement.wrench_to_parent(&wrench);
@@ -199,10 +199,10 @@ impl Model {
     /// Computes twists, accelerations and the wrenches that they need, link by link.
     fn move_outward(&self, data: &mut Data, v: &[f64], a: Option<&[f64]>) {
         for (k, link) in self.links.iter().enumerate() {
-            let nv = link.motion.sizes().1;
+            let nv = link.motion.coordinate_counts().1;
             let (before, rest) = data.0.split_at_mut(k);
             let d = &mut rest[0];
-            let own = link.motion.twist(&v[link.v..link.v + nv]);
+            let own = link.motion.twist_from_rates(&v[link.v..link.v + nv]);
             let (parent_twist, parent_acceleration) = match link.parent {
                 Some(p) => (before[p].twist, before[p].acceleration),
                 None => (Spatial::zero(), Spatial::new(-self.gravity, Vector3::zeros())),
@@ -210,16 +210,16 @@ impl Model {
             d.twist = d.placement.twist_to_child(&parent_twist) + own;
             d.acceleration = d.placement.twist_to_child(&parent_acceleration) + d.twist.cross(&own);
             if let Some(a) = a {
-                d.acceleration += link.motion.twist(&a[link.v..link.v + nv]);
+                d.acceleration += link.motion.twist_from_rates(&a[link.v..link.v + nv]);
             }
-            let momentum = link.inertia.times(&d.twist);
-            d.wrench = link.inertia.times(&d.acceleration) + d.twist.cross_force(&momentum);
+            let momentum = link.inertia.momentum_of_twist(&d.twist);
+            d.wrench = link.inertia.momentum_of_twist(&d.acceleration) + d.twist.cross_force(&momentum);
         }
     }
 
     /// Computes the mass matrix, both triangles, by the composite-rigid-body algorithm.
     pub fn mass_matrix(&self, data: &mut Data, q: &[f64], m: &mut DMatrix<f64>) {
-        self.place(data, q);
+        self.compute_placements(data, q);
         for (link, d) in self.links.iter().zip(&mut data.0) {
             d.composite = link.inertia;
         }
@@ -231,15 +231,15 @@ impl Model {
         }
         m.fill(0.0);
         for (k, link) in self.links.iter().enumerate() {
-            for dof in 0..link.motion.sizes().1 {
-                let mut wrench = data.0[k].composite.times(&link.motion.subspace(dof));
+            for dof in 0..link.motion.coordinate_counts().1 {
+                let mut wrench = data.0[k].composite.momentum_of_twist(&link.motion.subspace_column(dof));
                 let row = link.v + dof;
                 let mut at = k;
                 loop {
                     let other = &self.links[at];
-                    let count = if at == k { dof + 1 } else { other.motion.sizes().1 };
+                    let count = if at == k { dof + 1 } else { other.motion.coordinate_counts().1 };
                     for c in 0..count {
-                        let entry = other.motion.subspace(c).dot(&wrench);
+                        let entry = other.motion.subspace_column(c).dot(&wrench);
                         m[(row, other.v + c)] = entry;
                         m[(other.v + c, row)] = entry;
                     }
@@ -253,15 +253,15 @@ impl Model {
 
     /// Computes forward dynamics `v̇ = M⁻¹ (τ − h)` by the articulated-body algorithm.
     pub fn forward_dynamics(&self, data: &mut Data, q: &[f64], v: &[f64], tau: &[f64], a: &mut [f64]) {
-        self.place(data, q);
+        self.compute_placements(data, q);
         for (k, link) in self.links.iter().enumerate() {
-            let own = link.motion.twist(&v[link.v..]);
+            let own = link.motion.twist_from_rates(&v[link.v..]);
             let parent = link.parent.map_or(Spatial::zero(), |p| data.0[p].twist);
             let d = &mut data.0[k];
             d.twist = d.placement.twist_to_child(&parent) + own;
             d.acceleration = d.twist.cross(&own);
-            d.articulated = Articulated::rigid(&link.inertia);
-            d.wrench = d.twist.cross_force(&link.inertia.times(&d.twist));
+            d.articulated = Articulated::from_rigid_inertia(&link.inertia);
+            d.wrench = d.twist.cross_force(&link.inertia.momentum_of_twist(&d.twist));
         }
         for (k, link) in self.links.iter().enumerate().rev() {
             let d = &mut data.0[k];
@@ -270,12 +270,14 @@ impl Model {
                 // link.
                 Motion::Free => (None, Spatial::from_slice(&tau[link.v..])),
                 Motion::Turn(_) | Motion::Slide(_) => {
-                    let s = link.motion.subspace(0);
-                    d.column = d.articulated.times(&s);
+                    let s = link.motion.subspace_column(0);
+                    d.column = d.articulated.wrench_of_acceleration(&s);
                     d.inverse = 1.0 / s.dot(&d.column);
                     d.force = tau[link.v] - s.dot(&d.wrench);
                     let reduced = d.articulated.subtract_rank_one(&d.column, d.inverse);
-                    let wrench = d.wrench + reduced.times(&d.acceleration) + d.column * (d.force * d.inverse);
+                    let wrench = d.wrench
+                        + reduced.wrench_of_acceleration(&d.acceleration)
+                        + d.column * (d.force * d.inverse);
                     (Some(reduced), wrench)
                 }
             };
@@ -299,14 +301,14 @@ impl Model {
             match link.motion {
                 Motion::Free => {
                     let force = Spatial::from_slice(&tau[link.v..]) - d.wrench;
-                    d.acceleration = d.articulated.solve(&force);
-                    let own: Vector6<f64> = (d.acceleration - carried).vector();
+                    d.acceleration = d.articulated.acceleration_from_wrench(&force);
+                    let own: Vector6<f64> = (d.acceleration - carried).as_six_vector();
                     a[link.v..link.v + 6].copy_from_slice(own.as_slice());
                 }
                 Motion::Turn(_) | Motion::Slide(_) => {
                     let own = (d.force - d.column.dot(&carried)) * d.inverse;
                     a[link.v] = own;
-                    d.acceleration = carried + link.motion.subspace(0) * own;
+                    d.acceleration = carried + link.motion.subspace_column(0) * own;
                 }
             }
         }
@@ -314,19 +316,19 @@ impl Model {
 
     /// Returns the kinetic energy, J.
     pub fn kinetic_energy(&self, data: &mut Data, q: &[f64], v: &[f64]) -> f64 {
-        self.place(data, q);
+        self.compute_placements(data, q);
         let mut twice = 0.0;
         for (k, link) in self.links.iter().enumerate() {
             let parent = link.parent.map_or(Spatial::zero(), |p| data.0[p].twist);
             let d = &mut data.0[k];
-            d.twist = d.placement.twist_to_child(&parent) + link.motion.twist(&v[link.v..]);
-            twice += d.twist.dot(&link.inertia.times(&d.twist));
+            d.twist = d.placement.twist_to_child(&parent) + link.motion.twist_from_rates(&v[link.v..]);
+            twice += d.twist.dot(&link.inertia.momentum_of_twist(&d.twist));
         }
         0.5 * twice
     }
 
     /// Returns the index of a frame.
-    pub fn frame(&self, name: &str) -> Option<usize> {
+    pub fn index_of_frame(&self, name: &str) -> Option<usize> {
         self.frames.iter().position(|frame| frame.name == name)
     }
 
@@ -340,12 +342,12 @@ impl Model {
         while let Some(k) = at {
             let link = &self.links[k];
             let d = &mut data.0[k];
-            d.placement = link.placement.then(&link.motion.placement(&q[link.q..]));
-            for dof in 0..link.motion.sizes().1 {
-                let column = seen.twist_to_parent(&link.motion.subspace(dof));
-                jacobian.set_column(link.v + dof, &column.vector());
+            d.placement = link.placement.compose_with(&link.motion.placement_in_joint_frame(&q[link.q..]));
+            for dof in 0..link.motion.coordinate_counts().1 {
+                let column = seen.twist_to_parent(&link.motion.subspace_column(dof));
+                jacobian.set_column(link.v + dof, &column.as_six_vector());
             }
-            seen = seen.then(&d.placement.inverse());
+            seen = seen.compose_with(&d.placement.inverse());
             at = link.parent;
         }
         // … then all columns in ground axes.
@@ -353,9 +355,9 @@ impl Model {
         at = frame.link;
         while let Some(k) = at {
             let link = &self.links[k];
-            for column in link.v..link.v + link.motion.sizes().1 {
+            for column in link.v..link.v + link.motion.coordinate_counts().1 {
                 let turned = Spatial::from_slice(jacobian.column(column).as_slice()).map(|v| axes * v);
-                jacobian.set_column(column, &turned.vector());
+                jacobian.set_column(column, &turned.as_six_vector());
             }
             at = link.parent;
         }
@@ -369,7 +371,7 @@ mod tests {
     /// Generated and generic code are independent implementations for the same files, and agree.
     #[test]
     fn generated_and_generic_code_agree() {
-        for robot in pairs::robots() {
+        for robot in pairs::benchmark_robots() {
             for mut pair in robot.pairs {
                 let error = (0..crate::states::STATES).map(|k| (pair.difference)(k)).fold(0.0, f64::max);
                 println!("{}, {}: {error:.1e}", robot.name, pair.function);

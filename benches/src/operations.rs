@@ -4,7 +4,7 @@ use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::lower::Program;
-use linkwork_compiler::{compile, read};
+use linkwork_compiler::{compile, read_source};
 use proc_macro2::TokenStream;
 use std::path::Path;
 
@@ -20,10 +20,10 @@ pub struct Size {
 }
 
 impl Size {
-    fn sum<'a>(programs: impl IntoIterator<Item = &'a Program>) -> Size {
+    fn sum_of_programs<'a>(programs: impl IntoIterator<Item = &'a Program>) -> Size {
         let mut size = Size::default();
         for program in programs {
-            size.operations += program.counts.total();
+            size.operations += program.counts.total_operations();
             size.fused += program.instructions.len() - program.counts.calls;
             size.calls += program.counts.calls;
         }
@@ -48,7 +48,7 @@ impl Operations {
         let cx = &mut Diagnostics::new();
         let graph = Graph::new();
         let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let found = read(parse_tokens(arguments), parse_tokens(item), folder, cx);
+        let found = read_source(parse_tokens(arguments), parse_tokens(item), folder, cx);
         let found = found.and_then(|source| compile(&source, &graph, cx));
         let Some((model, output)) = found else {
             panic!("{}", cx.messages().join("\n"));
@@ -57,13 +57,13 @@ impl Operations {
     }
 
     /// Returns the numbers of operations of a generated function; zero if it does not exist.
-    pub fn function(&self, name: &str) -> Size {
+    pub fn size_of_function(&self, name: &str) -> Size {
         let found = self.output.functions.iter().filter(|f| f.name == name);
-        Size::sum(found.map(|f| &f.program))
+        Size::sum_of_programs(found.map(|f| &f.program))
     }
 
     /// Returns the numbers of operations of a frame's Jacobian: the steps along the path to its link.
-    pub fn jacobian(&self, frame: &str) -> Size {
+    pub fn size_of_jacobian(&self, frame: &str) -> Size {
         let frame = self.output.frames.iter().find(|f| f.name == frame);
         let mut programs: Vec<&Program> = frame.map(|f| &f.placement).into_iter().collect();
         let mut at = frame.and_then(|f| f.link);
@@ -72,6 +72,6 @@ impl Operations {
             programs.extend([&link.placement, &link.columns]);
             at = link.parent;
         }
-        Size::sum(programs)
+        Size::sum_of_programs(programs)
     }
 }

@@ -3,7 +3,7 @@
 use crate::generic::{Data, Model, Options};
 use crate::operations::{Operations, Size};
 use crate::robots::Panda;
-use crate::states::{STATES, State, states};
+use crate::states::{STATES, State, random_states};
 use linkwork::{Mechanism, frame};
 use linkwork_models::{PandaArm, SimpleHumanoid, Solo12, Ur5};
 use nalgebra::{DMatrix, DVector, Matrix6xX, SMatrix, SVector};
@@ -33,7 +33,7 @@ pub struct Robot {
 }
 
 /// Returns all robots of the comparison of generated and generic code.
-pub fn robots() -> Vec<Robot> {
+pub fn benchmark_robots() -> Vec<Robot> {
     macro_rules! robot {
         ($name:literal, $robot:ident, $file:literal, $arguments:literal, $options:expr, $frame:literal) => {{
             let source = Source {
@@ -43,7 +43,7 @@ pub fn robots() -> Vec<Robot> {
                 arguments: concat!("urdf = \"../models/urdf/", $file, ".urdf\"", $arguments),
                 frame: $frame,
             };
-            robot(&source, &$robot, |q| $robot.frame_jacobian(frame!($robot, $frame), q))
+            robot_with_pairs(&source, &$robot, |q| $robot.frame_jacobian(frame!($robot, $frame), q))
         }};
     }
     let fixed = Options::default();
@@ -91,7 +91,7 @@ struct Generic {
 /// Runs a generic function and returns its result.
 type Run<const NQ: usize, const NV: usize> = for<'s> fn(&'s mut Generic, &State<NQ, NV>) -> &'s [f64];
 
-fn robot<M, J, const NQ: usize, const NV: usize, const NU: usize>(
+fn robot_with_pairs<M, J, const NQ: usize, const NV: usize, const NU: usize>(
     source: &Source,
     robot: &'static M,
     jacobian: J,
@@ -103,21 +103,21 @@ where
     let model = Model::from_urdf(source.text, &source.options);
     let model = Rc::new(model.unwrap_or_else(|message| panic!("{}: {message}", source.name)));
     let operations = Operations::compile(source.arguments, "pub struct Robot;");
-    let states = Rc::new(states(&model));
-    let bench = Bench { frame: model.frame(source.frame).unwrap_or_default(), model, states };
+    let states = Rc::new(random_states(&model));
+    let bench = Bench { frame: model.index_of_frame(source.frame).unwrap_or_default(), model, states };
     let pairs = vec![
-        bench.pair(
+        bench.pair_of_implementations(
             "mass matrix",
-            operations.function("mass_matrix"),
+            operations.size_of_function("mass_matrix"),
             |s| robot.mass_matrix(0.0, &s.q),
             |g, s| {
                 g.model.mass_matrix(&mut g.data, s.q.as_slice(), &mut g.matrix);
                 g.matrix.as_slice()
             },
         ),
-        bench.pair(
+        bench.pair_of_implementations(
             "bias forces",
-            operations.function("bias_forces"),
+            operations.size_of_function("bias_forces"),
             |s| robot.bias_forces(0.0, &s.q, &s.v),
             |g, s| {
                 let tau = g.vector.as_mut_slice();
@@ -126,9 +126,9 @@ where
                 g.vector.as_slice()
             },
         ),
-        bench.pair(
+        bench.pair_of_implementations(
             "inverse dynamics",
-            operations.function("inverse_dynamics"),
+            operations.size_of_function("inverse_dynamics"),
             |s| robot.inverse_dynamics(0.0, &s.q, &s.v, &s.a),
             |g, s| {
                 let tau = g.vector.as_mut_slice();
@@ -137,9 +137,9 @@ where
                 g.vector.as_slice()
             },
         ),
-        bench.pair(
+        bench.pair_of_implementations(
             "forward dynamics",
-            operations.function("forward_dynamics"),
+            operations.size_of_function("forward_dynamics"),
             |s| robot.forward_dynamics(0.0, &s.q, &s.v, &s.tau),
             |g, s| {
                 let a = g.vector.as_mut_slice();
@@ -148,9 +148,9 @@ where
                 g.vector.as_slice()
             },
         ),
-        bench.pair(
+        bench.pair_of_implementations(
             "kinetic energy",
-            operations.function("kinetic_energy"),
+            operations.size_of_function("kinetic_energy"),
             |s| SVector::<f64, 1>::new(robot.kinetic_energy(0.0, &s.q, &s.v)),
             |g, s| {
                 let energy = g.model.kinetic_energy(&mut g.data, s.q.as_slice(), s.v.as_slice());
@@ -158,9 +158,9 @@ where
                 &g.vector.as_slice()[..1]
             },
         ),
-        bench.pair(
+        bench.pair_of_implementations(
             "frame Jacobian",
-            operations.jacobian(source.frame),
+            operations.size_of_jacobian(source.frame),
             move |s| jacobian(&s.q),
             |g, s| {
                 let q = s.q.as_slice();
@@ -180,10 +180,10 @@ struct Bench<const NQ: usize, const NV: usize> {
 }
 
 impl<const NQ: usize, const NV: usize> Bench<NQ, NV> {
-    fn generic(&self) -> Generic {
+    fn generic_algorithms(&self) -> Generic {
         Generic {
             model: self.model.clone(),
-            data: self.model.data(),
+            data: self.model.allocate_data(),
             vector: DVector::zeros(NV),
             matrix: DMatrix::zeros(NV, NV),
             jacobian: Matrix6xX::zeros(NV),
@@ -191,7 +191,7 @@ impl<const NQ: usize, const NV: usize> Bench<NQ, NV> {
         }
     }
 
-    fn pair<F, const R: usize, const C: usize>(
+    fn pair_of_implementations<F, const R: usize, const C: usize>(
         &self,
         function: &'static str,
         size: Size,
@@ -201,7 +201,7 @@ impl<const NQ: usize, const NV: usize> Bench<NQ, NV> {
     where
         F: Fn(&State<NQ, NV>) -> SMatrix<f64, R, C> + Copy + 'static,
     {
-        let (mut room, mut room_again) = (self.generic(), self.generic());
+        let (mut room, mut room_again) = (self.generic_algorithms(), self.generic_algorithms());
         let [states, states_again, states_too] = [(); 3].map(|()| self.states.clone());
         Pair {
             function,

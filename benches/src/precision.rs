@@ -98,7 +98,7 @@ struct Counted<'m, M> {
     derivatives: &'m Cell<usize>,
 }
 
-fn count(cell: &Cell<usize>) {
+fn increment_count(cell: &Cell<usize>) {
     cell.set(cell.get() + 1);
 }
 
@@ -138,7 +138,7 @@ where
         v: &SVector<f64, NV>,
         tau: &SVector<f64, NV>,
     ) -> SVector<f64, NV> {
-        count(self.evaluations);
+        increment_count(self.evaluations);
         self.mechanism.forward_dynamics(t, q, v, tau)
     }
     fn generalized_forces(
@@ -184,7 +184,7 @@ where
         v: &SVector<f64, NV>,
         u: &SVector<f64, 0>,
     ) -> Option<ByMotion<f64, NV, 0>> {
-        count(self.derivatives);
+        increment_count(self.derivatives);
         self.mechanism.acceleration_derivatives(t, q, v, u)
     }
     pass! {
@@ -261,7 +261,7 @@ impl<S: Method<f64> + Clone> Visit for Solve<S> {
 /// # Errors
 ///
 /// Returns the errors of the simulation.
-pub fn solve<S: Method<f64> + Clone>(problem: usize, method: S) -> Result<Found, Error> {
+pub fn solve_problem<S: Method<f64> + Clone>(problem: usize, method: S) -> Result<Found, Error> {
     visit_problem(problem, Solve(method))
 }
 
@@ -279,7 +279,7 @@ impl Visit for Start {
 }
 
 /// Returns the initial state, configuration and velocity, and the final time of a problem, s.
-pub fn start(problem: usize) -> (Vec<f64>, f64) {
+pub fn initial_state_of_problem(problem: usize) -> (Vec<f64>, f64) {
     visit_problem(problem, Start)
 }
 
@@ -307,6 +307,6 @@ impl Visit for Rate<'_> {
 
 /// Writes the rate of a state, with accelerations that satisfy the constraints: the right-hand side for other
 /// libraries.
-pub fn rate(problem: usize, t: f64, y: &[f64], rate: &mut [f64]) {
+pub fn rate_of_state(problem: usize, t: f64, y: &[f64], rate: &mut [f64]) {
     visit_problem(problem, Rate { t, y, rate });
 }

@@ -10,7 +10,7 @@ impl Random {
     }
 
     /// Returns a number between `-limit` and `limit`.
-    pub fn uniform(&mut self, limit: f64) -> f64 {
+    pub fn uniform_within(&mut self, limit: f64) -> f64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
         self.0 ^= self.0 >> 27;

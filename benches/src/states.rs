@@ -23,25 +23,25 @@ pub struct State<const NQ: usize, const NV: usize> {
 impl<const NQ: usize, const NV: usize> State<NQ, NV> {
     /// Returns a state with random coordinates and unit quaternions; all other values are of the order of
     /// one.
-    fn random(model: &Model, random: &mut Random) -> State<NQ, NV> {
-        let mut q = SVector::<f64, NQ>::from_fn(|_, _| random.uniform(3.0));
+    fn random_for_model(model: &Model, random: &mut Random) -> State<NQ, NV> {
+        let mut q = SVector::<f64, NQ>::from_fn(|_, _| random.uniform_within(3.0));
         for link in model.links.iter().filter(|link| link.motion == Motion::Free) {
             let mut quaternion = q.fixed_rows_mut::<4>(link.q + 3);
             quaternion.normalize_mut();
         }
-        let mut vector = || SVector::from_fn(|_, _| random.uniform(2.0));
+        let mut vector = || SVector::from_fn(|_, _| random.uniform_within(2.0));
         State { q, v: vector(), a: vector(), tau: vector() * 10.0 }
     }
 
     /// Returns all numbers of the state: `q`, `v`, `a` and `τ`, concatenated.
-    pub fn numbers(&self) -> impl Iterator<Item = f64> {
+    pub fn all_numbers(&self) -> impl Iterator<Item = f64> {
         [self.q.as_slice(), self.v.as_slice(), self.a.as_slice(), self.tau.as_slice()].concat().into_iter()
     }
 }
 
 /// Returns [`STATES`] random states. Panics if the model has other sizes.
-pub fn states<const NQ: usize, const NV: usize>(model: &Model) -> Vec<State<NQ, NV>> {
+pub fn random_states<const NQ: usize, const NV: usize>(model: &Model) -> Vec<State<NQ, NV>> {
     assert_eq!((model.nq, model.nv), (NQ, NV), "size of the model");
     let mut random = Random::new(1);
-    (0..STATES).map(|_| State::random(model, &mut random)).collect()
+    (0..STATES).map(|_| State::random_for_model(model, &mut random)).collect()
 }

@@ -86,6 +86,7 @@ use std::path::PathBuf;
 /// | `formulation = multipliers` or `speeds` | whether constraints are solved by Lagrange multipliers (default) or in independent speeds (Kane) |
 /// | `independent = (velocity, …)` | independent speeds of `formulation = speeds`; chosen automatically by default. User-defined generalized speeds are elements: `#[speed(…)] name: Speed` |
 /// | `processor = detect` or `target` | `detect` (default): large functions use AVX2 and FMA, and products of large matrices AVX-512, if the processor supports them, even if the compilation target does not include them (x86-64, release builds, feature `std`). `target`: only the instructions of the target are used |
+/// | `arithmetic = fast` or `reproducible` | `reproducible`: the same bits on every machine, and in C |
 /// | `skip_passes = [pass, …]` | optimisation passes to skip: `frames` (moves link frames to sparse placements), `regroup` (moves mass properties towards the base), `parallel` (expresses links on parallel axes in common axes) and `limbs` (evaluates identical limbs, and joints of one path, in SIMD lanes); none by default. The results are equal up to rounding; skipping a pass makes the functions slower |
 /// | `urdf = "path"` | a URDF file, relative to the crate's manifest; its changes trigger recompilation |
 /// | `mjcf = "path"` | an MJCF file (MuJoCo) with the files that it includes; path as for `urdf` |

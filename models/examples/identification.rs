@@ -59,7 +59,7 @@ const SMOOTH: f64 = 0.01;
 
 impl Arm {
     /// Returns damping, friction and rotor inertias of the joints.
-    fn joints(&self) -> [Joints; 3] {
+    fn joint_parameters(&self) -> [Joints; 3] {
         let damping = [
             self.panda_joint1_damping,
             self.panda_joint2_damping,
@@ -133,7 +133,7 @@ impl Fourier {
         Fourier([[(); 5]; 7].map(|joint| joint.map(|()| [0.8 * random.next(), 0.8 * random.next()])))
     }
 
-    fn evaluate(&self, t: f64) -> [Joints; 3] {
+    fn evaluate_trajectory(&self, t: f64) -> [Joints; 3] {
         const RATE: f64 = 0.6;
         let mut q = Joints::from([0.0, 0.3, 0.0, -1.6, 0.0, 1.8, 0.0]);
         let (mut v, mut a) = (Joints::zeros(), Joints::zeros());
@@ -170,7 +170,7 @@ fn robot_as_it_is() -> Arm {
 }
 
 /// Returns the regressor: the torques are its product with the parameters.
-fn columns(arm: &Arm, [q, v, a]: &[Joints; 3]) -> SMatrix<f64, 7, COLUMNS> {
+fn regressor_columns(arm: &Arm, [q, v, a]: &[Joints; 3]) -> SMatrix<f64, 7, COLUMNS> {
     let mut all = SMatrix::<f64, 7, COLUMNS>::zeros();
     all.fixed_view_mut::<7, BASE>(0, 0).copy_from(&arm.base_regressor(q, v, a));
     for j in 0..7 {
@@ -186,7 +186,7 @@ fn columns(arm: &Arm, [q, v, a]: &[Joints; 3]) -> SMatrix<f64, 7, COLUMNS> {
 /// Returns the root mean square of the difference between two robots' torques on a trajectory, N·m.
 fn difference(one: &Arm, other: &Arm, trajectory: &Fourier) -> f64 {
     let squared_torque_difference = |k: usize| {
-        let [q, v, a] = trajectory.evaluate(0.02 * k as f64);
+        let [q, v, a] = trajectory.evaluate_trajectory(0.02 * k as f64);
         (one.inverse_dynamics(&q, &v, &a) - other.inverse_dynamics(&q, &v, &a)).norm_squared()
     };
     ((0..500).map(squared_torque_difference).sum::<f64>() / (500.0 * 7.0)).sqrt()
@@ -203,10 +203,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for _ in 0..6 {
         let trajectory = Fourier::new(&mut random);
         for k in 0..400 {
-            let state = trajectory.evaluate(0.025 * k as f64);
+            let state = trajectory.evaluate_trajectory(0.025 * k as f64);
             let [q, v, a] = &state;
             let torque = truth.inverse_dynamics(q, v, a) + Joints::from_fn(|_, _| 0.05 * random.next());
-            let y = columns(&arm, &state);
+            let y = regressor_columns(&arm, &state);
             normal += y.transpose() * y;
             right += y.transpose() * torque;
         }
@@ -223,7 +223,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     arm.validate()?;
 
     println!("joint   damping       friction      rotor");
-    let ([d, f, r], [td, tf, tr]) = (arm.joints(), truth.joints());
+    let ([d, f, r], [td, tf, tr]) = (arm.joint_parameters(), truth.joint_parameters());
     for j in 0..7 {
         println!(
             "{}  {:6.3} {:6.3} {:6.3} {:6.3} {:6.3} {:6.3}",

@@ -15,7 +15,7 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeCone
 use linkwork::discrete;
 use linkwork::optimal::{Quadratic, Value};
 use linkwork::prelude::*;
-use regulator::regulator;
+use regulator::linear_quadratic_regulator;
 
 /// Cart on a short rail with a pole pinned to it, upright at zero.
 #[mechanism(gravity = -9.81 * y, derivatives)]
@@ -48,7 +48,7 @@ const GOAL: State = State::new(0.5, 0.0, 0.0, 0.0);
 const SIZE: usize = 5;
 
 /// Returns the weights of one period about a state of rest.
-fn costs() -> Quadratic<f64, 2, 1> {
+fn quadratic_costs() -> Quadratic<f64, 2, 1> {
     Quadratic {
         qq: SMatrix::from_diagonal(&[20.0, 5.0].into()),
         vv: SMatrix::from_diagonal(&[1.0, 0.5].into()),
@@ -69,13 +69,13 @@ fn next_state(x: &State, push: f64) -> Result<State, Error> {
 struct Entries(Vec<usize>, Vec<usize>, Vec<f64>);
 
 impl Entries {
-    fn push(&mut self, row: usize, column: usize, value: f64) {
+    fn push_entry(&mut self, row: usize, column: usize, value: f64) {
         self.0.push(row);
         self.1.push(column);
         self.2.push(value);
     }
 
-    fn matrix(self, rows: usize, columns: usize) -> CscMatrix<f64> {
+    fn sparse_matrix(self, rows: usize, columns: usize) -> CscMatrix<f64> {
         CscMatrix::new_from_triplets(rows, columns, self.0, self.1, self.2)
     }
 }
@@ -92,7 +92,7 @@ struct Program {
 impl Program {
     /// Adds the motion from a state, linearised about the motion under the planned forces:
     /// `x⁺ − A x − B u = f − A x̄ − B ū`.
-    fn motion(&mut self, start: &State, plan: &[f64; STEPS]) -> Result<(), Error> {
+    fn add_motion_equations(&mut self, start: &State, plan: &[f64; STEPS]) -> Result<(), Error> {
         let mut x = *start;
         for (k, &push) in plan.iter().enumerate() {
             let (q, v) = discrete::split(&x);
@@ -103,10 +103,10 @@ impl Program {
             let known = if k == 0 { next - b * push } else { next - a * x - b * push };
             for i in 0..4 {
                 let row = self.right.len();
-                self.rows.push(row, SIZE * k + 1 + i, 1.0);
-                self.rows.push(row, SIZE * k, -b[i]);
+                self.rows.push_entry(row, SIZE * k + 1 + i, 1.0);
+                self.rows.push_entry(row, SIZE * k, -b[i]);
                 for j in (0..4).filter(|_| k > 0) {
-                    self.rows.push(row, SIZE * (k - 1) + 1 + j, -a[(i, j)]);
+                    self.rows.push_entry(row, SIZE * (k - 1) + 1 + j, -a[(i, j)]);
                 }
                 self.right.push(known[i]);
             }
@@ -116,7 +116,7 @@ impl Program {
     }
 
     /// Adds the limits, in both directions, of the force in each step and of the position after it.
-    fn limits(&mut self) {
+    fn add_limits(&mut self) {
         let m = CartPole {};
         let (least, most) = (m.lower_limits()[RAIL], m.upper_limits()[RAIL]);
         let strength = m.effort_limits()[RAIL];
@@ -124,7 +124,7 @@ impl Program {
             for (column, least, most) in [(SIZE * k, -strength, strength), (SIZE * k + 1 + RAIL, least, most)]
             {
                 for (sign, bound) in [(1.0, most), (-1.0, -least)] {
-                    self.rows.push(self.right.len(), column, sign);
+                    self.rows.push_entry(self.right.len(), column, sign);
                     self.right.push(bound);
                 }
             }
@@ -132,25 +132,26 @@ impl Program {
     }
 
     /// Adds the cost of every step, and at the end the cost-to-go of the regulator.
-    fn costs(&mut self, to_go: &Value<f64, 2>) {
-        let costs = costs();
+    fn add_costs(&mut self, to_go: &Value<f64, 2>) {
+        let costs = quadratic_costs();
         let each = Value { qq: costs.qq, vv: costs.vv, ..Value::zeros() }.hessian::<4>();
         for k in 0..STEPS {
             let last = k + 1 == STEPS;
             let weight = if last { to_go.hessian::<4>() } else { each };
-            self.hessian.push(SIZE * k, SIZE * k, costs.uu[0]);
+            self.hessian.push_entry(SIZE * k, SIZE * k, costs.uu[0]);
             let first = SIZE * k + 1;
             for j in 0..4 {
-                (0..=j).for_each(|i| self.hessian.push(first + i, first + j, weight[(i, j)]));
+                (0..=j).for_each(|i| self.hessian.push_entry(first + i, first + j, weight[(i, j)]));
                 self.gradient[first + j] = -(weight.row(j) * GOAL)[0];
             }
         }
     }
 
     /// Returns the optimal forces, or `None` if the program is infeasible.
-    fn solved(self) -> Option<[f64; STEPS]> {
+    fn optimal_forces(self) -> Option<[f64; STEPS]> {
         let (count, columns, motions) = (self.right.len(), SIZE * STEPS, 4 * STEPS);
-        let (hessian, rows) = (self.hessian.matrix(columns, columns), self.rows.matrix(count, columns));
+        let (hessian, rows) =
+            (self.hessian.sparse_matrix(columns, columns), self.rows.sparse_matrix(count, columns));
         let cones = [ZeroConeT(motions), NonnegativeConeT(count - motions)];
         let settings = DefaultSettings { verbose: false, ..DefaultSettings::default() };
         let mut solver = DefaultSolver::new(&hessian, &self.gradient, &rows, &self.right, &cones, settings);
@@ -162,17 +163,23 @@ impl Program {
 
 /// Returns the optimal forces of the next second, linearised about the previous plan; `None` if no forces
 /// satisfy the limits.
-fn planned(x: &State, plan: &[f64; STEPS], to_go: &Value<f64, 2>) -> Result<Option<[f64; STEPS]>, Error> {
+fn plan_forces(x: &State, plan: &[f64; STEPS], to_go: &Value<f64, 2>) -> Result<Option<[f64; STEPS]>, Error> {
     let (hessian, rows) = (Entries::default(), Entries::default());
     let mut program = Program { hessian, gradient: [0.0; SIZE * STEPS], rows, right: Vec::new() };
-    program.motion(x, plan)?;
-    program.limits();
-    program.costs(to_go);
-    Ok(program.solved())
+    program.add_motion_equations(x, plan)?;
+    program.add_limits();
+    program.add_costs(to_go);
+    Ok(program.optimal_forces())
 }
 
 fn main() -> Result<(), Error> {
-    let found = regulator(&CartPole {}, &METHOD, &SVector::zeros(), &SVector::zeros(), &costs());
+    let found = linear_quadratic_regulator(
+        &CartPole {},
+        &METHOD,
+        &SVector::zeros(),
+        &SVector::zeros(),
+        &quadratic_costs(),
+    );
     let (regulator, to_go) = found.expect("a push on the cart can keep the pole upright");
     let (most, strength) = (CartPole {}.upper_limits()[RAIL], CartPole {}.effort_limits()[RAIL]);
 
@@ -187,7 +194,7 @@ fn main() -> Result<(), Error> {
         free = next_state(&free, push)?;
 
         plan.rotate_left(1);
-        plan = planned(&x, &plan, &to_go)?.expect("there is a way within the limits");
+        plan = plan_forces(&x, &plan, &to_go)?.expect("there is a way within the limits");
         if k % 6 == 0 {
             let t = PERIOD * k as f64;
             println!("{t:6.2} {:9.4} {:11.4} {:9.3} {:15.4}", x[0], x[1], plan[0], free[0]);

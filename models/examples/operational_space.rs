@@ -27,7 +27,7 @@ const RADIUS: f64 = 0.12;
 const RATE: f64 = 2.0;
 
 /// Returns the desired pose, velocity and acceleration of the hand: pointing down, on a vertical circle.
-fn reference(t: f64) -> (IsometryMatrix3<f64>, Twist, Twist) {
+fn desired_hand_motion(t: f64) -> (IsometryMatrix3<f64>, Twist, Twist) {
     let (sin, cos) = (RATE * t).sin_cos();
     let planar_twist = |y: f64, z: f64| Twist::from([0.0, RADIUS * y, RADIUS * z, 0.0, 0.0, 0.0]);
     let place = Vector3::new(0.5, RADIUS * cos, 0.45 + RADIUS * sin);
@@ -37,9 +37,9 @@ fn reference(t: f64) -> (IsometryMatrix3<f64>, Twist, Twist) {
 }
 
 /// Returns the torques for the hand's motion; its nullspace moves the joints towards their preferred posture.
-fn control(t: f64, q: &Joints, v: &Joints) -> Joints {
+fn hand_control_torques(t: f64, q: &Joints, v: &Joints) -> Joints {
     let (arm, hand) = (PandaArm, frame!(PandaArm, "panda_hand_tcp"));
-    let (placement, twist, acceleration) = reference(t);
+    let (placement, twist, acceleration) = desired_hand_motion(t);
     let jacobian = arm.frame_jacobian(hand, q);
     let missing = placement_difference(&arm.frame_placement(hand, q), &placement);
     // Desired acceleration of the hand with feedback, minus the part J̇ v that it has without joint
@@ -65,12 +65,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (arm, hand) = (PandaArm, frame!(PandaArm, "panda_hand_tcp"));
     // The initial configuration follows by inverse kinematics from the posture. It starts at rest, so that
     // the hand must catch up.
-    let target = Target::pose(index!(PandaArm::FRAMES, "panda_hand_tcp"), reference(0.0).0);
+    let target = Target::pose(index!(PandaArm::FRAMES, "panda_hand_tcp"), desired_hand_motion(0.0).0);
     let found = InverseKinematics::new().reach(&arm, 0.0, &[target], &POSTURE.into())?;
 
     let run = simulate(&arm)
         .from(found.q, Joints::zeros())
-        .control_every(1e-3, control)
+        .control_every(1e-3, hand_control_torques)
         .method(Rk4::step(1e-3))
         .duration(2.0 * PI / RATE)
         .sample_every(PI / RATE / 8.0);
@@ -80,7 +80,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for sample in run {
         let sample = sample?;
         let is = arm.frame_placement(hand, &sample.q);
-        let left = placement_difference(&is, &reference(sample.t).0);
+        let left = placement_difference(&is, &desired_hand_motion(sample.t).0);
         let (off, turned) = (left.fixed_rows::<3>(0).norm(), left.fixed_rows::<3>(3).norm());
         let share = sample.u.component_div(&limits).amax();
         let place = is.translation;

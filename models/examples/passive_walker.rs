@@ -52,7 +52,7 @@ type Gait = [f64; 2];
 const PUBLISHED: Gait = [0.200310900544287, -0.199832473004977];
 
 /// Returns the state with this gait and the left leg at the origin.
-fn state([angle, rate]: Gait) -> (SVector<f64, 4>, SVector<f64, 4>) {
+fn state_of_gait([angle, rate]: Gait) -> (SVector<f64, 4>, SVector<f64, 4>) {
     let (sin, cos) = angle.sin_cos();
     let q = [-sin, cos, angle, -angle].into();
     (q, [-cos * rate, -sin * rate, rate, rate * (2.0 * angle).cos()].into())
@@ -61,7 +61,7 @@ fn state([angle, rate]: Gait) -> (SVector<f64, 4>, SVector<f64, 4>) {
 /// Simulates one step on the left leg. Returns the gait after the touchdown of the right foot, the duration,
 /// the distance of the hip, and the energy that the touchdown dissipates.
 fn step(walker: &Walker, gait: Gait) -> Result<(Gait, f64, f64, f64), Box<dyn std::error::Error>> {
-    let (q, v) = state(gait);
+    let (q, v) = state_of_gait(gait);
     let stance = contact::hold(walker, [Touch::Sticks, Touch::Open]);
     // Both feet are also on the ground in mid-swing, when the sum of the angles rises through zero: that
     // crossing is ignored.

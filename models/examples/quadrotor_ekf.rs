@@ -16,7 +16,7 @@ mod regulator;
 use linkwork::optimal::{Policy, Quadratic};
 use linkwork::prelude::*;
 use linkwork::{OutputDerivatives, Outputs, discrete};
-use regulator::regulator;
+use regulator::linear_quadratic_regulator;
 use std::ops::Range;
 
 /// Quadrotor with the thrust of each rotor, N, as an input, and a gyroscope and an accelerometer off the
@@ -72,7 +72,7 @@ const FIX: Range<usize> = 6..9;
 struct Random(u64);
 
 impl Random {
-    fn uniform(&mut self) -> f64 {
+    fn uniform_number(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.0;
         bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -80,8 +80,8 @@ impl Random {
         (((bits ^ (bits >> 31)) >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
     }
 
-    fn normal(&mut self) -> f64 {
-        (-2.0 * self.uniform().ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
+    fn normal_number(&mut self) -> f64 {
+        (-2.0 * self.uniform_number().ln()).sqrt() * (std::f64::consts::TAU * self.uniform_number()).cos()
     }
 }
 
@@ -94,7 +94,7 @@ struct Belief {
 
 impl Belief {
     /// Predicts the estimate over one period with gusts.
-    fn predict(&mut self, u: &Thrusts) -> Result<(), Error> {
+    fn predict_estimate(&mut self, u: &Thrusts) -> Result<(), Error> {
         let next = discrete::transition(&Quadrotor {}, &METHOD, 0.0, &self.q, &self.v, u)?;
         let a = next.a::<12>();
         self.spread = a * self.spread * a.transpose();
@@ -106,7 +106,7 @@ impl Belief {
     }
 
     /// Corrects the estimate with the measured outputs of `rows`, one scalar after the other.
-    fn correct(&mut self, u: &Thrusts, measured: &Measured, rows: Range<usize>) {
+    fn correct_estimate(&mut self, u: &Thrusts, measured: &Measured, rows: Range<usize>) {
         let (m, q, v) = (Quadrotor {}, self.q, self.v);
         let motion = m.linear_motion(&q, &v, u);
         let seen = m.output_derivatives(0.0, &q, &v, &motion.acceleration, u).in_motion(&motion);
@@ -124,13 +124,13 @@ impl Belief {
     }
 
     /// Returns the error of the estimate from a state.
-    fn error(&self, q: &Pose, v: &Twist) -> Error12 {
+    fn error_of_estimate(&self, q: &Pose, v: &Twist) -> Error12 {
         discrete::stacked(&Quadrotor {}.difference(&self.q, q), &(v - self.v))
     }
 }
 
 /// Returns the thrusts for hovering, and a regulator that stabilises it.
-fn hover() -> Option<(Thrusts, Policy<f64, 6, 4>)> {
+fn hover_regulator() -> Option<(Thrusts, Policy<f64, 6, 4>)> {
     let thrusts = Thrusts::repeat(9.81 / 4.0);
     let costs = Quadratic {
         qq: SMatrix::from_diagonal(&[4.0, 4.0, 4.0, 1.0, 1.0, 1.0].into()),
@@ -138,12 +138,13 @@ fn hover() -> Option<(Thrusts, Policy<f64, 6, 4>)> {
         uu: SMatrix::from_diagonal_element(1.0),
         ..Quadratic::zeros()
     };
-    let (regulator, _) = regulator(&Quadrotor {}, &METHOD, &Quadrotor {}.neutral(), &thrusts, &costs)?;
+    let (regulator, _) =
+        linear_quadratic_regulator(&Quadrotor {}, &METHOD, &Quadrotor {}.neutral(), &thrusts, &costs)?;
     Some((thrusts, regulator))
 }
 
 /// Returns the thrusts for the estimated state, towards a moving point on a circle.
-fn steer(hover: &(Thrusts, Policy<f64, 6, 4>), t: f64, belief: &Belief) -> Thrusts {
+fn steering_thrusts(hover: &(Thrusts, Policy<f64, 6, 4>), t: f64, belief: &Belief) -> Thrusts {
     let (sin, cos) = (0.8 * t).sin_cos();
     let (target, speed) = ([2.0 * cos, 2.0 * sin, 1.0], [-1.6 * sin, 1.6 * cos, 0.0]);
     let pose = Quadrotor {}
@@ -163,12 +164,12 @@ struct Figures {
 }
 
 /// Simulates a flight of some seconds, and prints it if requested.
-fn fly(seed: u64, seconds: f64, print: bool) -> Result<Figures, Error> {
+fn simulate_flight(seed: u64, seconds: f64, print: bool) -> Result<Figures, Error> {
     let (m, mut random) = (Quadrotor {}, Random(seed));
-    let hover = hover().expect("four rotors can keep it in its place");
+    let hover = hover_regulator().expect("four rotors can keep it in its place");
     // The true initial state deviates randomly from the estimate.
     let deviations = Error12::from_fn(|k, _| [0.3, 0.15, 0.3, 0.1][k / 3]);
-    let off = deviations.map(|deviation| deviation * random.normal());
+    let off = deviations.map(|deviation| deviation * random.normal_number());
     let start = m.integrate(&m.neutral(), &[2.0, 0.0, 1.0, 0.0, 0.0, 0.0].into());
     let mut belief =
         Belief { q: start, v: Twist::zeros(), spread: SMatrix::from_diagonal(&deviations.map(|x| x * x)) };
@@ -178,20 +179,20 @@ fn fly(seed: u64, seconds: f64, print: bool) -> Result<Figures, Error> {
     let (steps, mut sum) = ((seconds / PERIOD) as usize, Figures::default());
     for k in 0..steps {
         let t = PERIOD * k as f64;
-        let u = steer(&hover, t, &belief);
+        let u = steering_thrusts(&hover, t, &belief);
         (q, v) = discrete::step(&m, &METHOD, 0.0, &q, &v, &u)?;
-        v += Twist::from_fn(|i, _| GUSTS[i / 3] * random.normal());
+        v += Twist::from_fn(|i, _| GUSTS[i / 3] * random.normal_number());
         let a = m.forward_dynamics(&q, &v, &m.generalized_forces(&q, &u));
         let measured =
-            m.outputs(0.0, &q, &v, &a, &u) + Measured::from_fn(|i, _| NOISE[i / 3] * random.normal());
+            m.outputs(0.0, &q, &v, &a, &u) + Measured::from_fn(|i, _| NOISE[i / 3] * random.normal_number());
 
-        belief.predict(&u)?;
-        belief.correct(&u, &measured, UNIT);
+        belief.predict_estimate(&u)?;
+        belief.correct_estimate(&u, &measured, UNIT);
         if k % 20 == 0 {
-            belief.correct(&u, &measured, FIX);
+            belief.correct_estimate(&u, &measured, FIX);
         }
 
-        let error = belief.error(&q, &v);
+        let error = belief.error_of_estimate(&q, &v);
         let [position, tilt, speed] = [0, 3, 6].map(|i| error.fixed_rows::<3>(i).norm());
         let normalised = belief.spread.cholesky().map_or(f64::NAN, |factor| error.dot(&factor.solve(&error)));
         if print && k % 50 == 0 {
@@ -212,7 +213,8 @@ fn main() -> Result<(), Error> {
     println!(
         "  t, s     x, m   y, m   z, m   off by, m   turned, rad   by, m/s   squared error by its spread"
     );
-    let flights = [fly(1, 5.0, true)?, fly(2, 5.0, false)?, fly(3, 5.0, false)?];
+    let flights =
+        [simulate_flight(1, 5.0, true)?, simulate_flight(2, 5.0, false)?, simulate_flight(3, 5.0, false)?];
     let mean_over_flights =
         |figure: fn(&Figures) -> f64| flights.iter().map(figure).sum::<f64>() / flights.len() as f64;
     let [position, tilt, speed] =

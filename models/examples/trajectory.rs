@@ -46,7 +46,7 @@ struct Trajectory {
 }
 
 /// Returns the final configuration: the cart at its initial position, the pole upright.
-fn goal() -> State {
+fn goal_state() -> State {
     [0.0, PI].into()
 }
 
@@ -59,19 +59,19 @@ fn step_costs(u: &Push) -> Quadratic<f64, 2, 1> {
 /// Returns the cost of the final state to second order.
 fn end_costs(q: &State, v: &State) -> Value<f64, 2> {
     let weight = SMatrix::from_diagonal_element(100.0);
-    Value { q: (q - goal()) * 100.0, v: v * 100.0, qq: weight, vv: weight, ..Value::zeros() }
+    Value { q: (q - goal_state()) * 100.0, v: v * 100.0, qq: weight, vv: weight, ..Value::zeros() }
 }
 
 impl Trajectory {
-    fn costs(&self) -> f64 {
+    fn total_costs(&self) -> f64 {
         let pushes: f64 = self.inputs.iter().map(|u| step_costs(u).u.dot(u) / 2.0).sum();
         let (q, v) = self.states[STEPS];
-        pushes + 50.0 * ((q - goal()).norm_squared() + v.norm_squared())
+        pushes + 50.0 * ((q - goal_state()).norm_squared() + v.norm_squared())
     }
 
     /// Returns the trajectory from the same initial state under policies about this one, with the step length
     /// `α` of their changes.
-    fn followed(&self, policies: &Policies, length: f64) -> Result<Self, Error> {
+    fn follow_policies(&self, policies: &Policies, length: f64) -> Result<Self, Error> {
         let mut next = self.clone();
         for (k, policy) in policies.iter().enumerate() {
             let ((q, v), (old_q, old_v)) = (next.states[k], self.states[k]);
@@ -84,7 +84,7 @@ impl Trajectory {
     /// Returns the optimal policies to second order about this trajectory, and the expected reduction of the
     /// cost; `None` if the cost is not convex in an input. DDP includes the curvature of the dynamics, iLQR
     /// does not.
-    fn policies(&self, ddp: bool, regularisation: f64) -> Result<Option<(Policies, f64)>, Error> {
+    fn optimal_policies(&self, ddp: bool, regularisation: f64) -> Result<Option<(Policies, f64)>, Error> {
         let none = Policy {
             change: SVector::zeros(),
             by_q: SMatrix::zeros(),
@@ -120,10 +120,10 @@ struct Found {
 }
 
 /// Improves a trajectory until its forces converge.
-fn optimise(start: &Trajectory, ddp: bool) -> Result<Found, Error> {
+fn optimise_trajectory(start: &Trajectory, ddp: bool) -> Result<Found, Error> {
     let (mut best, mut regularisation, mut changes) = (start.clone(), 1e-3, Vec::new());
     for _ in 0..500 {
-        let Some((policies, saved)) = best.policies(ddp, regularisation)? else {
+        let Some((policies, saved)) = best.optimal_policies(ddp, regularisation)? else {
             regularisation = (4.0 * regularisation).max(1e-6);
             continue;
         };
@@ -131,9 +131,9 @@ fn optimise(start: &Trajectory, ddp: bool) -> Result<Found, Error> {
         // reduction. Near the optimum rounding errors exceed the reduction. Much too long steps lead to
         // states that are not finite.
         let lengths = (0..10).map(|k| 0.5_f64.powi(k));
-        let mut tried = lengths.filter_map(|length| best.followed(&policies, length).ok());
+        let mut tried = lengths.filter_map(|length| best.follow_policies(&policies, length).ok());
         let has_sufficient_decrease =
-            |next: &Trajectory| saved < 1e-11 || next.costs() < best.costs() - 1e-4 * saved;
+            |next: &Trajectory| saved < 1e-11 || next.total_costs() < best.total_costs() - 1e-4 * saved;
         let Some(next) = tried.find(has_sufficient_decrease) else {
             regularisation = (4.0 * regularisation).max(1e-6);
             continue;
@@ -158,7 +158,7 @@ fn main() -> Result<(), Error> {
         let (q, v) = start.states[k];
         start.states[k + 1] = discrete::step(&CartPole {}, &METHOD, 0.0, &q, &v, u)?;
     }
-    let [ilqr, ddp] = [optimise(&start, false)?, optimise(&start, true)?];
+    let [ilqr, ddp] = [optimise_trajectory(&start, false)?, optimise_trajectory(&start, true)?];
 
     println!("time, s   cart, m   pole, rad   push, N");
     for k in (0..STEPS).step_by(6) {
@@ -167,14 +167,14 @@ fn main() -> Result<(), Error> {
     }
     println!("\nlargest change of a push, N, in the last iterations");
     for (name, found) in [("iLQR", &ilqr), ("DDP", &ddp)] {
-        let (count, costs) = (found.changes.len(), found.best.costs());
+        let (count, costs) = (found.changes.len(), found.best.total_costs());
         let last = found.changes[count - 6..].iter().map(|change| format!("{change:.1e}"));
         println!("{name:5} {count:3} iterations, costs {costs:.6}: {}", last.collect::<Vec<_>>().join(" "));
     }
 
     // Both methods have the same final state, with the pole upright.
     let (end, _) = ddp.best.states[STEPS];
-    assert!((end - goal()).amax() < 0.05, "it is swung up");
+    assert!((end - goal_state()).amax() < 0.05, "it is swung up");
     for (a, b) in ilqr.best.inputs.iter().zip(&ddp.best.inputs) {
         assert!((a - b).amax() < 1e-5, "one trajectory is the best");
     }

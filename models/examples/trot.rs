@@ -60,7 +60,7 @@ const WALK: Gait = Gait { name: "walk", period: 0.6, duty: 0.8, phases: [0.25, 0
 
 impl Gait {
     /// Returns the desired position of a foot relative to its hip, forwards and up, m.
-    fn foot(&self, foot: usize, t: f64) -> [f64; 2] {
+    fn desired_foot_position(&self, foot: usize, t: f64) -> [f64; 2] {
         let grown = (t / BEGINS).clamp(0.0, 1.0);
         let reach = grown * self.speed * self.duty * self.period / 2.0;
         let cycle = (t / self.period + self.phases[foot]).rem_euclid(1.0);
@@ -73,40 +73,40 @@ impl Gait {
     }
 
     /// Returns the angles of hip, thigh and shank for the desired foot position, rad.
-    fn leg(&self, foot: usize, t: f64) -> [f64; 3] {
-        let [x, z] = self.foot(foot, t);
+    fn desired_leg_angles(&self, foot: usize, t: f64) -> [f64; 3] {
+        let [x, z] = self.desired_foot_position(foot, t);
         let knee = -2.0 * (x.hypot(z) / (2.0 * SEGMENT)).acos();
         [0.0, (-x).atan2(-z) - knee / 2.0, knee]
     }
 
     /// Returns the torques of the joints, N·m.
-    fn follow(&self, t: f64, q: &Configuration, v: &Velocity) -> SVector<f64, 12> {
+    fn joint_torques(&self, t: f64, q: &Configuration, v: &Velocity) -> SVector<f64, 12> {
         let h = 1e-4;
         SVector::from_fn(|k, _| {
-            let [wanted, soon] = [t, t + h].map(|t| self.leg(k / 3, t)[k % 3]);
+            let [wanted, soon] = [t, t + h].map(|t| self.desired_leg_angles(k / 3, t)[k % 3]);
             STIFFNESS * (wanted - q[7 + k]) + DAMPING * ((soon - wanted) / h - v[6 + k])
         })
     }
 }
 
 /// Returns the tilt of the trunk, rad.
-fn lean(q: &Configuration) -> f64 {
+fn trunk_tilt(q: &Configuration) -> f64 {
     // Cosine of the angle between the vertical axes of trunk and ground.
     (1.0 - 2.0 * (q[3] * q[3] + q[4] * q[4])).clamp(-1.0, 1.0).acos()
 }
 
 /// Simulates a gait for some seconds, and checks it.
-fn go(gait: &Gait, duration: f64) -> Result<(), Box<dyn std::error::Error>> {
+fn simulate_gait(gait: &Gait, duration: f64) -> Result<(), Box<dyn std::error::Error>> {
     let robot = Solo {};
     let mut start = robot.neutral();
     for foot in 0..4 {
-        start.fixed_rows_mut::<3>(7 + 3 * foot).copy_from_slice(&gait.leg(foot, 0.0));
+        start.fixed_rows_mut::<3>(7 + 3 * foot).copy_from_slice(&gait.desired_leg_angles(foot, 0.0));
     }
     start[2] -= robot.contact_gaps(&start).min();
     let (h, weight) = (1e-3, robot.total_mass() * 9.81);
     let run = simulate(&robot)
         .from(start, Velocity::zeros())
-        .control_every(h, |t, q, v| gait.follow(t, q, v))
+        .control_every(h, |t, q, v| gait.joint_torques(t, q, v))
         .method(TimeStepping::step(h))
         .duration(duration);
     println!("{}\n  t, s   way, m   height, m   lean, mrad   feet that stand", gait.name);
@@ -121,17 +121,21 @@ fn go(gait: &Gait, duration: f64) -> Result<(), Box<dyn std::error::Error>> {
             begin = sample.q;
         } else {
             let (t, q, v) = &end;
-            let forces = contact::forces(&robot, *t, q, v, &gait.follow(*t, q, v), h)?;
+            let forces = contact::forces(&robot, *t, q, v, &gait.joint_torques(*t, q, v), h)?;
             pressed += (0..4).map(|foot| forces[3 * foot]).sum::<f64>();
             steps += 1.0;
         }
         end = (sample.t, sample.q, sample.v);
         let stand = robot.contact_gaps(&sample.q).iter().filter(|gap| **gap < 1e-6).count();
         feet = feet.max(if sample.t > BEGINS { 4 - stand } else { 0 });
-        assert!(lean(&sample.q) < 0.2 && sample.q[2] > 0.18, "the trunk stays upright: {}", sample.q);
+        assert!(trunk_tilt(&sample.q) < 0.2 && sample.q[2] > 0.18, "the trunk stays upright: {}", sample.q);
         if k % 500 == 0 {
             let (way, height) = (sample.q[0] - start[0], sample.q[2]);
-            println!("{:6.2} {way:8.3} {height:11.3} {:12.1} {stand:9}", sample.t, 1e3 * lean(&sample.q));
+            println!(
+                "{:6.2} {way:8.3} {height:11.3} {:12.1} {stand:9}",
+                sample.t,
+                1e3 * trunk_tilt(&sample.q)
+            );
         }
     }
     let speed = (end.1[0] - begin[0]) / (end.0 - since);
@@ -145,8 +149,8 @@ fn go(gait: &Gait, duration: f64) -> Result<(), Box<dyn std::error::Error>> {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    go(&TROT, 5.0)?;
-    go(&WALK, 6.0)
+    simulate_gait(&TROT, 5.0)?;
+    simulate_gait(&WALK, 6.0)
 }
 
 #[test]

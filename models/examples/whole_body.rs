@@ -44,7 +44,7 @@ const REACH: [f64; 3] = [0.03, 0.015, 0.12];
 const RATE: f64 = 6.0;
 
 /// Returns the desired displacement of the trunk from the start, in its axes, with velocity and acceleration.
-fn reference(t: f64) -> [SVector<f64, 6>; 3] {
+fn desired_trunk_motion(t: f64) -> [SVector<f64, 6>; 3] {
     let [side, up, nod] = REACH;
     let trunk_vector = |sin: f64, cos: f64| SVector::from([0.0, side * sin, up * cos, 0.0, nod * sin, 0.0]);
     let (sin, cos) = (RATE * t).sin_cos();
@@ -61,18 +61,23 @@ fn reference(t: f64) -> [SVector<f64, 6>; 3] {
 }
 
 /// Returns the configuration with the desired pose of the trunk.
-fn led(start: &Configuration, t: f64) -> Configuration {
-    let [place, ..] = reference(t);
+fn configuration_with_trunk_pose(start: &Configuration, t: f64) -> Configuration {
+    let [place, ..] = desired_trunk_motion(t);
     let mut displacement = Velocity::zeros();
     displacement.fixed_rows_mut::<6>(0).copy_from(&place);
     Solo {}.integrate(start, &displacement)
 }
 
 /// Returns the torques, and the contact forces that they cause.
-fn control(start: &Configuration, t: f64, q: &Configuration, v: &Velocity) -> (Torques, SVector<f64, 12>) {
+fn torques_and_contact_forces(
+    start: &Configuration,
+    t: f64,
+    q: &Configuration,
+    v: &Velocity,
+) -> (Torques, SVector<f64, 12>) {
     let robot = Solo {};
-    let missing = robot.difference(q, &led(start, t));
-    let [_, velocity, acceleration] = reference(t);
+    let missing = robot.difference(q, &configuration_with_trunk_pose(start, t));
+    let [_, velocity, acceleration] = desired_trunk_motion(t);
     let off = missing.fixed_rows::<6>(0) * 900.0 + (velocity - v.fixed_rows::<6>(0)) * 60.0;
     let target = acceleration + off;
     // With sticking feet: motion and contact forces for zero torques, and their derivatives with respect to
@@ -101,7 +106,7 @@ fn control(start: &Configuration, t: f64, q: &Configuration, v: &Velocity) -> (T
 
 /// Returns the largest ratio of tangential force to friction limit over all feet, with positive normal
 /// forces.
-fn share(forces: &SVector<f64, 12>) -> f64 {
+fn largest_friction_ratio(forces: &SVector<f64, 12>) -> f64 {
     let ratio =
         |foot: usize| forces.fixed_rows::<2>(3 * foot + 1).norm() / (0.6 * forces[3 * foot].max(1e-9));
     (0..4).map(ratio).fold(0.0, f64::max)
@@ -121,7 +126,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let run = simulate(&robot)
         .from(start, Velocity::zeros())
-        .control_every(1e-3, |t, q, v| control(&start, t, q, v).0)
+        .control_every(1e-3, |t, q, v| torques_and_contact_forces(&start, t, q, v).0)
         .method(TimeStepping::step(1e-3))
         .duration(3.0)
         .sample_every(0.25);
@@ -129,8 +134,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for sample in run {
         let Sample { t, q, v, .. } = sample?;
         let moved = robot.difference(&start, &q);
-        let off = robot.difference(&q, &led(&start, t)).fixed_rows::<6>(0).amax();
-        let (_, forces) = control(&start, t, &q, &v);
+        let off = robot.difference(&q, &configuration_with_trunk_pose(&start, t)).fixed_rows::<6>(0).amax();
+        let (_, forces) = torques_and_contact_forces(&start, t, &q, &v);
         let slip = largest_slip_speed(&q, &v);
         println!(
             "{t:6.2} {:10.2} {:9.2} {:11.1} {:9.3} {:10.2} {:11.1e}",
@@ -138,11 +143,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             1e3 * moved[2],
             1e3 * moved[4],
             1e3 * off,
-            share(&forces),
+            largest_friction_ratio(&forces),
             1e6 * slip
         );
         assert!(off < 1e-3, "the trunk is led to a millimetre and a milliradian");
-        assert!(share(&forces) < 0.5 && slip < 1e-6, "feet press well within their cones, and stand");
+        assert!(
+            largest_friction_ratio(&forces) < 0.5 && slip < 1e-6,
+            "feet press well within their cones, and stand"
+        );
     }
     Ok(())
 }

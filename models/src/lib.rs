@@ -112,6 +112,14 @@
 //! | [`Quadrotor`] (rotors with a lag) | 6 and 4 states | hovering, transfer functions |
 //! | [`WheeledSatellite`] (reaction wheels) | 6 | rotation by its wheels, nutation |
 //!
+//! | drives | freedom | closed form in the test |
+//! | --- | --- | --- |
+//! | [`DcMotor`] (inductance, back-EMF) | 1 and 1 state | currents, speeds, eigenvalues, energy |
+//! | [`GearedJoint`] (backlash, losses) | 2 | accelerations, efficiencies, period of oscillations |
+//! | [`SeriesElasticJoint`] | 2 | accelerations, transfer function of the torque |
+//! | [`DelayedServo`] (PID) | 1 and 4 states | characteristic polynomial, phase of the delay |
+//! | [`MuscleForearm`] (Hill-type) | 1 and 2 states | activation over time, force and speed |
+//!
 //! # By joint
 //!
 //! | joint | freedom | element of the language | example |
@@ -259,6 +267,8 @@ mod charged_particle;
 mod coplanar_double_pendulum;
 mod cruising_aircraft;
 mod cylinder_in_trough;
+mod dc_motor;
+mod delayed_servo;
 mod disk_on_incline;
 mod double_pendulum;
 mod duffing_oscillator;
@@ -270,6 +280,7 @@ mod four_bar;
 mod free_rigid_body;
 mod furuta_pendulum;
 mod gear_pair;
+mod geared_joint;
 mod glider;
 mod gravity_gradient_satellite;
 mod gyroscope;
@@ -278,6 +289,7 @@ mod humanoid;
 mod hypersonic_glider;
 mod jeffcott_rotor;
 mod kapitza_pendulum;
+mod muscle_forearm;
 mod nut_on_screw;
 mod pendulum;
 mod pendulum_chain;
@@ -292,6 +304,7 @@ mod rod_in_slot;
 mod roller_on_incline;
 mod rolling_cone;
 mod rolling_disk;
+mod series_elastic_joint;
 mod shaft_with_slider;
 mod slider_crank;
 mod sliding_rod;
@@ -325,6 +338,8 @@ pub use charged_particle::ChargedParticle;
 pub use coplanar_double_pendulum::CoplanarDoublePendulum;
 pub use cruising_aircraft::CruisingAircraft;
 pub use cylinder_in_trough::CylinderInTrough;
+pub use dc_motor::DcMotor;
+pub use delayed_servo::DelayedServo;
 pub use disk_on_incline::DiskOnIncline;
 pub use double_pendulum::DoublePendulum;
 pub use duffing_oscillator::DuffingOscillator;
@@ -336,6 +351,7 @@ pub use four_bar::FourBar;
 pub use free_rigid_body::FreeRigidBody;
 pub use furuta_pendulum::FurutaPendulum;
 pub use gear_pair::GearPair;
+pub use geared_joint::GearedJoint;
 pub use glider::Glider;
 pub use gravity_gradient_satellite::GravityGradientSatellite;
 pub use gyroscope::Gyroscope;
@@ -344,6 +360,7 @@ pub use humanoid::SimpleHumanoid;
 pub use hypersonic_glider::HypersonicGlider;
 pub use jeffcott_rotor::JeffcottRotor;
 pub use kapitza_pendulum::KapitzaPendulum;
+pub use muscle_forearm::MuscleForearm;
 pub use nut_on_screw::NutOnScrew;
 pub use pendulum::Pendulum;
 pub use pendulum_chain::{QuintuplePendulum, TriplePendulum};
@@ -358,6 +375,7 @@ pub use rod_in_slot::RodInSlot;
 pub use roller_on_incline::RollerOnIncline;
 pub use rolling_cone::RollingCone;
 pub use rolling_disk::RollingDisk;
+pub use series_elastic_joint::SeriesElasticJoint;
 pub use shaft_with_slider::ShaftWithSlider;
 pub use slider_crank::SliderCrank;
 pub use sliding_rod::SlidingRod;

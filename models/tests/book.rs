@@ -13,11 +13,11 @@ const FOLDERS: [&str; 4] =
 /// Chapters of the textbook; those on flight and linear systems are combined.
 const CHAPTERS: [&str; 10] = ["1", "2", "3", "4", "5", "6", "7", "8", "9", "10–16"];
 
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+fn collect_source_files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            sources(&path, found);
+            collect_source_files(&path, found);
         } else if path.extension().is_some_and(|extension| extension == "rs") {
             found.push(path);
         }
@@ -25,12 +25,12 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 /// Returns the names of a file's test functions.
-fn tests(text: &str) -> impl Iterator<Item = &str> {
+fn test_function_names(text: &str) -> impl Iterator<Item = &str> {
     text.split("#[test]").skip(1).filter_map(|rest| rest.split_once("fn ")?.1.split('(').next())
 }
 
 /// Returns the texts between backquotes in a table cell.
-fn quoted(cell: &str) -> impl Iterator<Item = &str> {
+fn texts_in_backticks(cell: &str) -> impl Iterator<Item = &str> {
     cell.split('`').skip(1).step_by(2)
 }
 
@@ -39,9 +39,9 @@ fn sections_name_what_exists() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let gallery = fs::read_to_string(root.join("src/lib.rs")).unwrap();
     let mut paths = Vec::new();
-    FOLDERS.iter().for_each(|folder| sources(&root.join(folder), &mut paths));
+    FOLDERS.iter().for_each(|folder| collect_source_files(&root.join(folder), &mut paths));
     let texts: Vec<String> = paths.iter().map(|path| fs::read_to_string(path).unwrap()).collect();
-    let functions: BTreeSet<&str> = texts.iter().flat_map(|text| tests(text)).collect();
+    let functions: BTreeSet<&str> = texts.iter().flat_map(|text| test_function_names(text)).collect();
     let is_test_name = |name: &str| {
         let file = if name.ends_with(".rs") { name.to_string() } else { format!("{name}.rs") };
         functions.contains(name) || paths.iter().any(|path| path.ends_with(&file))
@@ -69,10 +69,10 @@ fn sections_name_what_exists() {
             mistakes.push(format!("{topic}: no chapter {chapter}"));
         }
         let reason = words.trim().strip_prefix("left out").and_then(|rest| rest.split_once([':', ',', ';']));
-        if quoted(proof).next().is_none() && reason.is_none_or(|(_, why)| why.trim().is_empty()) {
+        if texts_in_backticks(proof).next().is_none() && reason.is_none_or(|(_, why)| why.trim().is_empty()) {
             mistakes.push(format!("{topic}: neither proved nor left out with a reason"));
         }
-        for name in quoted(proof) {
+        for name in texts_in_backticks(proof) {
             let exists = if proof.contains(&format!("[`{name}`]")) {
                 exported.contains(name)
             } else {

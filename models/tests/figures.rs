@@ -54,7 +54,7 @@ struct Machine {
 }
 
 /// Returns vectors in which every entry, or only the middle one, is a pathological number.
-fn vectors<const N: usize>() -> impl Iterator<Item = SVector<f64, N>> {
+fn pathological_vectors<const N: usize>() -> impl Iterator<Item = SVector<f64, N>> {
     HOSTILE.into_iter().flat_map(|x| {
         [SVector::repeat(x), SVector::from_fn(|i, _| if i == N / 2 { x } else { 0.3 * i as f64 })]
     })
@@ -63,7 +63,10 @@ fn vectors<const N: usize>() -> impl Iterator<Item = SVector<f64, N>> {
 #[test]
 fn functions_take_any_figures() {
     let list = [Machine { g: 9.81, k: 1.0, l: 0.5 }, Machine { g: f64::NAN, k: f64::MAX, l: 0.0 }];
-    for (machine, (q, v)) in list.iter().flat_map(|m| vectors().zip(vectors()).map(move |state| (m, state))) {
+    for (machine, (q, v)) in list
+        .iter()
+        .flat_map(|m| pathological_vectors().zip(pathological_vectors()).map(move |state| (m, state)))
+    {
         let tau = machine.inverse_dynamics(&q, &v, &v);
         let a = machine.forward_dynamics(&q, &v, &tau);
         let _ = (machine.mass_matrix(&q), machine.kinetic_energy(&q, &v), machine.potential_energy(&q));
@@ -79,7 +82,7 @@ fn functions_take_any_figures() {
             &a.map(splat_lanes),
         );
     }
-    for (q, v) in vectors().zip(vectors()) {
+    for (q, v) in pathological_vectors().zip(pathological_vectors()) {
         let a = Solo12.forward_dynamics(&q, &v, &v);
         let _ = (Solo12.inverse_dynamics(&q, &v, &a), Solo12.forward_dynamics_derivatives(&q, &v, &a));
     }
@@ -88,7 +91,7 @@ fn functions_take_any_figures() {
 #[test]
 fn constraints_take_any_figures() {
     let disk = RollingDisk { g: 9.81, m: 1.0, radius: 0.1 };
-    for (q, v) in vectors().zip(vectors()) {
+    for (q, v) in pathological_vectors().zip(pathological_vectors()) {
         let a = disk.forward_dynamics(&q, &v, &v);
         let _ = (disk.constrained_dynamics(&q, &v, &a), disk.project_configuration(&q));
         let _ = (disk.project_velocity(&q, &v), disk.assemble(&q, &[0, 7, usize::MAX]));
@@ -96,7 +99,7 @@ fn constraints_take_any_figures() {
     }
     for m in HOSTILE {
         let linkage = FourBar { g: m, density: 1.0, a: 1.0, b: 2.0, c: 1.5, d: 2.2 };
-        for (q, v) in vectors().zip(vectors()) {
+        for (q, v) in pathological_vectors().zip(pathological_vectors()) {
             let a = linkage.forward_dynamics(&q, &v, &v);
             let _ = (linkage.constrained_dynamics(&q, &v, &a), linkage.assemble(&q, &[0]));
         }

@@ -12,7 +12,7 @@ use linkwork_design::Mode;
 
 /// Checks that a number equals another within a relative tolerance.
 #[track_caller]
-pub fn close(found: f64, expected: f64, relative: f64) {
+pub fn assert_relatively_close(found: f64, expected: f64, relative: f64) {
     assert!((found - expected).abs() <= relative * expected.abs(), "expected {expected}, found {found}");
 }
 

@@ -17,7 +17,7 @@ type V<T> = SVector<T, 18>;
 type Eight = Lanes<f64, 8>;
 
 /// Returns eight states of the quadruped in SIMD lanes, with configurations displaced from the neutral one.
-fn states() -> (Q<Eight>, V<Eight>) {
+fn eight_states() -> (Q<Eight>, V<Eight>) {
     let v = V::from_fn(|i, _| Lanes::from_fn(|k| ((i * i + 3 * k) as f64).sin()));
     let q = Solo12.neutral().map(Lanes::splat);
     (Solo12.integrate_lanes(&q, &v), v)
@@ -25,7 +25,7 @@ fn states() -> (Q<Eight>, V<Eight>) {
 
 #[test]
 fn eight_states_are_those_of_one() {
-    let (q, v) = states();
+    let (q, v) = eight_states();
     let a = Solo12.forward_dynamics_lanes(&q, &v, &v);
     let mass = Solo12.mass_matrix_lanes(&q);
     let energy = Solo12.kinetic_energy_lanes(&q, &v);
@@ -43,7 +43,7 @@ fn eight_states_are_those_of_one() {
 #[test]
 fn eight_states_fit_into_a_small_stack() {
     let largest_lane_difference = || {
-        let (q, v) = states();
+        let (q, v) = eight_states();
         let a = Solo12.forward_dynamics(&q.map(|x| x.0[0]), &v.map(|x| x.0[0]), &V::zeros());
         let eight = Solo12.forward_dynamics_lanes(&q, &v, &V::zeros());
         (eight.map(|x| x.0[0]) - a).amax()

@@ -124,12 +124,12 @@ fn a_bicycle_weaves_and_capsizes() {
     }
 }
 
-fn matrix(rows: [[f64; 2]; 2]) -> DMatrix<f64> {
+fn matrix_from_rows(rows: [[f64; 2]; 2]) -> DMatrix<f64> {
     DMatrix::from_fn(2, 2, |i, j| rows[i][j])
 }
 
 #[track_caller]
-fn same(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64) {
+fn assert_same_matrix(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64) {
     assert!(
         (found - expected).amax() <= tolerance * expected.amax().max(1.0),
         "expected {expected}, found {found}"
@@ -142,10 +142,12 @@ fn same(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64) {
 #[test]
 fn a_bicycle_has_the_published_matrices() {
     let bicycle = Bicycle::BENCHMARK;
-    let mass = matrix([[80.817_22, 2.319_413_322_087_09], [2.319_413_322_087_09, 0.297_841_881_996_86]]);
-    let c1 = matrix([[0.0, 33.866_413_914_924_94], [-0.850_356_414_569_78, 1.685_403_973_975_60]]);
-    let k0 = matrix([[-80.95, -2.599_516_852_498_72], [-2.599_516_852_498_72, -0.803_294_884_586_18]]);
-    let k2 = matrix([[0.0, 76.597_345_895_732_22], [0.0, 2.654_315_237_946_04]]);
+    let mass =
+        matrix_from_rows([[80.817_22, 2.319_413_322_087_09], [2.319_413_322_087_09, 0.297_841_881_996_86]]);
+    let c1 = matrix_from_rows([[0.0, 33.866_413_914_924_94], [-0.850_356_414_569_78, 1.685_403_973_975_60]]);
+    let k0 =
+        matrix_from_rows([[-80.95, -2.599_516_852_498_72], [-2.599_516_852_498_72, -0.803_294_884_586_18]]);
+    let k2 = matrix_from_rows([[0.0, 76.597_345_895_732_22], [0.0, 2.654_315_237_946_04]]);
     for speed in [0.5, 4.6, 9.0] {
         let mut v = SVector::<f64, 9>::zeros();
         (v[0], v[6], v[8]) = (speed, -speed / bicycle.rear_radius, -speed / bicycle.front_radius);
@@ -156,9 +158,9 @@ fn a_bicycle_has_the_published_matrices() {
         let names: Vec<&str> = system.states().iter().map(|state| state.name.as_str()).collect();
         let lateral = ["pose.wx", "steer"].map(|name| names.iter().position(|n| *n == name).expect(name));
         let lateral_block = |m: &DMatrix<f64>| m.select_rows(&lateral).select_columns(&lateral);
-        same(&lateral_block(&form.mass), &mass, 1e-12);
-        same(&lateral_block(&(&form.damping + &form.gyroscopic)), &(&c1 * speed), 1e-11);
-        same(
+        assert_same_matrix(&lateral_block(&form.mass), &mass, 1e-12);
+        assert_same_matrix(&lateral_block(&(&form.damping + &form.gyroscopic)), &(&c1 * speed), 1e-11);
+        assert_same_matrix(
             &lateral_block(&(&form.stiffness + &form.circulatory)),
             &(&k0 * 9.81 + &k2 * (speed * speed)),
             1e-11,

@@ -258,3 +258,15 @@ pub trait HasFileInertials<'a> {}
     note = "declare one among the fields: `#[equilibrium(joint = angle)] upright: Equilibrium`"
 )]
 pub trait DeclaresEquilibria<'a> {}
+
+/// Program whose arithmetic gives the same bits on every machine. All types have this trait with the feature
+/// `reproducible`, and none without it.
+#[diagnostic::on_unimplemented(
+    message = "`arithmetic = reproducible` needs the feature `reproducible` of the crate `linkwork`",
+    label = "the arithmetic of this program depends on the processor",
+    note = "add it to this dependency in Cargo.toml: `features = [\"reproducible\"]`"
+)]
+pub trait HasReproducibleArithmetic {}
+
+#[cfg(feature = "reproducible")]
+impl<T> HasReproducibleArithmetic for T {}

@@ -165,7 +165,7 @@ pub trait Arithmetic: Registers {
         a: Vector<Self, T, N>,
         b: Vector<Self, T, N>,
     ) -> Vector<Self, T, M> {
-        Vector::joined(&a, &b)
+        Vector::join_vectors(&a, &b)
     }
 
     /// Stores lane `I` of one vector and lane `J` of another vector to rows `ROW` and `ROW + 1` of a matrix
@@ -188,7 +188,7 @@ pub trait Arithmetic: Registers {
         const { assert!(ROW + 1 < R, "there are fewer rows") };
         const { assert!(I < N && J < M, "there are fewer lanes") };
         if let Some(rows) = column.get_mut(ROW..).and_then(<[T]>::first_chunk_mut)
-            && let Some(two) = a.pair(I, &b, J)
+            && let Some(two) = a.pair_of_lanes(I, &b, J)
         {
             *rows = two;
         }
@@ -204,7 +204,7 @@ pub trait Arithmetic: Registers {
     ) {
         const { assert!(ROW + N <= R, "there are fewer rows") };
         if let Some(rows) = column.get_mut(ROW..).and_then(<[T]>::first_chunk_mut) {
-            *rows = *a.numbers();
+            *rows = *a.numbers_of_lanes();
         }
     }
 
@@ -232,7 +232,7 @@ pub trait Arithmetic: Registers {
         // Not a loop: lanes with a variable index are stored in memory until the loop is unrolled.
         macro_rules! store {
             ($($lane:literal)+) => {$(
-                if let Some(two) = a.pair($lane, &b, $lane)
+                if let Some(two) = a.pair_of_lanes($lane, &b, $lane)
                     && let Some(column) = columns.get_mut($lane)
                     && let Some(rows) = column.get_mut(ROW..).and_then(<[T]>::first_chunk_mut)
                 {

@@ -36,14 +36,14 @@ static LAYERS: [Layer; 8] = [
 ];
 
 /// Returns the layers of the atmosphere with the heights of their upper ends; the last layer has none.
-fn layers() -> impl Iterator<Item = (&'static Layer, Option<f64>)> {
+fn layers_with_ends() -> impl Iterator<Item = (&'static Layer, Option<f64>)> {
     let ends = LAYERS.iter().skip(1).map(|next| Some(next.base)).chain([None]);
     LAYERS.iter().zip(ends)
 }
 
 /// Returns the depth of height `h` within a layer, m: the layer's whole thickness above it, zero below it.
 /// The lowest layer is unbounded below.
-fn depth<T: Real>(h: T, layer: &Layer, end: Option<f64>) -> T {
+fn depth_in_layer<T: Real>(h: T, layer: &Layer, end: Option<f64>) -> T {
     let below = end.map_or(h, |end| h.min(constant(end)));
     let inside = if layer.base > 0.0 { below.max(constant(layer.base)) } else { below };
     inside - constant(layer.base)
@@ -58,7 +58,9 @@ fn step<T: Real>(x: T) -> T {
 pub trait Atmosphere: Real {
     /// Returns the temperature of the standard atmosphere at this height, K.
     fn isa_temperature(self) -> Self {
-        layers().fold(constant(T0), |sum, (layer, end)| sum + depth(self, layer, end) * constant(layer.lapse))
+        layers_with_ends().fold(constant(T0), |sum, (layer, end)| {
+            sum + depth_in_layer(self, layer, end) * constant(layer.lapse)
+        })
     }
 
     /// Returns the derivative of the standard temperature with respect to height, K/m. At the boundary of two
@@ -78,12 +80,12 @@ pub trait Atmosphere: Real {
     /// Returns the pressure of the standard atmosphere at this height, Pa.
     fn isa_pressure(self) -> Self {
         let (mut pressure, mut base): (Self, f64) = (constant(P0), T0);
-        for (layer, end) in layers() {
+        for (layer, end) in layers_with_ends() {
             // Layers above have no effect; lanes that differ pass through all layers.
             if layer.base > 0.0 && self < constant(layer.base) {
                 break;
             }
-            let depth = depth(self, layer, end);
+            let depth = depth_in_layer(self, layer, end);
             pressure *= match layer.lapse == 0.0 {
                 true => (depth * constant(-G / (R * base))).exp(),
                 false => {
@@ -116,14 +118,14 @@ mod tests {
         (80_000.0, 198.639, 1.0524),
     ];
 
-    fn geopotential(h: f64) -> f64 {
+    fn geopotential_height(h: f64) -> f64 {
         6_356_766.0 * h / (6_356_766.0 + h)
     }
 
     #[test]
     fn the_published_figures_are_met() {
         for (h, temperature, pressure) in TABLE {
-            let h = geopotential(h);
+            let h = geopotential_height(h);
             assert!((h.isa_temperature() - temperature).abs() < 2e-3, "{h}: {}", h.isa_temperature());
             assert!((h.isa_pressure() / pressure - 1.0).abs() < 1e-4, "{h}: {}", h.isa_pressure());
         }

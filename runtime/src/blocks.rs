@@ -55,7 +55,7 @@ impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<0, &mut S
         if (4..=small::MOST).contains(&R) && K <= small::MOST {
             return small::add_product::<A, T, R, K>(&mut sum.data.0, &self.a.data.0, &self.b.data.0);
         }
-        let a = rolled(&self.a.data.0).iter().enumerate().take(K);
+        let a = hide_length(&self.a.data.0).iter().enumerate().take(K);
         add_columns::<A, T, R, K, C>(&mut sum.data.0, a, &self.b.data.0);
     }
 }
@@ -98,7 +98,7 @@ fn add_columns<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const
 
 /// Returns a slice whose length is hidden from the compiler, so that it does not unroll loops over it.
 #[inline(always)]
-fn rolled<T>(list: &[T]) -> &[T] {
+fn hide_length<T>(list: &[T]) -> &[T] {
     core::hint::black_box(list)
 }
 
@@ -120,13 +120,13 @@ fn rows_of<'a, A: Arithmetic, T: Real, const W: usize, const R: usize, const K: 
     let left = remaining_rows(R, W);
     let mut from = 0;
     for _ in 0..(R - left) / (2 * W) {
-        strip::<A, T, W, 2, 0, R, K, C>(columns, a.clone(), b, from);
+        add_product_strip::<A, T, W, 2, 0, R, K, C>(columns, a.clone(), b, from);
         from += 2 * W;
     }
     match left.div_ceil(W) {
-        1 => strip::<A, T, W, 1, 0, R, K, C>(columns, a.clone(), b, from),
-        2 => strip::<A, T, W, 2, 0, R, K, C>(columns, a.clone(), b, from),
-        3 => strip::<A, T, W, 3, 0, R, K, C>(columns, a.clone(), b, from),
+        1 => add_product_strip::<A, T, W, 1, 0, R, K, C>(columns, a.clone(), b, from),
+        2 => add_product_strip::<A, T, W, 2, 0, R, K, C>(columns, a.clone(), b, from),
+        3 => add_product_strip::<A, T, W, 3, 0, R, K, C>(columns, a.clone(), b, from),
         _ => {}
     }
 }
@@ -143,21 +143,21 @@ fn wide_rows<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C
     let left = remaining_rows(R, 8);
     let mut from = 0;
     for _ in 0..(R - left) / 16 {
-        strip::<A, T, 8, 2, 0, R, K, C>(columns, a.clone(), b, from);
+        add_product_strip::<A, T, 8, 2, 0, R, K, C>(columns, a.clone(), b, from);
         from += 16;
     }
     match (registers_of_eight(left, true), registers_of_four(left, true)) {
-        (1, 0) => strip::<A, T, 8, 1, 0, R, K, C>(columns, a.clone(), b, from),
-        (1, _) => strip::<A, T, 8, 1, 1, R, K, C>(columns, a.clone(), b, from),
-        (2, 0) => strip::<A, T, 8, 2, 0, R, K, C>(columns, a.clone(), b, from),
-        (2, _) => strip::<A, T, 8, 2, 1, R, K, C>(columns, a.clone(), b, from),
-        _ => strip::<A, T, 8, 3, 0, R, K, C>(columns, a.clone(), b, from),
+        (1, 0) => add_product_strip::<A, T, 8, 1, 0, R, K, C>(columns, a.clone(), b, from),
+        (1, _) => add_product_strip::<A, T, 8, 1, 1, R, K, C>(columns, a.clone(), b, from),
+        (2, 0) => add_product_strip::<A, T, 8, 2, 0, R, K, C>(columns, a.clone(), b, from),
+        (2, _) => add_product_strip::<A, T, 8, 2, 1, R, K, C>(columns, a.clone(), b, from),
+        _ => add_product_strip::<A, T, 8, 3, 0, R, K, C>(columns, a.clone(), b, from),
     }
 }
 
 /// Adds the product in `V` registers of rows and `F` registers of four, from a given row on, in all columns.
 #[inline(always)]
-fn strip<
+fn add_product_strip<
     'a,
     A: Arithmetic,
     T: Real,
@@ -176,20 +176,20 @@ fn strip<
     let (fours, rest) = columns.as_chunks_mut::<4>();
     let (factors, last) = b.as_chunks::<4>();
     for (columns, b) in fours.iter_mut().zip(factors) {
-        tile::<A, T, W, V, F, 4, R, K>(columns, a.clone(), b, from);
+        add_product_tile::<A, T, W, V, F, 4, R, K>(columns, a.clone(), b, from);
     }
     match (rest, last) {
         ([x, y, z], [d, e, f]) => {
             let mut three = [*x, *y, *z];
-            tile::<A, T, W, V, F, 3, R, K>(&mut three, a.clone(), &[*d, *e, *f], from);
+            add_product_tile::<A, T, W, V, F, 3, R, K>(&mut three, a.clone(), &[*d, *e, *f], from);
             [*x, *y, *z] = three;
         }
         ([x, y], [d, e]) => {
             let mut two = [*x, *y];
-            tile::<A, T, W, V, F, 2, R, K>(&mut two, a.clone(), &[*d, *e], from);
+            add_product_tile::<A, T, W, V, F, 2, R, K>(&mut two, a.clone(), &[*d, *e], from);
             [*x, *y] = two;
         }
-        ([x], [d]) => tile::<A, T, W, V, F, 1, R, K>(from_mut(x), a.clone(), from_ref(d), from),
+        ([x], [d]) => add_product_tile::<A, T, W, V, F, 1, R, K>(from_mut(x), a.clone(), from_ref(d), from),
         _ => {}
     }
 }
@@ -208,7 +208,7 @@ impl<A: Arithmetic, T: Real, const W: usize, const V: usize, const F: usize> Row
     }
 
     #[inline(always)]
-    fn read(&mut self, column: &[T], from: usize) {
+    fn read_rows(&mut self, column: &[T], from: usize) {
         for (v, register) in self.whole.iter_mut().enumerate() {
             *register = part::<A, T, W>(column, from + v * W);
         }
@@ -218,7 +218,7 @@ impl<A: Arithmetic, T: Real, const W: usize, const V: usize, const F: usize> Row
     }
 
     #[inline(always)]
-    fn write(&self, column: &mut [T], from: usize) {
+    fn write_rows(&self, column: &mut [T], from: usize) {
         for (v, register) in self.whole.iter().enumerate() {
             write_entries(register, column, from + v * W);
         }
@@ -242,7 +242,7 @@ impl<A: Arithmetic, T: Real, const W: usize, const V: usize, const F: usize> Row
 
 /// Adds the product in several registers of rows, from a given row on, in several columns.
 #[inline(always)]
-fn tile<
+fn add_product_tile<
     'a,
     A: Arithmetic,
     T: Real,
@@ -260,11 +260,11 @@ fn tile<
 ) {
     let mut all = [Rows::<A, T, W, V, F>::zero(); G];
     for (rows, column) in all.iter_mut().zip(columns.iter()) {
-        rows.read(column, from);
+        rows.read_rows(column, from);
     }
     for (k, column) in a {
         let mut rows = Rows::zero();
-        rows.read(column, from);
+        rows.read_rows(column, from);
         for (sums, factors) in all.iter_mut().zip(b) {
             if let Some(factor) = factors.get(k) {
                 sums.add_multiple(&rows, *factor);
@@ -272,7 +272,7 @@ fn tile<
         }
     }
     for (column, rows) in columns.iter_mut().zip(&all) {
-        rows.write(column, from);
+        rows.write_rows(column, from);
     }
 }
 

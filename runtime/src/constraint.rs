@@ -28,7 +28,7 @@ mod stabilized;
 pub use assemble::{Loops, assemble, assembly_mode, least_violation};
 pub use careful::{Structure, careful_dynamics, careful_response, nearly_singular};
 pub use differentiable::{ConstrainedDerivatives, EquationDerivatives, MultiplierDerivatives, Visitor};
-pub(crate) use differentiable::{Frozen, column, each_column, multipliers, set_column};
+pub(crate) use differentiable::{Frozen, column_or_zeros, each_column, multipliers_of_forces, set_column};
 pub use error::ConstraintError;
 pub(crate) use graded::change_rates;
 #[doc(hidden)]
@@ -37,7 +37,7 @@ pub use linearize::Linearization;
 #[doc(hidden)]
 pub use linearize::{Motion, constrained_derivatives};
 pub use second::{ConstrainedSecondDerivatives, CurvatureVisitor, EquationSecondDerivatives};
-pub(crate) use second::{FrozenCurvature, adjoint, with_transpose};
+pub(crate) use second::{FrozenCurvature, adjoint_variables, with_transpose};
 #[doc(hidden)]
 pub use second::{constrained_second_derivatives, with_curvature};
 #[doc(hidden)]
@@ -294,10 +294,10 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         let mut last = None;
         for _ in 0..MOST_STEPS {
             let residuals = self.constraint_residuals(t, &q);
-            let (worst, size) = largest(&residuals)?;
+            let (worst, size) = index_of_largest_entry(&residuals)?;
             // The first check is strict: a configuration with uncorrected drift belongs to a slightly
             // different linkage, which may have no singular configuration near that of the mechanism.
-            let enough = if last.is_none() { rounding_of_coordinates(&q) } else { rounding(&q) };
+            let enough = if last.is_none() { rounding_of_coordinates(&q) } else { acceptable_residual(&q) };
             if size <= enough {
                 return Ok(q);
             }
@@ -305,14 +305,16 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
             if last.is_some_and(|last| size * constant(2.0) > last) {
                 return is_acceptable(size, &q)
                     .then_some(q)
-                    .ok_or_else(|| off(Self::CONSTRAINTS, worst, size));
+                    .ok_or_else(|| configuration_error(Self::CONSTRAINTS, worst, size));
             }
             last = Some(size);
             let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(nalgebra::zero()));
             q = self.integrate(&q, &self.constraint_correction(t, &q, &gap));
         }
-        let (worst, size) = largest(&self.constraint_residuals(t, &q))?;
-        is_acceptable(size, &q).then_some(q).ok_or_else(|| off(Self::CONSTRAINTS, worst, size))
+        let (worst, size) = index_of_largest_entry(&self.constraint_residuals(t, &q))?;
+        is_acceptable(size, &q)
+            .then_some(q)
+            .ok_or_else(|| configuration_error(Self::CONSTRAINTS, worst, size))
     }
 
     /// Returns the velocity nearest to `v`, in the metric of the kinetic energy, that satisfies the
@@ -330,25 +332,25 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         let mut v = *v;
         // The second correction removes the residual of the first one, which is large if constraints are
         // nearly dependent.
-        for enough in [epsilon::<Self::Scalar>() * reach(&v), rounding(&v)] {
+        for enough in [epsilon::<Self::Scalar>() * largest_magnitude_or_one(&v), acceptable_residual(&v)] {
             let rates = self.constraint_rates(t, q, &v);
-            if largest(&rates)?.1 <= enough {
+            if index_of_largest_entry(&rates)?.1 <= enough {
                 return Ok(v);
             }
             // Relative to the speed, so that rounding errors can be distinguished from velocities.
-            let unit = reach(&v);
+            let unit = largest_magnitude_or_one(&v);
             v += self.constraint_correction(t, q, &(rates / unit)) * unit;
         }
-        let (worst, size) = largest(&self.constraint_rates(t, q, &v))?;
+        let (worst, size) = index_of_largest_entry(&self.constraint_rates(t, q, &v))?;
         if is_acceptable(size, &v) {
             return Ok(v);
         }
         // Off a branch, near a singular configuration, the constraints have other directions than on the
         // branch.
         let left = self.constraint_residuals(t, q);
-        let farthest = farthest(&self.constraint_jacobian(t, q));
-        if is_acceptable(largest(&left)?.1, q)
-            && size <= careful::minimum_magnitude(&left) * farthest * reach(&v)
+        let farthest = largest_jacobian_entry(&self.constraint_jacobian(t, q));
+        if is_acceptable(index_of_largest_entry(&left)?.1, q)
+            && size <= careful::minimum_magnitude(&left) * farthest * largest_magnitude_or_one(&v)
         {
             return Ok(v);
         }
@@ -373,7 +375,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         v: &SVector<Self::Scalar, NV>,
         held: &[usize],
     ) -> Result<SVector<Self::Scalar, NV>, ConstraintError> {
-        complete::complete(self, t, q, v, held)
+        complete::completed_velocity(self, t, q, v, held)
     }
 
     /// Returns the acceleration with the entries `held` (indices) of `a`. The other entries follow from the
@@ -416,7 +418,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         a: &SVector<Self::Scalar, NV>,
         driven: &[usize],
     ) -> Result<Solution<Self::Scalar, NV, NC>, ConstraintError> {
-        complete::drive(self, t, (q, v), a, driven)
+        complete::driving_forces(self, t, (q, v), a, driven)
     }
 
     /// Projects the configuration, then the velocity.
@@ -437,10 +439,10 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
     ) -> Result<Projected<Self::Scalar, NQ, NV>, ConstraintError> {
         let q = self.project_configuration(t, q)?;
         let found = self.project_velocity(t, &q, v)?;
-        let speed = largest(v)?.1;
-        if largest(&(found - v))?.1 > speed * constant(TURN) {
-            let rate = largest(&self.constraint_rates(t, &q, v))?.1;
-            if open(rate, v) && self.is_nearly_singular(t, &q, &SVector::zeros()) {
+        let speed = index_of_largest_entry(v)?.1;
+        if index_of_largest_entry(&(found - v))?.1 > speed * constant(TURN) {
+            let rate = index_of_largest_entry(&self.constraint_rates(t, &q, v))?.1;
+            if is_near_branch_crossing(rate, v) && self.is_nearly_singular(t, &q, &SVector::zeros()) {
                 return Ok((q, *v));
             }
         }
@@ -449,7 +451,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
 }
 
 /// Returns index and magnitude of the largest entry.
-fn largest<T: Real, const N: usize>(x: &SVector<T, N>) -> Result<(usize, T), ConstraintError> {
+fn index_of_largest_entry<T: Real, const N: usize>(x: &SVector<T, N>) -> Result<(usize, T), ConstraintError> {
     let mut found = (0, T::zero());
     for (k, x) in x.iter().enumerate() {
         if !x.is_finite() {
@@ -463,7 +465,7 @@ fn largest<T: Real, const N: usize>(x: &SVector<T, N>) -> Result<(usize, T), Con
 }
 
 /// Returns the largest magnitude of the entries of a vector, but at least one.
-fn reach<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
+fn largest_magnitude_or_one<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::one(), |reach, x| reach.max(x.abs()))
 }
 
@@ -471,36 +473,40 @@ fn reach<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
 const ROUNDINGS: f64 = 16.0;
 
 /// Returns the residual of constraints that are satisfied as accurately as floating-point numbers permit.
-fn rounding<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
-    constant::<T>(ROUNDINGS) * epsilon() * reach(x)
+fn acceptable_residual<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
+    constant::<T>(ROUNDINGS) * epsilon() * largest_magnitude_or_one(x)
 }
 
 /// Returns the residual that rounding of the coordinates alone causes. Angles of many revolutions have larger
 /// rounding errors than other coordinates.
 fn rounding_of_coordinates<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
-    epsilon::<T>() * reach(x).max(constant(ROUNDINGS))
+    epsilon::<T>() * largest_magnitude_or_one(x).max(constant(ROUNDINGS))
 }
 
 /// Returns whether a residual is acceptable: half of the digits, which is the accuracy where constraints lose
 /// rank.
 fn is_acceptable<T: Real, const N: usize>(size: T, x: &SVector<T, N>) -> bool {
-    size <= epsilon::<T>().sqrt() * reach(x)
+    size <= epsilon::<T>().sqrt() * largest_magnitude_or_one(x)
 }
 
 /// Returns whether a constraint rate is so small that the velocity may belong to either of two crossing
 /// branches.
-fn open<T: Real, const N: usize>(rate: T, v: &SVector<T, N>) -> bool {
+fn is_near_branch_crossing<T: Real, const N: usize>(rate: T, v: &SVector<T, N>) -> bool {
     rate <= epsilon::<T>().sqrt().sqrt() * v.iter().fold(T::zero(), |most, v| most.max(v.abs()))
 }
 
 /// Returns the largest magnitude of the entries of the Jacobian, but at least one.
-fn farthest<T: Real, const NC: usize, const NV: usize>(jacobian: &SMatrix<T, NC, NV>) -> T {
+fn largest_jacobian_entry<T: Real, const NC: usize, const NV: usize>(jacobian: &SMatrix<T, NC, NV>) -> T {
     jacobian
         .column_iter()
         .fold(T::one(), |most, column| column.iter().fold(most, |most, j| most.max(j.abs())))
 }
 
-fn off<T: Real, const NC: usize>(names: [&'static str; NC], worst: usize, size: T) -> ConstraintError {
+fn configuration_error<T: Real, const NC: usize>(
+    names: [&'static str; NC],
+    worst: usize,
+    size: T,
+) -> ConstraintError {
     let constraint = names.get(worst).copied().unwrap_or_default();
     ConstraintError::Configuration { constraint, residual: to_f64(size) }
 }

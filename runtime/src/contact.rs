@@ -85,9 +85,10 @@ use crate::blocks::zeros;
 use crate::constraint::ConstraintError;
 use crate::derivatives::ByMotion;
 use crate::integrate::{
-    ContinuousInputs, Dynamics, Error, State, System, guided, holding, positive, settled,
+    ContinuousInputs, Dynamics, Error, State, System, check_positive, enforce_closed_contacts,
+    project_end_of_step, rk4_step_with_contacts,
 };
-use crate::private::{constant, epsilon, to_f64};
+use crate::private::{constant, epsilon, positive_part, to_f64};
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
@@ -276,7 +277,7 @@ pub struct Responses<T, const NV: usize, const NR: usize> {
 
 impl<T: Real, const NV: usize, const NR: usize> Responses<T, NV, NR> {
     /// Returns zero responses: impulses change no velocity.
-    fn zeros() -> Self {
+    fn zero_effects() -> Self {
         Self { velocities: zeros::<T, NV, NR>(), rates: zeros::<T, NR, NR>() }
     }
 
@@ -313,7 +314,7 @@ pub struct Touched<T, const NQ: usize, const NV: usize> {
 
 impl<T: Real, const NQ: usize, const NV: usize> Touched<T, NQ, NV> {
     /// Returns the end of a step on which no contact acted: state without impulses or violation.
-    pub(crate) fn free(q: SVector<T, NQ>, v: SVector<T, NV>) -> Self {
+    pub(crate) fn state_without_contacts(q: SVector<T, NQ>, v: SVector<T, NV>) -> Self {
         Self { q, v, held: SVector::zeros(), impulses: Impulses::none(), violation: T::zero() }
     }
 }
@@ -330,7 +331,7 @@ pub struct Solved<T, const NV: usize, const NR: usize> {
 
 /// Returns the gap below which surfaces count as touching, m: the rounding error of positions of some metres,
 /// far below relevant distances.
-fn near<T: Real>() -> T {
+fn touching_distance<T: Real>() -> T {
     epsilon::<T>().sqrt() * constant(0.67)
 }
 
@@ -433,16 +434,16 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    positive("the time", h)?;
+    check_positive("the time", h)?;
     let constraint_error = |reason| Error::Constraint { t: to_f64(t), reason };
     let held = ContinuousInputs(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
     let mut system = System::new(mechanism, held);
     let start = State { t, q: *q, v: *v };
     let at_start = system.acceleration(t, q, v);
-    let (rate, impulses) =
-        holding(&mut system, &start, &at_start, &Impulses::none(), h).map_err(constraint_error)?;
-    let (free, given) = guided(&mut system, &start, (&at_start, &rate), h, t + h);
-    let free = settled(&system, free, t)?;
+    let (rate, impulses) = enforce_closed_contacts(&mut system, &start, &at_start, &Impulses::none(), h)
+        .map_err(constraint_error)?;
+    let (free, given) = rk4_step_with_contacts(&mut system, &start, (&at_start, &rate), h, t + h);
+    let free = project_end_of_step(&system, free, t)?;
     let came = Came::from((q, v), h, given * (h * constant(0.5)));
     let end = free.v - given;
     let Some(closed) = closed(mechanism, t + h, &free.q, &end, Some(&came)).map_err(constraint_error)? else {
@@ -487,7 +488,7 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let gaps = mechanism.contact_gaps(t, q);
-    let closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= near());
+    let closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= touching_distance());
     if closed.iter().all(|is_closed| !is_closed) {
         return Ok(SVector::zeros());
     }
@@ -499,7 +500,7 @@ where
     let layout = Layout::of(mechanism);
     for (_, first) in layout.gaps() {
         if let Some(rate) = free.get_mut(first) {
-            *rate = rate.max(T::zero());
+            *rate = positive_part(*rate);
         }
     }
     free += (moved + mechanism.contact_bias(t, q, v)) * h;
@@ -511,9 +512,9 @@ where
     let slip = mechanism.contact_rates(t, q, v);
     let solve_contacts = |free: &SVector<T, NR>| {
         let mut problem = Problem::new(layout, &laws, &closed, free);
-        problem.stick(&laws, |k| phase::length(&slip, layout.tangents(k)) <= near());
+        problem.stick(&laws, |k| phase::length(&slip, layout.tangents(k)) <= touching_distance());
         problem.weigh(&responses.rates);
-        let found = problem.solve_sticking().map_err(failed::<M, T, NQ, NV, NU, NK, NR>)?;
+        let found = problem.solve_sticking().map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?;
         Ok((problem.spread(&found), problem.touches(&found).0))
     };
     // Rates change in the short time as the accelerations of contacts that stick do, if their forces press
@@ -541,14 +542,22 @@ where
     phase::sustain_slip(&mut accelerations, &slip, layout);
     let (lasting, touches) = solve_contacts(&accelerations)?;
     match phase::stopped_contact(&slip, &touches, &laws, layout) {
-        Some(contact) => Err(failed::<M, T, NQ, NV, NU, NK, NR>(contact)),
+        Some(contact) => Err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>(contact)),
         None if forces.amax() <= lasting.amax() * constant(2.0) => Ok(forces),
         None => Ok(lasting),
     }
 }
 
 /// Returns the error for a contact whose conditions no impulses satisfy.
-fn failed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+fn unsolved_contact_error<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
     contact: usize,
 ) -> ConstraintError
 where

@@ -154,7 +154,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         _q: &SVector<Self::Scalar, NQ>,
         _v: &SVector<Self::Scalar, NV>,
     ) -> Square<Self::Scalar, NV> {
-        unknown()
+        unknown_matrix()
     }
 
     /// Returns `(∂ṗ/∂q, ∂ṗ/∂v)` of [`momentum_rate`](Mechanism::momentum_rate). NaN without
@@ -165,7 +165,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         _q: &SVector<Self::Scalar, NQ>,
         _v: &SVector<Self::Scalar, NV>,
     ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>) {
-        (unknown(), unknown())
+        (unknown_matrix(), unknown_matrix())
     }
 
     /// Passes the mechanism to `visitor`, with the numbers of its constraints as const parameters, if their
@@ -287,7 +287,7 @@ where
 }
 
 /// Returns a matrix of NaN, for derivatives that are not available.
-pub(crate) fn unknown<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
+pub(crate) fn unknown_matrix<T: Real, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
     SMatrix::repeat(constant(f64::NAN))
 }
 
@@ -308,7 +308,11 @@ pub struct LinearMotion<T, const NV: usize, const NU: usize> {
 }
 
 /// Returns an entry of a matrix of two by two blocks.
-pub(crate) fn entry<T: Real, const NV: usize>(blocks: [[&Square<T, NV>; 2]; 2], i: usize, j: usize) -> T {
+pub(crate) fn entry_of_blocks<T: Real, const NV: usize>(
+    blocks: [[&Square<T, NV>; 2]; 2],
+    i: usize,
+    j: usize,
+) -> T {
     let block_index = |k: usize| if k < NV { (0, k) } else { (1, k - NV) };
     let ((row, i), (column, j)) = (block_index(i), block_index(j));
     let block = blocks.get(row).and_then(|blocks| blocks.get(column)).and_then(|block| block.get((i, j)));
@@ -316,7 +320,7 @@ pub(crate) fn entry<T: Real, const NV: usize>(blocks: [[&Square<T, NV>; 2]; 2], 
 }
 
 /// Returns the matrix that stacks the block `above` on the block `below`.
-pub(crate) fn column<T: Real, const NV: usize, const NU: usize, const NX: usize>(
+pub(crate) fn stack_blocks<T: Real, const NV: usize, const NU: usize, const NX: usize>(
     above: &SMatrix<T, NV, NU>,
     below: &SMatrix<T, NV, NU>,
 ) -> SMatrix<T, NX, NU> {
@@ -332,13 +336,13 @@ impl<T: Real, const NV: usize, const NU: usize> LinearMotion<T, NV, NU> {
     pub fn a<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         let identity = Square::identity();
-        SMatrix::from_fn(|i, j| entry([[&self.turning, &identity], [&self.by_q, &self.by_v]], i, j))
+        SMatrix::from_fn(|i, j| entry_of_blocks([[&self.turning, &identity], [&self.by_q, &self.by_v]], i, j))
     }
 
     /// Returns `B` of `ẋ = A x + B δu`; `NX` is `2 NV`.
     pub fn b<const NX: usize>(&self) -> SMatrix<T, NX, NU> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
-        column(&SMatrix::zeros(), &self.by_u)
+        stack_blocks(&SMatrix::zeros(), &self.by_u)
     }
 }
 

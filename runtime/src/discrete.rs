@@ -36,7 +36,7 @@
 
 use crate::blocks::{NearlyIdentity, zeros};
 use crate::constraint::{ConstrainedDerivatives, ConstraintError, Projected, Visitor};
-use crate::derivatives::{Derivatives, column, entry};
+use crate::derivatives::{Derivatives, entry_of_blocks, stack_blocks};
 use crate::integrate::{
     ContinuousInputs, Error, Method, NoInputs, Rk4, SemiImplicitEuler, State, Step, System,
 };
@@ -104,14 +104,14 @@ where
     let start = State { t: T::zero(), q: *q, v: *v };
     let mut memory = method.memory();
     if NU == 0 {
-        return System::new(mechanism, NoInputs).advance(method, &mut memory, t, &start, None, false);
+        return System::new(mechanism, NoInputs).advance_step(method, &mut memory, t, &start, None, false);
     }
     let held = ContinuousInputs(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
-    System::new(mechanism, held).advance(method, &mut memory, t, &start, None, false)
+    System::new(mechanism, held).advance_step(method, &mut memory, t, &start, None, false)
 }
 
 /// Returns the state after a step of `h` seconds, and the mean rate of the displacement over the step.
-fn advanced<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
+fn state_after_step<M, T, S, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     method: &S,
     t: T,
@@ -402,7 +402,7 @@ impl<T: Real, const NV: usize> Chained<T, NV> {
     }
 
     /// Returns both derivatives as matrices that are the identity outside the stored column ranges.
-    pub(crate) fn nearly(&self) -> [NearlyIdentity<'_, T, NV>; 2] {
+    pub(crate) fn nearly_identity_matrices(&self) -> [NearlyIdentity<'_, T, NV>; 2] {
         let [of_q, of_displacement] = self.others;
         [
             NearlyIdentity::with_range(&self.by_q, of_q),
@@ -432,13 +432,13 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, N
     pub fn a<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         let blocks = [[&self.q_by_q, &self.q_by_v], [&self.v_by_q, &self.v_by_v]];
-        SMatrix::from_fn(|i, j| entry(blocks, i, j))
+        SMatrix::from_fn(|i, j| entry_of_blocks(blocks, i, j))
     }
 
     /// Returns `B` of `x⁺ = A x + B δu`; `NX` is `2 NV`.
     pub fn b<const NX: usize>(&self) -> SMatrix<T, NX, NU> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
-        column(&self.q_by_u, &self.v_by_u)
+        stack_blocks(&self.q_by_u, &self.v_by_u)
     }
 
     /// Returns the gradient of a function with respect to configuration, velocity and inputs before the step,
@@ -474,7 +474,7 @@ pub fn stacked<T: Real, const NV: usize, const NX: usize>(
     dv: &SVector<T, NV>,
 ) -> SVector<T, NX> {
     const { assert!(NX == 2 * NV, "the vector has twice as many numbers as there are velocities") };
-    column(dq, dv)
+    stack_blocks(dq, dv)
 }
 
 /// Splits a vector made by [`stacked`] into displacements and changes of velocity.

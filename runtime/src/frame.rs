@@ -350,7 +350,7 @@ pub fn placement_difference<T: Real>(from: &IsometryMatrix3<T>, to: &IsometryMat
 pub const fn index_of(names: &[&str], name: &str) -> Option<usize> {
     let mut k = 0;
     while k < names.len() {
-        if same(names[k].as_bytes(), name.as_bytes()) {
+        if has_same_bytes(names[k].as_bytes(), name.as_bytes()) {
             return Some(k);
         }
         k += 1;
@@ -358,7 +358,7 @@ pub const fn index_of(names: &[&str], name: &str) -> Option<usize> {
     None
 }
 
-const fn same(a: &[u8], b: &[u8]) -> bool {
+const fn has_same_bytes(a: &[u8], b: &[u8]) -> bool {
     if a.len() != b.len() {
         return false;
     }

@@ -11,6 +11,7 @@
 //! | [`contact`] | contacts that open and close, joint stops: impacts, friction |
 //! | [`functions`] | generated functions, printed equations |
 //! | [`simulating`] | integrators, inputs, events |
+//! | [`drives`] | motors, gears, series springs, delays, controllers, muscles |
 //! | [`control`] | code for any mechanism: steps with Jacobians, regulators, Kalman filters, names |
 //! | [`batches`] | evaluation of many states at once |
 //! | [`gpus`] | functions for millions of states on GPUs |
@@ -47,6 +48,9 @@ pub mod functions {}
 
 #[doc = include_str!("../guide/simulating.md")]
 pub mod simulating {}
+
+#[doc = include_str!("../guide/drives.md")]
+pub mod drives {}
 
 #[doc = include_str!("../guide/control.md")]
 pub mod control {}

@@ -197,13 +197,13 @@ where
 }
 
 impl<T: Real, const N: usize, const B: usize> Map<T, N, B> {
-    fn value(&self, of: &[Matrix4<T>; N]) -> SVector<T, B> {
-        SVector::from_fn(|i, _| inner(&self.factors[i], of))
+    fn value_of_map(&self, of: &[Matrix4<T>; N]) -> SVector<T, B> {
+        SVector::from_fn(|i, _| inner_product(&self.factors[i], of))
     }
 }
 
 /// Returns the sum of the products of all entries.
-fn inner<T: Real, const N: usize>(a: &[Matrix4<T>; N], b: &[Matrix4<T>; N]) -> T {
+fn inner_product<T: Real, const N: usize>(a: &[Matrix4<T>; N], b: &[Matrix4<T>; N]) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + a.dot(b))
 }
 
@@ -219,7 +219,7 @@ fn least_change<T: Real, const N: usize, const B: usize>(
     let prior_inverse = prior.map(|p| inverse(&p));
     let mut p = *prior;
     let not_physical_error = |p: &[Matrix4<T>; N]| {
-        let residual = (map.value(p) + map.rest - base).amax();
+        let residual = (map.value_of_map(p) + map.rest - base).amax();
         Err(PutBackError::NotPhysical { residual: to_f64(residual) })
     };
     let enough = epsilon::<T>().cbrt() * constant(4.0);
@@ -240,10 +240,9 @@ fn least_change<T: Real, const N: usize, const B: usize>(
                 *moved = p * a * p;
             }
         }
-        let mut s =
-            SMatrix::<T, B, B>::from_fn(
-                |i, j| if j <= i { inner(&map.factors[i], &moved[j]) } else { T::zero() },
-            );
+        let mut s = SMatrix::<T, B, B>::from_fn(|i, j| {
+            if j <= i { inner_product(&map.factors[i], &moved[j]) } else { T::zero() }
+        });
         // Base parameters, or combinations of them, that these links do not reach are satisfied
         // approximately.
         let unit = *diagonal.get_or_insert_with(|| softness_of(&s, softness.map(|_| T::one())));
@@ -253,7 +252,7 @@ fn least_change<T: Real, const N: usize, const B: usize>(
         }
         let Some(factor) = Cholesky::new(s) else { return not_physical_error(&p) };
         let ahead: [Matrix4<T>; N] = core::array::from_fn(|k| p[k] + free[k]);
-        let mut nu = map.value(&ahead) + map.rest - base;
+        let mut nu = map.value_of_map(&ahead) + map.rest - base;
         if softness.is_none() {
             // Augmented Lagrangian: over the iterations, all base parameters that can be satisfied are
             // satisfied.
@@ -286,7 +285,7 @@ fn least_change<T: Real, const N: usize, const B: usize>(
                 share = least.max(share * constant(0.25));
             }
         } else if length < enough {
-            let holds = (map.value(&p) + map.rest - base).amax() <= base.amax() * enough;
+            let holds = (map.value_of_map(&p) + map.rest - base).amax() <= base.amax() * enough;
             let exact = soft.iter().all(|x| *x == T::zero());
             return if holds || !exact { Ok(p) } else { not_physical_error(&p) };
         }

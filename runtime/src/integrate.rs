@@ -54,7 +54,7 @@ pub use rosenbrock::Rosenbrock;
 pub use semi_implicit_euler::SemiImplicitEuler;
 pub use system::{ContinuousInputs, Dynamics, Inputs, NoInputs, SampledInputs, System};
 pub use time_stepping::TimeStepping;
-pub(crate) use time_stepping::{guided, holding};
+pub(crate) use time_stepping::{enforce_closed_contacts, rk4_step_with_contacts};
 
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
@@ -73,7 +73,7 @@ pub struct State<T, const NQ: usize, const NV: usize> {
 
 impl<T: Real, const NQ: usize, const NV: usize> State<T, NQ, NV> {
     /// Returns the state, or [`Error::NotFinite`] if any of its numbers is infinite or NaN.
-    pub(crate) fn finite(self) -> Result<Self, Error> {
+    pub(crate) fn check_finite(self) -> Result<Self, Error> {
         let finite = self.t.is_finite() && is_finite(&self.q) && is_finite(&self.v);
         if finite { Ok(self) } else { Err(Error::NotFinite { t: to_f64(self.t) }) }
     }
@@ -81,13 +81,13 @@ impl<T: Real, const NQ: usize, const NV: usize> State<T, NQ, NV> {
 
 /// Projects the end of a step onto the constraints, which remove the drift of the step. [`Error::NotFinite`]
 /// and [`Error::Constraint`] report the time `t` of the start.
-pub(crate) fn settled<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(crate) fn project_end_of_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     end: State<T, NQ, NV>,
     t: T,
 ) -> Result<State<T, NQ, NV>, Error> {
     let t = to_f64(t);
-    let end = end.finite().map_err(|_| Error::NotFinite { t })?;
+    let end = end.check_finite().map_err(|_| Error::NotFinite { t })?;
     if !system.is_constrained() {
         return Ok(end);
     }
@@ -158,19 +158,19 @@ pub(crate) fn is_finite<T: Real, const N: usize>(x: &SVector<T, N>) -> bool {
 }
 
 /// Returns the largest magnitude of the entries of a vector.
-fn largest<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
+fn largest_magnitude<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::zero(), |largest, x| largest.max(x.abs()))
 }
 
 /// Checks that a number is finite and not negative; otherwise returns [`Error::InvalidStep`] with the name of
 /// the setting.
 pub(crate) fn not_negative<T: Real>(name: &'static str, value: T) -> Result<(), Error> {
-    if value == T::zero() { Ok(()) } else { positive(name, value) }
+    if value == T::zero() { Ok(()) } else { check_positive(name, value) }
 }
 
 /// Checks that a number is finite and positive; otherwise returns [`Error::InvalidStep`] with the name of the
 /// setting.
-pub(crate) fn positive<T: Real>(name: &'static str, value: T) -> Result<(), Error> {
+pub(crate) fn check_positive<T: Real>(name: &'static str, value: T) -> Result<(), Error> {
     if value.is_finite() && value > T::zero() {
         Ok(())
     } else {

@@ -54,6 +54,7 @@
 //! - [contact](guide/contact/index.html): impacts, friction, joint stops;
 //! - [functions](guide/functions/index.html) that are generated, and printed equations;
 //! - [simulating](guide/simulating/index.html): integrators, inputs, events;
+//! - [drives](guide/drives/index.html): motors, gears, series springs, delays, controllers, muscles;
 //! - [control](guide/control/index.html): regulators, estimators, optimal control;
 //! - [batches](guide/batches/index.html): many states at once;
 //! - [live pages](guide/live/index.html): simulation in a browser;
@@ -84,6 +85,8 @@
 //! - `std` (default): elementary functions of the standard library. Release builds for x86-64 compile large
 //!   functions also for AVX2 and FMA, and choose at run time ([speed](guide/speed/index.html)).
 //! - `libm`: elementary functions of the crate `libm`, for targets without the standard library.
+//! - `reproducible`: results of the whole program have the same bits on every machine
+//!   ([speed](guide/speed/index.html)).
 //! - `serde`: serialisation of `Inertial` and `Placement`, the fields of robots whose file values are
 //!   parameters.
 //! - `rayon`: rollouts of many states on all processors.

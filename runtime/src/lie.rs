@@ -36,12 +36,12 @@ fn add<T: Real>([a, b, c]: [T; 3], [x, y, z]: [T; 3]) -> [T; 3] {
     [a + x, b + y, c + z]
 }
 
-fn scale<T: Real>([a, b, c]: [T; 3], s: T) -> [T; 3] {
+fn scaled_vector<T: Real>([a, b, c]: [T; 3], s: T) -> [T; 3] {
     [a * s, b * s, c * s]
 }
 
 /// Returns the Hamilton product of two quaternions x y z w.
-fn product<T: Real>([ax, ay, az, aw]: [T; 4], [bx, by, bz, bw]: [T; 4]) -> [T; 4] {
+fn quaternion_product<T: Real>([ax, ay, az, aw]: [T; 4], [bx, by, bz, bw]: [T; 4]) -> [T; 4] {
     let [x, y, z] = cross([ax, ay, az], [bx, by, bz]);
     [
         x + aw * bx + bw * ax,
@@ -55,21 +55,21 @@ fn conjugate<T: Real>([x, y, z, w]: [T; 4]) -> [T; 4] {
     [-x, -y, -z, w]
 }
 
-fn normalised<T: Real>([x, y, z, w]: [T; 4]) -> [T; 4] {
+fn normalised_quaternion<T: Real>([x, y, z, w]: [T; 4]) -> [T; 4] {
     let norm = (x * x + y * y + z * z + w * w).sqrt();
     [x / norm, y / norm, z / norm, w / norm]
 }
 
 /// Returns `a` rotated by the unit quaternion: `a + 2 u × (u × a + w a)`.
-fn rotated<T: Real>([x, y, z, w]: [T; 4], a: [T; 3]) -> [T; 3] {
+fn rotated_vector<T: Real>([x, y, z, w]: [T; 4], a: [T; 3]) -> [T; 3] {
     let u = [x, y, z];
-    let inner = add(cross(u, a), scale(a, w));
-    add(a, scale(cross(u, inner), constant(2.0)))
+    let inner = add(cross(u, a), scaled_vector(a, w));
+    add(a, scaled_vector(cross(u, inner), constant(2.0)))
 }
 
 /// Returns `small(x)` if `x` is below the limit and `large(x)` otherwise. If lanes differ, both functions are
 /// evaluated within their own ranges, and every lane has the result of a single number.
-fn choose<T: Real, const K: usize>(
+fn choose_by_limit<T: Real, const K: usize>(
     x: T,
     limit: T,
     small: impl Fn(T) -> [T; K],
@@ -96,22 +96,22 @@ const SMALL_TURN: f64 = 0.05;
 const SMALL_TANGENT: f64 = 0.0025;
 
 /// Returns `1/d₀ − x/d₁ + x²/d₂ − …`
-fn polynomial<T: Real, const N: usize>(x: T, divisors: [f64; N]) -> T {
+fn alternating_polynomial<T: Real, const N: usize>(x: T, divisors: [f64; N]) -> T {
     divisors.iter().rev().fold(T::zero(), |sum, d| constant::<T>(1.0 / d) - x * sum)
 }
 
 /// Returns the unit quaternion of the rotation vector `dv`: `(dv sin(θ/2)/θ, cos(θ/2))`.
-pub(crate) fn exponential<T: Real>(dv: [T; 3]) -> [T; 4] {
+pub(crate) fn quaternion_exponential<T: Real>(dv: [T; 3]) -> [T; 4] {
     let square = dot(dv, dv);
-    let [factor, w] = choose(
+    let [factor, w] = choose_by_limit(
         square,
         constant(SMALL_TURN),
         // The first neglected terms are of order (θ/2)¹².
         |square| {
             let half = square * constant(0.25);
             [
-                polynomial(half, [1.0, 6.0, 120.0, 5040.0, 362880.0, 39916800.0]) * constant(0.5),
-                polynomial(half, [1.0, 2.0, 24.0, 720.0, 40320.0, 3628800.0]),
+                alternating_polynomial(half, [1.0, 6.0, 120.0, 5040.0, 362880.0, 39916800.0]) * constant(0.5),
+                alternating_polynomial(half, [1.0, 2.0, 24.0, 720.0, 40320.0, 3628800.0]),
             ]
         },
         |square| {
@@ -120,34 +120,34 @@ pub(crate) fn exponential<T: Real>(dv: [T; 3]) -> [T; 4] {
             [sin / angle, cos]
         },
     );
-    let [x, y, z] = scale(dv, factor);
+    let [x, y, z] = scaled_vector(dv, factor);
     [x, y, z, w]
 }
 
 /// Returns the shortest rotation vector of a quaternion of any nonzero norm.
-pub(crate) fn logarithm<T: Real>([x, y, z, w]: [T; 4]) -> [T; 3] {
+pub(crate) fn quaternion_logarithm<T: Real>([x, y, z, w]: [T; 4]) -> [T; 3] {
     let sign = T::one().copysign(w);
-    let u = scale([x, y, z], sign);
+    let u = scaled_vector([x, y, z], sign);
     let w = w * sign;
-    let [factor] = choose(
+    let [factor] = choose_by_limit(
         dot(u, u),
         w * w * constant(SMALL_TANGENT),
         // The first neglected term is of order tan¹⁴.
         |square| {
             let inverse = T::one() / w;
             let tangent = square * inverse * inverse;
-            [polynomial(tangent, [1.0, 3.0, 5.0, 7.0, 9.0, 11.0, 13.0]) * inverse * constant(2.0)]
+            [alternating_polynomial(tangent, [1.0, 3.0, 5.0, 7.0, 9.0, 11.0, 13.0]) * inverse * constant(2.0)]
         },
         |square| {
             let sin = square.sqrt();
             [constant::<T>(2.0) * sin.atan2(w) / sin]
         },
     );
-    scale(u, factor)
+    scaled_vector(u, factor)
 }
 
 /// Returns `Σ weight(k) cₖ x^(k − from)` over k ≥ `from`, with the Bernoulli coefficients `cₖ`.
-fn series<T: Real>(x: T, from: usize, weight: impl Fn(f64) -> f64) -> T {
+fn bernoulli_series<T: Real>(x: T, from: usize, weight: impl Fn(f64) -> f64) -> T {
     let terms = (1_u8..).zip(BERNOULLI).skip(from - 1);
     let (sum, _) = terms.fold((T::zero(), T::one()), |(sum, power), (k, c)| {
         (sum + power * constant(weight(f64::from(k)) * c), power * x)
@@ -162,10 +162,10 @@ const SERIES_ANGLE: f64 = 0.25;
 /// Returns `(1 − (θ/2) cot(θ/2)) / θ²` as a function of `θ²`: the factor of `[φ, [φ, ·]]` in the inverse
 /// Jacobians of SO(3). Not finite at full rotations, where the exponential cannot be inverted.
 fn second_bracket<T: Real>(square: T) -> T {
-    let [factor] = choose(
+    let [factor] = choose_by_limit(
         square,
         constant(SERIES_ANGLE),
-        |square| [series(square, 1, |_| 1.0)],
+        |square| [bernoulli_series(square, 1, |_| 1.0)],
         |square| {
             let half = square.sqrt() * constant(0.5);
             [(T::one() - half / half.tan()) / square]
@@ -179,10 +179,10 @@ fn second_bracket<T: Real>(square: T) -> T {
 /// `ad` has the minimal polynomial `ad (ad² + θ²)²`, so `(ad/2) coth(ad/2)` is the even polynomial of degree
 /// four that agrees with it at `iθ` in value and slope (Selig, *Geometric Fundamentals of Robotics*, §4.6).
 fn even_brackets<T: Real>(square: T) -> [T; 2] {
-    choose(
+    choose_by_limit(
         square,
         constant(SERIES_ANGLE),
-        |square| [series(square, 1, |k| 2.0 - k), series(square, 2, |k| 1.0 - k)],
+        |square| [bernoulli_series(square, 1, |k| 2.0 - k), bernoulli_series(square, 2, |k| 1.0 - k)],
         |square| {
             let half = square.sqrt() * constant(0.5);
             let (sin, cos) = Compiled::sin_cos(half);
@@ -194,7 +194,7 @@ fn even_brackets<T: Real>(square: T) -> [T; 2] {
 }
 
 /// Returns the bracket `[a, b]` of SE(3) for body velocities, linear part first.
-fn bracket<T: Real>(a: [T; 6], b: [T; 6]) -> [T; 6] {
+fn lie_bracket<T: Real>(a: [T; 6], b: [T; 6]) -> [T; 6] {
     let [ax, ay, az, arx, ary, arz] = a;
     let [bx, by, bz, brx, bry, brz] = b;
     let (a_turn, b_turn) = ([arx, ary, arz], [brx, bry, brz]);
@@ -204,20 +204,20 @@ fn bracket<T: Real>(a: [T; 6], b: [T; 6]) -> [T; 6] {
 }
 
 /// Returns the sum `a + s b` of two vectors of six numbers.
-fn plus<T: Real>([a0, a1, a2, a3, a4, a5]: [T; 6], s: T, [b0, b1, b2, b3, b4, b5]: [T; 6]) -> [T; 6] {
+fn plus_scaled<T: Real>([a0, a1, a2, a3, a4, a5]: [T; 6], s: T, [b0, b1, b2, b3, b4, b5]: [T; 6]) -> [T; 6] {
     [a0 + s * b0, a1 + s * b1, a2 + s * b2, a3 + s * b3, a4 + s * b4, a5 + s * b5]
 }
 
 /// Returns `(1 − cos θ)/θ²` and `(θ − sin θ)/θ³` as functions of `θ²`: the left Jacobian of SO(3) is `1 + a
 /// [φ]ₓ + b [φ]ₓ²`.
 pub(crate) fn left_jacobian<T: Real>(square: T) -> [T; 2] {
-    choose(
+    choose_by_limit(
         square,
         constant(SMALL_TURN),
         |square| {
             [
-                polynomial(square, [2.0, 24.0, 720.0, 40320.0, 3628800.0, 479001600.0]),
-                polynomial(square, [6.0, 120.0, 5040.0, 362880.0, 39916800.0, 6227020800.0]),
+                alternating_polynomial(square, [2.0, 24.0, 720.0, 40320.0, 3628800.0, 479001600.0]),
+                alternating_polynomial(square, [6.0, 120.0, 5040.0, 362880.0, 39916800.0, 6227020800.0]),
             ]
         },
         |square| {
@@ -232,14 +232,14 @@ pub(crate) fn left_jacobian<T: Real>(square: T) -> [T; 2] {
 ///
 /// - `q`: x y z w, of any nonzero norm; `dv`: rotation vector in the child frame, rad, of any magnitude.
 pub fn ball_integrate<T: Real>(q: [T; 4], dv: [T; 3]) -> [T; 4] {
-    normalised(product(q, exponential(dv)))
+    normalised_quaternion(quaternion_product(q, quaternion_exponential(dv)))
 }
 
 /// Returns the rotation vector `dv`, in the child frame of `q0`, rad, with `q0 ⊕ dv = ±q1` and `|dv| ≤ π`.
 ///
 /// For a rotation by π, either of the two shortest solutions is returned. Quaternions need not be normalised.
 pub fn ball_difference<T: Real>(q0: [T; 4], q1: [T; 4]) -> [T; 3] {
-    logarithm(product(conjugate(normalised(q0)), normalised(q1)))
+    quaternion_logarithm(quaternion_product(conjugate(normalised_quaternion(q0)), normalised_quaternion(q1)))
 }
 
 /// Returns the rate of `dv` such that `q ⊕ dv` rotates with the body-frame angular velocity `v`, rad/s: the
@@ -248,8 +248,8 @@ pub fn ball_difference<T: Real>(q0: [T; 4], q1: [T; 4]) -> [T; 3] {
 /// Source: Iserles et al., *Lie-group methods*, Acta Numerica 9 (2000), appendix B.
 pub fn ball_tangent_rate<T: Real>(dv: [T; 3], v: [T; 3]) -> [T; 3] {
     let first = cross(dv, v);
-    let second = scale(cross(dv, first), second_bracket(dot(dv, dv)));
-    add(add(v, scale(first, constant(0.5))), second)
+    let second = scaled_vector(cross(dv, first), second_bracket(dot(dv, dv)));
+    add(add(v, scaled_vector(first, constant(0.5))), second)
 }
 
 /// Returns `q ⊕ dv` of a free joint: the exponential of SE(3).
@@ -261,11 +261,11 @@ pub fn free_integrate<T: Real>(q: [T; 7], dv: [T; 6]) -> [T; 7] {
     let [px, py, pz, qx, qy, qz, qw] = q;
     let [x, y, z, rx, ry, rz] = dv;
     let (linear, turn) = ([x, y, z], [rx, ry, rz]);
-    let quaternion = normalised([qx, qy, qz, qw]);
+    let quaternion = normalised_quaternion([qx, qy, qz, qw]);
     let [a, b] = left_jacobian(dot(turn, turn));
     let first = cross(turn, linear);
-    let moved = add(add(linear, scale(first, a)), scale(cross(turn, first), b));
-    let [px, py, pz] = add([px, py, pz], rotated(quaternion, moved));
+    let moved = add(add(linear, scaled_vector(first, a)), scaled_vector(cross(turn, first), b));
+    let [px, py, pz] = add([px, py, pz], rotated_vector(quaternion, moved));
     let [qx, qy, qz, qw] = ball_integrate(quaternion, turn);
     [px, py, pz, qx, qy, qz, qw]
 }
@@ -275,12 +275,12 @@ pub fn free_integrate<T: Real>(q: [T; 7], dv: [T; 6]) -> [T; 7] {
 pub fn free_difference<T: Real>(q0: [T; 7], q1: [T; 7]) -> [T; 6] {
     let [x0, y0, z0, qx0, qy0, qz0, qw0] = q0;
     let [x1, y1, z1, qx1, qy1, qz1, qw1] = q1;
-    let start = normalised([qx0, qy0, qz0, qw0]);
+    let start = normalised_quaternion([qx0, qy0, qz0, qw0]);
     let turn = ball_difference(start, [qx1, qy1, qz1, qw1]);
-    let moved = rotated(conjugate(start), [x1 - x0, y1 - y0, z1 - z0]);
+    let moved = rotated_vector(conjugate(start), [x1 - x0, y1 - y0, z1 - z0]);
     let first = cross(turn, moved);
-    let second = scale(cross(turn, first), second_bracket(dot(turn, turn)));
-    let [x, y, z] = add(add(moved, scale(first, constant(-0.5))), second);
+    let second = scaled_vector(cross(turn, first), second_bracket(dot(turn, turn)));
+    let [x, y, z] = add(add(moved, scaled_vector(first, constant(-0.5))), second);
     let [rx, ry, rz] = turn;
     [x, y, z, rx, ry, rz]
 }
@@ -294,15 +294,15 @@ pub fn free_tangent_rate<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
     let [_, _, _, rx, ry, rz] = dv;
     let turn = [rx, ry, rz];
     let [second, fourth] = even_brackets(dot(turn, turn));
-    let first = bracket(dv, v);
-    let twice = bracket(dv, first);
-    let four_times = bracket(dv, bracket(dv, twice));
-    plus(plus(plus(v, constant(0.5), first), second, twice), fourth, four_times)
+    let first = lie_bracket(dv, v);
+    let twice = lie_bracket(dv, first);
+    let four_times = lie_bracket(dv, lie_bracket(dv, twice));
+    plus_scaled(plus_scaled(plus_scaled(v, constant(0.5), first), second, twice), fourth, four_times)
 }
 
 /// Returns the velocity `v`, in the child frame of `q`, expressed in the child frame of `q ⊕ dv`.
 pub fn ball_carry<T: Real>(dv: [T; 3], v: [T; 3]) -> [T; 3] {
-    rotated(conjugate(exponential(dv)), v)
+    rotated_vector(conjugate(quaternion_exponential(dv)), v)
 }
 
 /// Returns the velocity `v` (linear, then angular), in the child frame of `q`, expressed in the child frame
@@ -310,8 +310,8 @@ pub fn ball_carry<T: Real>(dv: [T; 3], v: [T; 3]) -> [T; 3] {
 pub fn free_carry<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
     let [_, _, _, rx, ry, rz] = dv;
     let [x, y, z, wx, wy, wz] = v;
-    let back = conjugate(exponential([rx, ry, rz]));
-    let ([x, y, z], [wx, wy, wz]) = (rotated(back, [x, y, z]), rotated(back, [wx, wy, wz]));
+    let back = conjugate(quaternion_exponential([rx, ry, rz]));
+    let ([x, y, z], [wx, wy, wz]) = (rotated_vector(back, [x, y, z]), rotated_vector(back, [wx, wy, wz]));
     [x, y, z, wx, wy, wz]
 }
 

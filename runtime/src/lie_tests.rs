@@ -9,7 +9,7 @@ fn difference<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
     a.iter().zip(b).fold(0.0, |largest: f64, (a, b)| largest.max((a - b).abs()))
 }
 
-fn twist(linear: [f64; 3], turn: [f64; 3]) -> [f64; 6] {
+fn twist_from_parts(linear: [f64; 3], turn: [f64; 3]) -> [f64; 6] {
     let ([x, y, z], [rx, ry, rz]) = (linear, turn);
     [x, y, z, rx, ry, rz]
 }
@@ -17,8 +17,8 @@ fn twist(linear: [f64; 3], turn: [f64; 3]) -> [f64; 6] {
 #[test]
 fn ball_exponential_is_a_turn_about_the_axis() {
     for angle in ANGLES.into_iter().chain([10.0, 1e3]) {
-        let q = ball_integrate([0.0, 0.0, 0.0, 1.0], scale(AXIS, angle));
-        let [x, y, z] = scale(AXIS, (angle / 2.0).sin());
+        let q = ball_integrate([0.0, 0.0, 0.0, 1.0], scaled_vector(AXIS, angle));
+        let [x, y, z] = scaled_vector(AXIS, (angle / 2.0).sin());
         assert!(difference(q, [x, y, z, (angle / 2.0).cos()]) < 4e-16 * (1.0 + angle), "{angle}");
     }
 }
@@ -26,8 +26,8 @@ fn ball_exponential_is_a_turn_about_the_axis() {
 #[test]
 fn ball_difference_inverts_integrate() {
     for angle in ANGLES {
-        let dv = scale(AXIS, angle);
-        let q = normalised(QUATERNION);
+        let dv = scaled_vector(AXIS, angle);
+        let q = normalised_quaternion(QUATERNION);
         let found = ball_difference(q, ball_integrate(q, dv));
         assert!(difference(found, dv) <= 4e-15 * (angle + 1e-1), "{angle}: {found:?}");
         let [x, y, z, w] = ball_integrate(q, dv);
@@ -40,22 +40,22 @@ fn ball_difference_inverts_integrate() {
 fn ball_difference_near_half_a_turn_is_shortest() {
     for excess in [-1e-9, -1e-15, 0.0, 1e-15, 1e-9] {
         let angle = core::f64::consts::PI + excess;
-        let q1 = ball_integrate(QUATERNION, scale(AXIS, angle));
+        let q1 = ball_integrate(QUATERNION, scaled_vector(AXIS, angle));
         let found = ball_difference(QUATERNION, q1);
         assert!(dot(found, found).sqrt() <= core::f64::consts::PI + 1e-15);
         let reached = ball_integrate(QUATERNION, found);
-        assert!(difference(reached, q1).min(difference(reached, scale4(q1))) < 1e-15);
+        assert!(difference(reached, q1).min(difference(reached, scaled_quaternion(q1))) < 1e-15);
     }
 }
 
-fn scale4([x, y, z, w]: [f64; 4]) -> [f64; 4] {
+fn scaled_quaternion([x, y, z, w]: [f64; 4]) -> [f64; 4] {
     [-x, -y, -z, -w]
 }
 
 #[test]
 fn free_difference_inverts_integrate() {
     for angle in ANGLES {
-        let dv = twist([0.3, 2.0, -1.0], scale(AXIS, angle));
+        let dv = twist_from_parts([0.3, 2.0, -1.0], scaled_vector(AXIS, angle));
         let found = free_difference(POSE, free_integrate(POSE, dv));
         assert!(difference(found, dv) < 2e-14, "{angle}: {found:?}");
     }
@@ -74,7 +74,7 @@ fn free_exponential_of_a_screw() {
 #[test]
 fn free_exponential_is_a_flow() {
     for angle in ANGLES.into_iter().chain([20.0]) {
-        let dv = twist([0.3, 2.0, -1.0], scale(AXIS, angle));
+        let dv = twist_from_parts([0.3, 2.0, -1.0], scaled_vector(AXIS, angle));
         let half = dv.map(|x| 0.5 * x);
         let twice = free_integrate(free_integrate(POSE, half), half);
         assert!(difference(free_integrate(POSE, dv), twice) < 4e-15, "{angle}");
@@ -86,18 +86,18 @@ fn free_exponential_is_a_flow() {
 fn tangent_rates_give_the_velocity() {
     let v = [0.7, -0.2, 1.1, 0.4, 0.9, -1.3];
     for angle in ANGLES.into_iter().chain([5.5, 7.0]) {
-        let dv = twist([0.3, 2.0, -1.0], scale(AXIS, angle));
+        let dv = twist_from_parts([0.3, 2.0, -1.0], scaled_vector(AXIS, angle));
         let rate = free_tangent_rate(dv, v);
         let step = 1e-3;
-        let pose_at_time = |t: f64| free_integrate(POSE, plus(dv, t, rate));
+        let pose_at_time = |t: f64| free_integrate(POSE, plus_scaled(dv, t, rate));
         let tangent_velocity =
-            |h: f64| plus([0.0; 6], 0.5 / h, free_difference(pose_at_time(-h), pose_at_time(h)));
+            |h: f64| plus_scaled([0.0; 6], 0.5 / h, free_difference(pose_at_time(-h), pose_at_time(h)));
         // Central differences, extrapolated: the error is of order step⁴.
         let (coarse, fine) = (tangent_velocity(step), tangent_velocity(step / 2.0));
-        let body = plus(plus([0.0; 6], 4.0 / 3.0, fine), -1.0 / 3.0, coarse);
+        let body = plus_scaled(plus_scaled([0.0; 6], 4.0 / 3.0, fine), -1.0 / 3.0, coarse);
         assert!(difference(body, v) < 1e-9, "{angle}: {body:?}");
         let [.., rx, ry, rz] = rate;
-        let ball = ball_tangent_rate(scale(AXIS, angle), [0.4, 0.9, -1.3]);
+        let ball = ball_tangent_rate(scaled_vector(AXIS, angle), [0.4, 0.9, -1.3]);
         assert!(difference(ball, [rx, ry, rz]) < 1e-13, "{angle}");
     }
 }
@@ -116,7 +116,7 @@ fn closed_forms_continue_the_series() {
 fn single_precision_is_accurate_to_its_rounding() {
     for angle in ANGLES {
         let to_single_precision = |x: f64| x as f32;
-        let dv = twist([0.3, 2.0, -1.0], scale(AXIS, angle));
+        let dv = twist_from_parts([0.3, 2.0, -1.0], scaled_vector(AXIS, angle));
         let v = [0.7, -0.2, 1.1, 0.4, 0.9, -1.3];
         let exact = free_integrate(POSE, dv);
         let found = free_integrate(POSE.map(to_single_precision), dv.map(to_single_precision)).map(f64::from);

@@ -79,7 +79,7 @@ impl<T: Real, P: Tiling<T, N>, const N: usize, const M: usize, const COUNT: usiz
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
         for (b, zeros, groups) in self.factors {
-            clear(b, zeros);
+            clear_entries(b, zeros);
             for ((first, end), rows) in groups {
                 let some = b.data.0.get_mut(*first..*end).unwrap_or(&mut []);
                 P::multiply::<A>(self.matrix, some, rows);
@@ -90,7 +90,10 @@ impl<T: Real, P: Tiling<T, N>, const N: usize, const M: usize, const COUNT: usiz
 
 /// Sets entries, given by column and row, to zero.
 #[inline(always)]
-fn clear<T: Real, const N: usize, const M: usize>(matrix: &mut SMatrix<T, N, M>, zeros: &[(usize, usize)]) {
+fn clear_entries<T: Real, const N: usize, const M: usize>(
+    matrix: &mut SMatrix<T, N, M>,
+    zeros: &[(usize, usize)],
+) {
     for (column, row) in zeros {
         if let Some(entry) = matrix.data.0.get_mut(*column).and_then(|column| column.get_mut(*row)) {
             *entry = T::zero();

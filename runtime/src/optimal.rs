@@ -63,7 +63,7 @@ use crate::blocks::{
     add_multiple, add_product, add_product_of_some, add_with_transpose, factors, product, scale, solve,
     solve_rows_into, sum_into, symmetric_into, transpose_into, transposed, zeros,
 };
-use crate::derivatives::entry;
+use crate::derivatives::entry_of_blocks;
 use crate::discrete::{Chained, Transition};
 use crate::private::constant;
 use crate::{InputSecondOrder, Real};
@@ -272,7 +272,7 @@ impl<T: Real, const NV: usize> Value<T, NV> {
     pub fn hessian<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         let vq = transposed(&self.qv);
-        SMatrix::from_fn(|i, j| entry([[&self.qq, &self.qv], [&vq, &self.vv]], i, j))
+        SMatrix::from_fn(|i, j| entry_of_blocks([[&self.qq, &self.qv], [&vq, &self.vv]], i, j))
     }
 
     /// Returns the additional cost-to-go of a state displaced by `dq` and `dv`.
@@ -329,7 +329,7 @@ pub fn backward_into<T: Real, const NQ: usize, const NV: usize, const NU: usize>
     policy: &mut Policy<T, NV, NU>,
     to_go: &mut Value<T, NV>,
 ) -> Result<(), Indefinite> {
-    minimised(&mut accumulated(step, cost, to_go), regularisation, policy, to_go)
+    minimise_over_inputs(&mut accumulate_costs(step, cost, to_go), regularisation, policy, to_go)
 }
 
 /// Computes [`backward_into`] for inputs with limits: the change of the inputs minimises the costs to second
@@ -350,25 +350,31 @@ pub fn backward_within<T: Real, const NQ: usize, const NV: usize, const NU: usiz
     policy: &mut Policy<T, NV, NU>,
     to_go: &mut Value<T, NV>,
 ) -> Result<(), Indefinite> {
-    limits::minimised(&mut accumulated(step, cost, to_go), regularisation, limits, policy, to_go)
+    limits::minimise_over_limited_inputs(
+        &mut accumulate_costs(step, cost, to_go),
+        regularisation,
+        limits,
+        policy,
+        to_go,
+    )
 }
 
 /// Returns the costs as a function of the state before a step and the inputs, with the cost-to-go after it.
-fn accumulated<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+fn accumulate_costs<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     step: &Transition<T, NQ, NV, NU>,
     cost: &Quadratic<T, NV, NU>,
     after: &Value<T, NV>,
 ) -> Quadratic<T, NV, NU> {
     let mut before = *cost;
     match &step.chained {
-        Some(chain) => chained(&mut before, step, after, chain),
-        None => general(&mut before, step, after),
+        Some(chain) => add_chained_cost_to_go(&mut before, step, after, chain),
+        None => add_general_cost_to_go(&mut before, step, after),
     }
     before
 }
 
 /// Adds the cost-to-go after a step of any method to the costs before it.
-fn general<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+fn add_general_cost_to_go<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     before: &mut Quadratic<T, NV, NU>,
     step: &Transition<T, NQ, NV, NU>,
     after: &Value<T, NV>,
@@ -378,11 +384,11 @@ fn general<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     let (q_by_q, v_by_q) = (transposed(&step.q_by_q), transposed(&step.v_by_q));
     let (q_by_v, v_by_v) = (transposed(&step.q_by_v), transposed(&step.v_by_v));
     let (q_by_u, v_by_u) = (transposed(&step.q_by_u), transposed(&step.v_by_u));
-    add_both(&mut before.qq, &q_by_q, &v_by_q, &rows(after, &vq, &step.q_by_q, &step.v_by_q));
-    let by_v = rows(after, &vq, &step.q_by_v, &step.v_by_v);
+    add_both(&mut before.qq, &q_by_q, &v_by_q, &hessian_rows(after, &vq, &step.q_by_q, &step.v_by_q));
+    let by_v = hessian_rows(after, &vq, &step.q_by_v, &step.v_by_v);
     add_both(&mut before.qv, &q_by_q, &v_by_q, &by_v);
     add_both(&mut before.vv, &q_by_v, &v_by_v, &by_v);
-    let by_u = rows(after, &vq, &step.q_by_u, &step.v_by_u);
+    let by_u = hessian_rows(after, &vq, &step.q_by_u, &step.v_by_u);
     add_both(&mut before.qu, &q_by_q, &v_by_q, &by_u);
     add_both(&mut before.vu, &q_by_v, &v_by_v, &by_u);
     add_both(&mut before.uu, &q_by_u, &v_by_u, &by_u);
@@ -393,7 +399,7 @@ fn general<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
 }
 
 /// Returns the configuration rows and the velocity rows of `S X`, with the Hessian `S` of the cost-to-go.
-fn rows<T: Real, const NV: usize, const C: usize>(
+fn hessian_rows<T: Real, const NV: usize, const C: usize>(
     after: &Value<T, NV>,
     vq: &SMatrix<T, NV, NV>,
     q: &SMatrix<T, NV, C>,
@@ -419,7 +425,7 @@ fn add_both<T: Real, const R: usize, const NV: usize, const C: usize>(
 /// Adds the cost-to-go after a step with `q⁺ = q ⊕ h v⁺` to the costs before it. With the derivatives `G` of
 /// `v⁺`, and `E` and `D` of `⊕`, the step is `A = [E 0; 0 0] + H G_x` and `B = H G_u`, `H = [h D; 1]`.
 /// Therefore `W = Hᵀ S H` replaces `S`.
-fn chained<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+fn add_chained_cost_to_go<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     before: &mut Quadratic<T, NV, NU>,
     step: &Transition<T, NQ, NV, NU>,
     after: &Value<T, NV>,
@@ -431,7 +437,8 @@ fn chained<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     transpose_into(by_v, &mut v_rows);
     transpose_into(by_u, &mut u_rows);
     let (mut z, mut w) = (zeros(), after.vv);
-    let [of_q, gradient] = link::<T, NQ, NV>(&mut before.qq, &mut z, &mut w, after, chain);
+    let [of_q, gradient] =
+        change_variables_of_value::<T, NQ, NV>(&mut before.qq, &mut z, &mut w, after, chain);
     // With P = G_qᵀ W + Z the rows of q are P [G_v G_u], and the block qq is Eᵀ S_qq E + ½ (P + Z) G_q plus
     // its transpose.
     let mut rows = z;
@@ -458,7 +465,7 @@ fn chained<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
 /// Rewrites the cost-to-go as a function of the configuration before the step and the velocity after it,
 /// which together determine the configuration after the step. Sets `z` (zero on entry) to `Eᵀ (h S_qq D +
 /// S_qv)` and `w` (`S_vv` on entry) to `Hᵀ S H`, adds `Eᵀ S_qq E` to `qq`, and returns `Eᵀ s_q` and `Hᵀ s`.
-fn link<T: Real, const NQ: usize, const NV: usize>(
+fn change_variables_of_value<T: Real, const NQ: usize, const NV: usize>(
     qq: &mut SMatrix<T, NV, NV>,
     z: &mut SMatrix<T, NV, NV>,
     w: &mut SMatrix<T, NV, NV>,
@@ -475,7 +482,7 @@ fn link<T: Real, const NQ: usize, const NV: usize>(
         add_with_transpose(w, h, &half);
         return [after.q, after.v + after.q * h];
     }
-    let [e, d] = chain.nearly();
+    let [e, d] = chain.nearly_identity_matrices();
     let mut moved = after.qq;
     d.follow(&mut moved);
     sum_into(&after.qv, h, &moved, z);
@@ -496,7 +503,7 @@ fn link<T: Real, const NQ: usize, const NV: usize>(
 }
 
 /// Computes the change of the inputs that minimises the costs, and the resulting cost-to-go.
-fn minimised<T: Real, const NV: usize, const NU: usize>(
+fn minimise_over_inputs<T: Real, const NV: usize, const NU: usize>(
     before: &mut Quadratic<T, NV, NU>,
     regularisation: T,
     policy: &mut Policy<T, NV, NU>,

@@ -143,7 +143,7 @@ pub enum Rule {
 
 impl Rule {
     /// Returns the number of values that the condition takes.
-    fn count(self) -> usize {
+    fn count_values(self) -> usize {
         match self {
             Rule::Order => 2,
             Rule::Inertia => 7,
@@ -161,9 +161,9 @@ impl Rule {
 pub fn validate<T: Real>(figures: &[Figure], values: &[T]) -> Result<(), ParameterError> {
     let mut rest = values;
     for figure in figures {
-        let Some((own, after)) = rest.split_at_checked(figure.rule.count()) else { break };
+        let Some((own, after)) = rest.split_at_checked(figure.rule.count_values()) else { break };
         rest = after;
-        if let Some((fault, value)) = fault(figure.rule, own) {
+        if let Some((fault, value)) = violated_condition(figure.rule, own) {
             let Figure { name, parameters, .. } = *figure;
             return Err(ParameterError { fault, figure: name, parameters, value });
         }
@@ -201,7 +201,7 @@ const NOTHING: f64 = 1e-18;
 const SMALLEST: f64 = 1e-16;
 
 /// Returns the violated condition, if any, and the value to report.
-fn fault<T: Real>(rule: Rule, values: &[T]) -> Option<(Fault, f64)> {
+fn violated_condition<T: Real>(rule: Rule, values: &[T]) -> Option<(Fault, f64)> {
     if let Some(x) = values.iter().find(|x| !is_finite(**x)) {
         return Some((Fault::NotFinite, to_f64(*x)));
     }
@@ -232,7 +232,7 @@ fn fault<T: Real>(rule: Rule, values: &[T]) -> Option<(Fault, f64)> {
             let large = moments.iter().find(|x| !is_at_most(x.abs(), constant(most)));
             large.map(|x| (Fault::TooLarge, to_f64(*x))).or_else(|| {
                 let holds = is_of_a_body(moments, *m, tolerance);
-                (!holds).then(|| (Fault::Inertia, lacking(moments.map(to_f64))))
+                (!holds).then(|| (Fault::Inertia, triangle_rule_excess(moments.map(to_f64))))
             })
         }
         _ => None,
@@ -279,7 +279,7 @@ fn is_of_a_body<T: Real>([xx, yy, zz, xy, xz, yz]: [T; 6], m: T, tolerance: f64)
 }
 
 /// Returns the sum of the two smaller principal moments minus the largest (Jacobi rotations).
-fn lacking([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> f64 {
+fn triangle_rule_excess([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> f64 {
     // Diagonal entries xx, yy, zz, and the off-diagonal entries opposite to them: yz, xz, xy.
     let (mut d, mut o) = ([xx, yy, zz], [yz, xz, xy]);
     for _ in 0..16 {
@@ -310,7 +310,7 @@ mod tests {
     use super::*;
     use crate::lanes::{Lanes, f64x4};
 
-    fn check<T: Real>(rule: Rule, values: &[f64]) -> Option<Fault> {
+    fn fault_of_values<T: Real>(rule: Rule, values: &[f64]) -> Option<Fault> {
         let values: std::vec::Vec<T> = values.iter().map(|x| constant(*x)).collect();
         validate(&[Figure { rule, name: "x", parameters: &["p"] }], &values).err().map(|error| error.fault)
     }
@@ -350,9 +350,13 @@ mod tests {
     #[test]
     fn figures_are_judged_in_all_types_of_numbers() {
         for (rule, values, fault) in TABLE {
-            assert_eq!(check::<f64>(rule, values), fault, "{rule:?} {values:?}");
-            assert_eq!(check::<f32>(rule, values), fault, "{rule:?} {values:?} in single precision");
-            assert_eq!(check::<f64x4>(rule, values), fault, "{rule:?} {values:?} in lanes");
+            assert_eq!(fault_of_values::<f64>(rule, values), fault, "{rule:?} {values:?}");
+            assert_eq!(
+                fault_of_values::<f32>(rule, values),
+                fault,
+                "{rule:?} {values:?} in single precision"
+            );
+            assert_eq!(fault_of_values::<f64x4>(rule, values), fault, "{rule:?} {values:?} in lanes");
         }
     }
 
@@ -377,10 +381,10 @@ mod tests {
 
     #[test]
     fn ranges_are_those_of_the_type() {
-        assert_eq!(check::<f64>(Rule::Mass, &[1e30]), None);
-        assert_eq!(check::<f32>(Rule::Mass, &[1e30]), Some(Fault::TooLarge));
-        assert_eq!(check::<f64>(Rule::Length, &[-1e80]), Some(Fault::TooLarge));
-        assert_eq!(check::<f64>(Rule::Mass, &[1e-310]), Some(Fault::TooSmall));
+        assert_eq!(fault_of_values::<f64>(Rule::Mass, &[1e30]), None);
+        assert_eq!(fault_of_values::<f32>(Rule::Mass, &[1e30]), Some(Fault::TooLarge));
+        assert_eq!(fault_of_values::<f64>(Rule::Length, &[-1e80]), Some(Fault::TooLarge));
+        assert_eq!(fault_of_values::<f64>(Rule::Mass, &[1e-310]), Some(Fault::TooSmall));
     }
 
     #[test]
@@ -391,7 +395,7 @@ mod tests {
         let moments = [0.1, 0.5, 0.2];
         let inertia_entry = |i: usize, j: usize| (0..3).map(|k| moments[k] * axes[k][i] * axes[k][j]).sum();
         let full = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|(i, j)| inertia_entry(i, j));
-        assert!((lacking(full) + 0.2).abs() < 1e-12);
+        assert!((triangle_rule_excess(full) + 0.2).abs() < 1e-12);
         let [xx, yy, zz, xy, xz, yz] = full;
         let figure = Figure { rule: Rule::Inertia, name: "the inertia of `hand`", parameters: &["m", "l"] };
         let error = validate(&[figure], &[xx, yy, zz, xy, xz, yz, 1.0]).unwrap_err();

@@ -20,6 +20,13 @@ pub(crate) fn epsilon<T: Real>() -> T {
     T::default_epsilon()
 }
 
+/// Returns `x` if it is positive, otherwise zero, always with the sign plus: the sign of the maximum of two
+/// zeros depends on the target.
+#[inline(always)]
+pub(crate) fn positive_part<T: Real>(x: T) -> T {
+    x.max(T::zero()) + T::zero()
+}
+
 /// Writes a block to the diagonal of a matrix, with its first entry at index `first` in both directions.
 pub fn put_block<T: Real, const N: usize, const K: usize>(
     matrix: &mut SMatrix<T, N, N>,

@@ -15,7 +15,7 @@ pub use start::Start;
 
 use crate::integrate::{
     ContinuousInputs, DormandPrince, Error, Inputs, Method, NoInputs, SampledInputs, State, System,
-    not_negative, positive,
+    check_positive, not_negative,
 };
 use crate::private::to_f64;
 use crate::{Mechanism, Real};
@@ -200,13 +200,13 @@ where
     /// [`Error::Quaternion`].
     pub fn from(self, q: impl Start<T, NQ>, v: impl Start<T, NV>) -> Self {
         let start = State { t: self.start.t, q: q.vector(), v: v.vector() };
-        Self { start, ..self.reset() }
+        Self { start, ..self.reset_simulation() }
     }
 
     /// Sets the initial time, s; the default is zero.
     pub fn start_at(self, t: T) -> Self {
         let start = State { t, ..self.start };
-        Self { start, ..self.reset() }
+        Self { start, ..self.reset_simulation() }
     }
 
     /// Sets the treatment of [contact](crate::contact) surfaces that overlap at the start. By default,
@@ -237,20 +237,20 @@ where
     /// # }
     /// ```
     pub fn overlaps(self, overlaps: Overlaps) -> Self {
-        Self { overlaps, ..self.reset() }
+        Self { overlaps, ..self.reset_simulation() }
     }
 
     /// Sets the duration, s. A duration of zero yields only the initial state. Without a duration, the run
     /// ends at an event of [`until`](Self::until), or continues as long as samples are requested.
     pub fn duration(self, duration: T) -> Self {
-        Self { duration: Some(duration), ..self.reset() }
+        Self { duration: Some(duration), ..self.reset_simulation() }
     }
 
     /// Samples every `interval` seconds; the `k`-th sample is exactly at start + k · interval. Fixed-step
     /// methods divide the interval into equal steps, adaptive methods interpolate. By default, every step of
     /// the integrator is a sample.
     pub fn sample_every(self, interval: T) -> Self {
-        Self { samples: Samples::Every(interval), ..self.reset() }
+        Self { samples: Samples::Every(interval), ..self.reset_simulation() }
     }
 
     /// Samples at these times of the run, s. The times must increase, and none may be before the start; the
@@ -279,7 +279,7 @@ where
     /// # Ok::<(), Error>(())
     /// ```
     pub fn sample_at(self, times: &'m [T]) -> Self {
-        Self { samples: Samples::At(times), ..self.reset() }
+        Self { samples: Samples::At(times), ..self.reset_simulation() }
     }
 
     /// Sets the inputs `u` of the mechanism to a function `|t, q, v|` that is continuous in time, and
@@ -391,7 +391,7 @@ where
         if self.duration.is_none() && !E::STOPS && !matches!(self.samples, Samples::At(_)) {
             return Err(Error::Endless);
         }
-        let mut run = self.begin()?;
+        let mut run = self.begin_run()?;
         run.quiet = true;
         let mut last = Err(Error::Endless);
         while let Some(sample) = self.next_sample(&mut run)? {
@@ -401,7 +401,7 @@ where
     }
 
     /// Returns the simulation with its progress discarded, so that it starts again with its first sample.
-    fn reset(self) -> Self {
+    fn reset_simulation(self) -> Self {
         Self { progress: None, over: false, ..self }
     }
 
@@ -477,7 +477,7 @@ where
         if self.over {
             return None;
         }
-        let mut run = match self.begin() {
+        let mut run = match self.begin_run() {
             Ok(run) => run,
             Err(error) => {
                 self.over = true;

@@ -21,7 +21,7 @@ const MOST_ITERATIONS: usize = 50;
 ///
 /// If the iteration does not converge, the last iterate is returned: integration methods check their own
 /// equations.
-pub(crate) fn way<T: Real, const N: usize>(
+pub(crate) fn displacement_from_end_speeds<T: Real, const N: usize>(
     rate: impl Fn(&SVector<T, N>) -> SVector<T, N>,
     v: &SVector<T, N>,
     s: T,
@@ -41,7 +41,7 @@ pub(crate) fn way<T: Real, const N: usize>(
     way
 }
 
-/// Returns the displacement [`way`] for the displacement rate of a mechanism.
+/// Returns the displacement [`displacement_from_end_speeds`] for the displacement rate of a mechanism.
 pub(crate) fn way_of<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<T, NQ>,
@@ -52,7 +52,11 @@ where
     T: Real,
     M: Mechanism<NQ, NV, NU, Scalar = T> + ?Sized,
 {
-    if m.features().speeds { way(|way| m.displacement_rate(q, way, v), v, s) } else { v * s }
+    if m.features().speeds {
+        displacement_from_end_speeds(|way| m.displacement_rate(q, way, v), v, s)
+    } else {
+        v * s
+    }
 }
 
 /// Returns the velocity of the midpoint of a displacement that takes `2 s` seconds, given the mean rate of
@@ -78,7 +82,7 @@ where
 /// Returns the derivatives of the configurations reached from `q` with the midpoint velocity `v` after `s`
 /// and after `2 s` seconds, with respect to `q` and to the displacement `s v`, or `2 s v`, in joint
 /// velocities.
-pub(crate) fn led<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+pub(crate) fn reached_configurations<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<T, NQ>,
     v: &SVector<T, NV>,

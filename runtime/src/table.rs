@@ -211,19 +211,19 @@ impl<const N: usize> Table<N> {
         let mut cells = [[0, 1]; 3];
         let axes = self.axes.iter().zip(x).zip(orders);
         for (((points, x), order), (weights, range)) in axes.zip(all.iter_mut().zip(&mut cells)) {
-            let place = AxisPosition::locate(points, x);
-            *range = place.cells(points);
+            let place = AxisPosition::locate_on_axis(points, x);
+            *range = place.possible_cells(points);
             *weights = Weights { place: Some(place), order };
         }
         let [first, second, third] = cells;
         let mut sum = T::zero();
         for i in first[0]..first[1] {
-            let outer = self.weights(0, i, first, &all);
+            let outer = self.weights_around_cell(0, i, first, &all);
             for j in second[0]..second[1] {
-                let middle = self.weights(1, j, second, &all);
+                let middle = self.weights_around_cell(1, j, second, &all);
                 for k in third[0]..third[1] {
-                    let inner = self.weights(2, k, third, &all);
-                    sum += self.block([i, j, k], [&outer, &middle, &inner]);
+                    let inner = self.weights_around_cell(2, k, third, &all);
+                    sum += self.weighted_block_sum([i, j, k], [&outer, &middle, &inner]);
                 }
             }
         }
@@ -232,7 +232,13 @@ impl<const N: usize> Table<N> {
 
     /// Returns the interpolation weights of the four grid values around a cell of an axis. For an axis beyond
     /// the dimension of the table, only one value has a weight, which is one.
-    fn weights<T: Real>(&self, axis: usize, cell: usize, range: [usize; 2], all: &[Weights<T>; 3]) -> [T; 4] {
+    fn weights_around_cell<T: Real>(
+        &self,
+        axis: usize,
+        cell: usize,
+        range: [usize; 2],
+        all: &[Weights<T>; 3],
+    ) -> [T; 4] {
         let only = [T::zero(), T::one(), T::zero(), T::zero()];
         let (Some(points), Some(Weights { place: Some(place), order })) =
             (self.axes.get(axis), all.get(axis))
@@ -240,16 +246,16 @@ impl<const N: usize> Table<N> {
             return only;
         };
         let shape = Shape { smooth: self.smooth, extrapolated: self.extrapolated };
-        let weights = place.weights(points, cell, *order, shape);
+        let weights = place.weights_of_points(points, cell, *order, shape);
         if range[1] - range[0] <= 1 {
             return weights;
         }
-        let share = place.share(points, cell);
+        let share = place.share_of_cell(points, cell);
         weights.map(|w| w * share)
     }
 
     /// Returns the range of the four weights of an axis that can be nonzero.
-    fn slots(&self, axis: usize) -> core::ops::Range<usize> {
+    fn nonzero_weight_slots(&self, axis: usize) -> core::ops::Range<usize> {
         match (axis < N, self.smooth) {
             (false, _) => 1..2,
             (true, false) => 1..3,
@@ -258,19 +264,19 @@ impl<const N: usize> Table<N> {
     }
 
     /// Returns the weighted sum of the values around a cell.
-    fn block<T: Real>(&self, cells: [usize; 3], weights: [&[T; 4]; 3]) -> T {
+    fn weighted_block_sum<T: Real>(&self, cells: [usize; 3], weights: [&[T; 4]; 3]) -> T {
         let axis_length = |axis: usize| self.axes.get(axis).map_or(1, |points| points.len());
         // Slot 0 of the weights is the point before the cell.
         let point_index = |axis: usize, slot: usize| (cells[axis] + slot).checked_sub(1);
         let weight_of_slot = |axis: usize, slot: usize| weights[axis].get(slot).copied().unwrap_or(T::zero());
         let (rows, columns) = (axis_length(1), axis_length(2));
         let mut sum = T::zero();
-        for a in self.slots(0) {
+        for a in self.nonzero_weight_slots(0) {
             let Some(i) = point_index(0, a) else { continue };
-            for b in self.slots(1) {
+            for b in self.nonzero_weight_slots(1) {
                 let Some(j) = point_index(1, b) else { continue };
                 let both = weight_of_slot(0, a) * weight_of_slot(1, b);
-                for c in self.slots(2) {
+                for c in self.nonzero_weight_slots(2) {
                     let value = point_index(2, c).and_then(|k| self.values.get((i * rows + j) * columns + k));
                     if let Some(value) = value {
                         sum += both * weight_of_slot(2, c) * constant(*value);
@@ -318,7 +324,7 @@ fn step<T: Real>(x: T) -> T {
 }
 
 impl<T: Real> AxisPosition<T> {
-    fn locate(points: &[f64], x: T) -> AxisPosition<T> {
+    fn locate_on_axis(points: &[f64], x: T) -> AxisPosition<T> {
         let coordinate_or_zero = |p: Option<&f64>| constant::<T>(p.copied().unwrap_or(0.0));
         let (low, high) = (coordinate_or_zero(points.first()), coordinate_or_zero(points.last()));
         let inner = x.max(low).min(high);
@@ -329,7 +335,7 @@ impl<T: Real> AxisPosition<T> {
 
     /// Returns the half-open range of grid cells that can contain the argument: a single cell, or all cells
     /// if SIMD lanes differ.
-    fn cells(&self, points: &[f64]) -> [usize; 2] {
+    fn possible_cells(&self, points: &[f64]) -> [usize; 2] {
         let last = points.len().saturating_sub(2);
         let (mut low, mut high) = (0, last);
         while low < high {
@@ -348,7 +354,7 @@ impl<T: Real> AxisPosition<T> {
     }
 
     /// Returns one in each lane in which the grid cell contains the argument, and zero in others.
-    fn share(&self, points: &[f64], cell: usize) -> T {
+    fn share_of_cell(&self, points: &[f64], cell: usize) -> T {
         let step_at_point = |k: usize| points.get(k).map_or(T::zero(), |p| step(self.x - constant(*p)));
         let last = cell + 2 >= points.len();
         let low = if cell == 0 { T::one() } else { step_at_point(cell) };
@@ -356,10 +362,10 @@ impl<T: Real> AxisPosition<T> {
     }
 
     /// Returns the weights of the four points around a cell, for a derivative of the given order.
-    fn weights(&self, points: &[f64], cell: usize, order: u8, shape: Shape) -> [T; 4] {
+    fn weights_of_points(&self, points: &[f64], cell: usize, order: u8, shape: Shape) -> [T; 4] {
         let around = Around::new(points, cell, shape.smooth);
         let s = (self.x - constant(around.start)) / constant(around.width);
-        let weights_of_order = |order| around.weights(s, order);
+        let weights_of_order = |order| around.weights_at_fraction(s, order);
         match (order, shape.extrapolated) {
             (0, true) => {
                 let (value, slope) = (weights_of_order(0), weights_of_order(1));
@@ -409,7 +415,7 @@ impl Around {
     }
 
     /// Returns the weights at the fraction `s` of the width, for a derivative of the given order.
-    fn weights<T: Real>(&self, s: T, order: u8) -> [T; 4] {
+    fn weights_at_fraction<T: Real>(&self, s: T, order: u8) -> [T; 4] {
         let c = constant::<T>;
         let zero = T::zero();
         let scale = (0..order).fold(T::one(), |scale, _| scale / c(self.width));

@@ -25,7 +25,7 @@ pub(crate) fn pendulum() -> OneDof<f64> {
 }
 
 /// Returns a ball of unit mass above the floor under unit gravity.
-pub(crate) fn falling() -> OneDof<f64> {
+pub(crate) fn falling_ball() -> OneDof<f64> {
     OneDof { inertia: 1.0, damping: 0.0, force: |_| -1.0, energy: |q| q }
 }
 
@@ -155,11 +155,11 @@ pub(crate) struct FreeBody {
 }
 
 /// Splits a velocity into its linear and angular parts.
-fn split(v: &V<f64, 6>) -> (Vector3<f64>, Vector3<f64>) {
+fn split_twist(v: &V<f64, 6>) -> (Vector3<f64>, Vector3<f64>) {
     (Vector3::new(v[0], v[1], v[2]), Vector3::new(v[3], v[4], v[5]))
 }
 
-fn join(a: Vector3<f64>, b: Vector3<f64>) -> V<f64, 6> {
+fn join_twist(a: Vector3<f64>, b: Vector3<f64>) -> V<f64, 6> {
     SVector::from([a.x, a.y, a.z, b.x, b.y, b.z])
 }
 
@@ -187,7 +187,7 @@ impl Mechanism<7, 6, 0> for FreeBody {
         free_tangent_rate((*dv).into(), (*v).into()).into()
     }
     fn mass_matrix(&self, _t: f64, _q: &V<f64, 7>) -> SMatrix<f64, 6, 6> {
-        SMatrix::from_diagonal(&join(Vector3::repeat(self.mass), self.inertia))
+        SMatrix::from_diagonal(&join_twist(Vector3::repeat(self.mass), self.inertia))
     }
     fn bias_forces(&self, t: f64, q: &V<f64, 7>, v: &V<f64, 6>) -> V<f64, 6> {
         -self.momentum_rate(t, q, v)
@@ -211,11 +211,11 @@ impl Mechanism<7, 6, 0> for FreeBody {
         self.mass_matrix(t, q) * v
     }
     fn momentum_rate(&self, _t: f64, q: &V<f64, 7>, v: &V<f64, 6>) -> V<f64, 6> {
-        let (linear, angular) = split(v);
+        let (linear, angular) = split_twist(v);
         let weight = Vector3::new(0.0, 0.0, -self.mass * self.gravity);
         let weight = rotate_vector([-q[3], -q[4], -q[5], q[6]], weight);
         let spin = self.inertia.component_mul(&angular);
-        join(linear.cross(&angular) * self.mass + weight, spin.cross(&angular))
+        join_twist(linear.cross(&angular) * self.mass + weight, spin.cross(&angular))
     }
 }
 

@@ -21,15 +21,16 @@ pub(crate) const LARGEST: f64 = 1e5;
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub fn sin_cos_all<A: Registers, T: Real, const N: usize>(x: [T; N]) -> ([T; N], [T; N]) {
-    if let Some(x) = same::<_, [f64; N]>(&x)
-        && let (s, c) = doubles::<A, N>(x)
-        && let (Some(s), Some(c)) = (same(&s), same(&c))
+    if let Some(x) = same_type_reference::<_, [f64; N]>(&x)
+        && let (s, c) = sines_of_doubles::<A, N>(x)
+        && let (Some(s), Some(c)) = (same_type_reference(&s), same_type_reference(&c))
     {
         return (*s, *c);
     }
-    if let Some(x) = same::<_, [f32; N]>(&x)
-        && let (s, c) = doubles::<A, N>(&x.map(f64::from))
-        && let (Some(s), Some(c)) = (same(&s.map(|s| s as f32)), same(&c.map(|c| c as f32)))
+    if let Some(x) = same_type_reference::<_, [f32; N]>(&x)
+        && let (s, c) = sines_of_doubles::<A, N>(&x.map(f64::from))
+        && let (Some(s), Some(c)) =
+            (same_type_reference(&s.map(|s| s as f32)), same_type_reference(&c.map(|c| c as f32)))
     {
         return (*s, *c);
     }
@@ -48,7 +49,7 @@ pub(crate) struct Aligned<T>(pub(crate) T);
 /// Returns a reference as another type if both types are the same; decided at compile time.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn same<A: 'static, B: 'static>(a: &A) -> Option<&B> {
+pub(crate) fn same_type_reference<A: 'static, B: 'static>(a: &A) -> Option<&B> {
     (a as &dyn Any).downcast_ref()
 }
 
@@ -62,7 +63,7 @@ fn one_by_one<T: Real, const N: usize>(x: &[T; N]) -> ([T; N], [T; N]) {
 
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn doubles<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
+fn sines_of_doubles<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut s, mut c) = ([0.0; N], [0.0; N]);
     let mut large = false;
     for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
@@ -92,7 +93,7 @@ pub(crate) fn with_large<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn small_angle<A: Registers>(x: f64) -> (f64, f64) {
-    let (s, c, shifted) = kernel::<A, _>(x);
+    let (s, c, shifted) = reduced_sine_and_cosine::<A, _>(x);
     rotate_quadrant(s, c, shifted)
 }
 
@@ -126,20 +127,24 @@ const COSINE: [f64; 6] = [
 /// suffice for the same accuracy.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn kernel<A: Registers, X: Number<A>>(x: X) -> (X, X, X) {
+pub(crate) fn reduced_sine_and_cosine<A: Registers, X: Number<A>>(x: X) -> (X, X, X) {
     // Adding 1.5 · 2⁵² rounds to an integer, whose last bits are the quadrant.
     const ROUND: f64 = 6_755_399_441_055_744.0;
     let shifted = A::mul_add(x, X::constant(FRAC_2_PI), X::constant(ROUND));
-    let (r, low) = reduced::<A, _>(x, shifted - X::constant(ROUND));
+    let (r, low) = reduce_angle::<A, _>(x, shifted - X::constant(ROUND));
     let z = r * r;
     let square = z * z;
     let fourth = square * square;
     let [s0, s1, s2, s3, s4, s5] = SINE;
     let [c0, c1, c2, c3, c4, c5] = COSINE;
     // Neighbouring terms are added first, to shorten the chain of dependent operations.
-    let sine = A::mul_add(fourth, X::constant(s5), cubic::<A, _>(z, square, [s1, s2, s3, s4]));
+    let sine = A::mul_add(fourth, X::constant(s5), cubic_polynomial::<A, _>(z, square, [s1, s2, s3, s4]));
     let sine = A::mul_add(z, sine, X::constant(s0));
-    let cosine = A::mul_add(fourth, linear::<A, _>(z, c4, c5), cubic::<A, _>(z, square, [c0, c1, c2, c3]));
+    let cosine = A::mul_add(
+        fourth,
+        linear_polynomial::<A, _>(z, c4, c5),
+        cubic_polynomial::<A, _>(z, square, [c0, c1, c2, c3]),
+    );
     let one = X::constant(1.0);
     if A::FUSED {
         let s = r + A::mul_add(r * z, sine, low);
@@ -158,7 +163,7 @@ pub(crate) fn kernel<A: Registers, X: Number<A>>(x: X) -> (X, X, X) {
 /// numbers. If both are tiny, the sine of the angle is their sum, and the cosine is one.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn reduced<A: Registers, X: Number<A>>(x: X, quarters: X) -> (X, X) {
+fn reduce_angle<A: Registers, X: Number<A>>(x: X, quarters: X) -> (X, X) {
     if A::FUSED {
         // π / 2 as the nearest number, a multiple of which is subtracted without error because the difference
         // has fewer digits; then 36 bits, whose products with integers are exact; then the remainder.
@@ -195,15 +200,15 @@ pub(crate) fn rotate_quadrant(s: f64, c: f64, shifted: f64) -> (f64, f64) {
 /// Returns the linear polynomial `a + b z`.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn linear<A: Registers, X: Number<A>>(z: X, a: f64, b: f64) -> X {
+fn linear_polynomial<A: Registers, X: Number<A>>(z: X, a: f64, b: f64) -> X {
     A::mul_add(X::constant(b), z, X::constant(a))
 }
 
 /// Returns `a + b z + c z² + d z³`.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn cubic<A: Registers, X: Number<A>>(z: X, square: X, [a, b, c, d]: [f64; 4]) -> X {
-    A::mul_add(linear::<A, _>(z, c, d), square, linear::<A, _>(z, a, b))
+fn cubic_polynomial<A: Registers, X: Number<A>>(z: X, square: X, [a, b, c, d]: [f64; 4]) -> X {
+    A::mul_add(linear_polynomial::<A, _>(z, c, d), square, linear_polynomial::<A, _>(z, a, b))
 }
 
 #[cfg(test)]

@@ -3,26 +3,26 @@
 use linkwork_compiler::compile;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::read;
+use linkwork_compiler::read_source;
 use quote::ToTokens;
 use std::fmt::Write;
 use std::path::Path;
 use syn::{Item, Meta};
 
 /// Returns the number of multiplications, additions and divisions of the constrained dynamics.
-fn operations(arguments: &str, item: &str) -> usize {
+fn count_operations(arguments: &str, item: &str) -> usize {
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
-    let source = read(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
+    let source = read_source(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
     let graph = Graph::new();
     let output = source.and_then(|source| compile(&source, &graph, &mut cx));
     let (_, output) = output.unwrap_or_else(|| panic!("{}\n{item}", cx.messages().join("\n")));
     let found = output.functions.iter().find(|f| f.name == "__constrained_dynamics");
-    found.expect("it has constraints").program.counts.total()
+    found.expect("it has constraints").program.counts.total_operations()
 }
 
 /// Returns the source of the mechanism with `n` windows of the IFToMM benchmark A02.
-fn windows(n: usize) -> String {
+fn windows_source(n: usize) -> String {
     let mut item = String::from("struct Windows {\n");
     for k in 0..=n {
         let _ = writeln!(
@@ -48,7 +48,8 @@ fn windows(n: usize) -> String {
 /// The elimination preserves the zeros of a chain of loops: each window adds the same number of operations.
 #[test]
 fn a_chain_of_loops_costs_in_proportion_to_its_length() {
-    let counts: Vec<usize> = (1..=10).map(|n| operations("gravity = -9.81 * y", &windows(n))).collect();
+    let counts: Vec<usize> =
+        (1..=10).map(|n| count_operations("gravity = -9.81 * y", &windows_source(n))).collect();
     let steps: Vec<usize> = counts.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let (least, most) = (steps[2..].iter().min(), steps[2..].iter().max());
     assert_eq!(least, most, "{counts:?}");
@@ -56,7 +57,7 @@ fn a_chain_of_loops_costs_in_proportion_to_its_length() {
 }
 
 /// Returns the mechanism in the file `name` of the models: the arguments of its attribute, and its struct.
-fn model(name: &str) -> (String, String) {
+fn model_source(name: &str) -> (String, String) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../models/src/{name}.rs"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let file = syn::parse_file(&text).expect("it is Rust");
@@ -73,7 +74,7 @@ fn model(name: &str) -> (String, String) {
 }
 
 /// Returns the source of a platform on legs of variable length with ball joints.
-fn platform(legs: usize) -> String {
+fn platform_source(legs: usize) -> String {
     let mut item = String::from(
         "struct Platform {
         #[body(mass = 30, inertia = diagonal(1.5, 1.5, 2.5))] platform: Body,
@@ -113,11 +114,11 @@ fn linkages_and_rolling_bodies() {
         ("rattleback", 791),
     ];
     let found = expected.map(|(name, _)| {
-        let (arguments, item) = model(name);
-        (name, operations(&arguments, &item))
+        let (arguments, item) = model_source(name);
+        (name, count_operations(&arguments, &item))
     });
     assert_eq!(found, expected);
-    let platforms = [3, 4, 5, 6].map(|legs| operations("gravity = -9.81 * z", &platform(legs)));
+    let platforms = [3, 4, 5, 6].map(|legs| count_operations("gravity = -9.81 * z", &platform_source(legs)));
     let bounds = [1640, 2590, 3860, 5890];
     assert!(
         platforms.iter().zip(&bounds).all(|(found, bound)| found <= bound),

@@ -5,7 +5,7 @@
 use linkwork::__private::{Elimination, independent_solution};
 use linkwork_compiler::expr::Expr;
 use linkwork_compiler::expr::eval::eval;
-use linkwork_compiler::expr::sample::sample;
+use linkwork_compiler::expr::sample::sample_of_symbol;
 use linkwork_compiler::kinematics::{self, random_configuration};
 use linkwork_compiler::mechanics::{self, constraints, crba, rnea};
 use linkwork_compiler::mechanism::{Model, Quantity};
@@ -13,8 +13,8 @@ use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::Cell;
 use std::fmt::Write;
-use support::model::{symbols, try_model};
-use support::random::config;
+use support::model::{random_symbol_values, try_model};
+use support::random::property_test_config;
 
 /// Chain of bodies from the ground back to the ground, with the joint that closes it.
 #[derive(Clone, Debug)]
@@ -40,7 +40,7 @@ const CLOSING: [(&str, &str); 7] = [
 ];
 
 impl Chain {
-    fn source(&self, arguments: &str) -> (String, String) {
+    fn chain_source(&self, arguments: &str) -> (String, String) {
         let vector_text = |v: &[f64; 3]| format!("{:?} * x + {:?} * y + {:?} * z", v[0], v[1], v[2]);
         let mut item = String::from("struct Chain {\n");
         let mut parent = "ground".to_string();
@@ -73,7 +73,7 @@ impl Chain {
     }
 }
 
-fn chains() -> impl Strategy<Value = Chain> {
+fn random_chains() -> impl Strategy<Value = Chain> {
     let random_direction = || prop::array::uniform3(-1.0..1.0_f64);
     let joint = (random_direction(), random_direction(), prop::bool::weighted(0.2))
         .prop_filter("a direction needs a length", |(axis, ..)| {
@@ -88,7 +88,7 @@ fn chains() -> impl Strategy<Value = Chain> {
 
 /// Calls `check` with the model, unless the chain cannot move or its speeds depend on each other.
 fn with_model(chain: &Chain, arguments: &str, check: impl FnOnce(&Model<'_>)) {
-    let source = chain.source(arguments);
+    let source = chain.chain_source(arguments);
     if let Err(messages) = try_model(&source, |_, model| check(model)) {
         let known = ["cannot move", "no configuration", "do not follow", "can never hold"];
         let is_expected = |m: &String| known.iter().any(|k| m.contains(k));
@@ -119,79 +119,88 @@ fn is_taken(nv: usize, nc: usize, found: &[f64]) -> bool {
 }
 
 /// Returns the number of test cases: `usual`, or the value of the variable `LINKWORK_ORACLE`.
-fn cases(usual: u32) -> u32 {
+fn test_case_count(usual: u32) -> u32 {
     std::env::var("LINKWORK_ORACLE").ok().and_then(|n| n.parse().ok()).unwrap_or(usual)
 }
 
 #[test]
 fn both_formulations_fulfil_the_equations() {
     let checked = Cell::new(0);
-    let run = TestRunner::new(config(cases(64))).run(&(chains(), 0..1000_u64), |(chain, seed)| {
-        with_model(&chain, ", formulation = speeds", |model| {
-            let joints = kinematics::joints(model);
-            let v = mechanics::velocities(model);
-            let mass = crba::mass_matrix(model, &joints);
-            let h = rnea::inverse_dynamics(model, &joints, &v, None);
-            let tau = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph));
-            let force: Vec<Expr<'_>> = tau.zip(h).map(|(tau, h)| tau - h).collect();
-            let (rows, bias) = (constraints::jacobian(model), constraints::biases(model));
-            let by_multipliers = constraints::solve(&mass, &rows, force.clone(), bias.clone());
-            let pivots = model.dependent.as_ref().expect("speeds were asked for");
-            let by_speeds = constraints::solve_by_speeds(model, &mass, &force, bias.clone(), pivots);
-            let (nv, nc) = (model.nv(), rows.len());
-            let at = symbols(model, seed);
-            let first = eval(&by_multipliers, &at);
-            let second = eval(&by_speeds, &at);
-            // Close to a singular configuration, or with nearly dependent speeds, small pivots exclude the
-            // solution.
-            let regular = (0..nc).all(|k| first[nv + nc + k] > 1e-4 * first[nv + 2 * nc + k]);
-            let taken = is_taken(nv, nc, &second);
-            let m = eval(&mass.concat(), &at);
-            let j = eval(&rows.concat(), &at);
-            let (f, b) = (eval(&force, &at), eval(&bias, &at));
-            for (what, found, taken) in [("multipliers", &first, regular), ("speeds", &second, taken)] {
-                if !taken {
-                    continue;
+    let run = TestRunner::new(property_test_config(test_case_count(64))).run(
+        &(random_chains(), 0..1000_u64),
+        |(chain, seed)| {
+            with_model(&chain, ", formulation = speeds", |model| {
+                let joints = kinematics::joints_of_model(model);
+                let v = mechanics::velocity_symbols(model);
+                let mass = crba::mass_matrix(model, &joints);
+                let h = rnea::inverse_dynamics(model, &joints, &v, None);
+                let tau = (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph));
+                let force: Vec<Expr<'_>> = tau.zip(h).map(|(tau, h)| tau - h).collect();
+                let (rows, bias) = (constraints::jacobian(model), constraints::constraint_biases(model));
+                let by_multipliers =
+                    constraints::solve_constrained(&mass, &rows, force.clone(), bias.clone());
+                let pivots = model.dependent.as_ref().expect("speeds were asked for");
+                let by_speeds = constraints::solve_by_speeds(model, &mass, &force, bias.clone(), pivots);
+                let (nv, nc) = (model.nv(), rows.len());
+                let at = random_symbol_values(model, seed);
+                let first = eval(&by_multipliers, &at);
+                let second = eval(&by_speeds, &at);
+                // Close to a singular configuration, or with nearly dependent speeds, small pivots exclude the
+                // solution.
+                let regular = (0..nc).all(|k| first[nv + nc + k] > 1e-4 * first[nv + 2 * nc + k]);
+                let taken = is_taken(nv, nc, &second);
+                let m = eval(&mass.concat(), &at);
+                let j = eval(&rows.concat(), &at);
+                let (f, b) = (eval(&force, &at), eval(&bias, &at));
+                for (what, found, taken) in [("multipliers", &first, regular), ("speeds", &second, taken)] {
+                    if !taken {
+                        continue;
+                    }
+                    let (a, lambda) = (&found[..nv], &found[nv..nv + nc]);
+                    // The residual of an equation, and its largest term, which bounds the rounding error.
+                    let sum_and_largest_term = |terms: &[f64]| {
+                        (terms.iter().sum::<f64>().abs(), terms.iter().fold(0.0_f64, |s, x| s.max(x.abs())))
+                    };
+                    let terms_of_motion_equation = |i: usize| -> Vec<f64> {
+                        let held = (0..nc).map(|c| -j[c * nv + i] * lambda[c]);
+                        (0..nv).map(|k| m[i * nv + k] * a[k]).chain(held).chain([-f[i]]).collect()
+                    };
+                    let rate = |c: usize| -> Vec<f64> {
+                        (0..nv).map(|k| j[c * nv + k] * a[k]).chain([b[c]]).collect()
+                    };
+                    for equations in [
+                        (0..nv).map(terms_of_motion_equation).collect::<Vec<_>>(),
+                        (0..nc).map(rate).collect(),
+                    ] {
+                        let sums: Vec<(f64, f64)> =
+                            equations.iter().map(|terms| sum_and_largest_term(terms)).collect();
+                        let (left, largest) =
+                            sums.iter().fold((0.0_f64, 1.0_f64), |s, x| (s.0.max(x.0), s.1.max(x.1)));
+                        assert!(left < 1e-8 * largest, "{what}: {sums:?} of {chain:?} at {seed}");
+                    }
                 }
-                let (a, lambda) = (&found[..nv], &found[nv..nv + nc]);
-                // The residual of an equation, and its largest term, which bounds the rounding error.
-                let sum_and_largest_term = |terms: &[f64]| {
-                    (terms.iter().sum::<f64>().abs(), terms.iter().fold(0.0_f64, |s, x| s.max(x.abs())))
-                };
-                let terms_of_motion_equation = |i: usize| -> Vec<f64> {
-                    let held = (0..nc).map(|c| -j[c * nv + i] * lambda[c]);
-                    (0..nv).map(|k| m[i * nv + k] * a[k]).chain(held).chain([-f[i]]).collect()
-                };
-                let rate =
-                    |c: usize| -> Vec<f64> { (0..nv).map(|k| j[c * nv + k] * a[k]).chain([b[c]]).collect() };
-                for equations in
-                    [(0..nv).map(terms_of_motion_equation).collect::<Vec<_>>(), (0..nc).map(rate).collect()]
-                {
-                    let sums: Vec<(f64, f64)> =
-                        equations.iter().map(|terms| sum_and_largest_term(terms)).collect();
-                    let (left, largest) =
-                        sums.iter().fold((0.0_f64, 1.0_f64), |s, x| (s.0.max(x.0), s.1.max(x.1)));
-                    assert!(left < 1e-8 * largest, "{what}: {sums:?} of {chain:?} at {seed}");
-                }
-            }
-            checked.set(checked.get() + usize::from(regular && taken));
-        });
-        Ok(())
-    });
+                checked.set(checked.get() + usize::from(regular && taken));
+            });
+            Ok(())
+        },
+    );
     run.expect("no case fails");
     assert!(checked.get() > 20, "only {} chains were regular", checked.get());
 }
 
 proptest! {
-    #![proptest_config(config(32))]
+    #![proptest_config(property_test_config(32))]
 
     /// Constraint velocities are the derivatives of the residuals along the motion, and biases are the
     /// derivatives of the constraint velocities at constant `v`.
     #[test]
-    fn rates_and_biases_are_derivatives(chain in chains(), seed in 0..1000_u64) {
+    fn rates_and_biases_are_derivatives(chain in random_chains(), seed in 0..1000_u64) {
         with_model(&chain, "", |model| {
             let q = random_configuration(model, seed);
-            let velocity_sample = |k: usize| 4.0 * (sample(Quantity::Velocity(k).symbol(), seed) - 1.0);
+            let velocity_sample = |k: usize| {
+                let symbol = Quantity::Velocity(k).symbol();
+                4.0 * (sample_of_symbol(symbol, seed) - 1.0)
+            };
             let values_after = |e: &[Expr<'_>], step: f64| eval(e, &|s| match Quantity::from_symbol(s) {
                 Quantity::Configuration(k) => q[k] + step * velocity_sample(k),
                 Quantity::Velocity(k) => velocity_sample(k),
@@ -201,11 +210,12 @@ proptest! {
                 let h = 1e-5;
                 values_after(e, h).iter().zip(values_after(e, -h)).map(|(a, b)| (a - b) / (2.0 * h)).collect()
             };
-            let (residuals, rates) = (constraints::residuals(model), constraints::rates(model));
+            let residuals = constraints::residuals(model);
+            let rates = constraints::constraint_velocities(model);
             let largest_magnitude = |e: &[f64]| e.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
             for (derivative, of) in [
                 (values_after(&rates, 0.0), difference_quotients(&residuals)),
-                (values_after(&constraints::biases(model), 0.0), difference_quotients(&rates)),
+                (values_after(&constraints::constraint_biases(model), 0.0), difference_quotients(&rates)),
             ] {
                 for (d, o) in derivative.iter().zip(&of) {
                     assert!((d - o).abs() < 1e-6 * largest_magnitude(&derivative), "{d} and {o} of {chain:?}");

@@ -6,7 +6,14 @@ use support::random::Random;
 
 /// Checks that accelerations and multipliers satisfy the constraints and the equations of motion, and that
 /// projections satisfy the constraints.
-fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+fn check_constrained_dynamics<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
     m: &M,
     guess: &SVector<f64, NQ>,
 ) where
@@ -14,16 +21,16 @@ fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, 
 {
     let mut random = Random::new(41);
     for _ in 0..5 {
-        let near = Mechanism::integrate(m, guess, &random.vector(0.05));
+        let near = Mechanism::integrate(m, guess, &random.random_vector(0.05));
         let q = m.assemble(0.0, &near, &[]).expect("a configuration is near");
         assert!(m.constraint_residuals(0.0, &q).amax() < 1e-13);
-        let v = m.project_velocity(0.0, &q, &random.vector(1.0)).expect("a velocity is near");
+        let v = m.project_velocity(0.0, &q, &random.random_vector(1.0)).expect("a velocity is near");
         assert!(m.constraint_rates(0.0, &q, &v).amax() < 1e-12);
         let again = m.project_velocity(0.0, &q, &v).expect("it is one already");
         assert!((again - v).amax() < 1e-11 * v.amax().max(1.0));
-        completion(m, &q, &v, &mut random);
+        check_completed_velocities(m, &q, &v, &mut random);
 
-        let tau = random.vector(1.0);
+        let tau = random.random_vector(1.0);
         let (a, lambda) = m.constrained_dynamics(0.0, &q, &v, &tau);
         let j = m.constraint_jacobian(0.0, &q);
         let scale = a.amax().max(1.0);
@@ -35,13 +42,20 @@ fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, 
         let power = (after - before) / 2e-5;
         let energy = after.abs().max(1.0);
         assert!((power - tau.dot(&v)).abs() < 1e-5 * energy * scale, "{power} for {}", tau.dot(&v));
-        rates(m, &q, &v);
+        check_constraint_rates(m, &q, &v);
     }
 }
 
 /// Checks that completed velocities preserve the fixed components and satisfy the constraints, with the
 /// minimum of kinetic energy in the change.
-fn completion<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+fn check_completed_velocities<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
     m: &M,
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,
@@ -49,12 +63,12 @@ fn completion<M, const NQ: usize, const NV: usize, const NU: usize, const NH: us
 ) where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let wanted = random.vector(1.0);
+    let wanted = random.random_vector(1.0);
     let all = m.complete_velocity(0.0, q, &wanted, &[]).expect("a velocity is near");
     let nearest = m.project_velocity(0.0, q, &wanted).expect("a velocity is near");
     assert!((all - nearest).amax() < 1e-9 * nearest.amax().max(1.0), "{all} for {nearest}");
     // Components of a velocity that satisfies the constraints never contradict them.
-    let mut index = || ((random.uniform(1.0) + 1.0) / 2.0 * NV as f64) as usize;
+    let mut index = || ((random.uniform_number(1.0) + 1.0) / 2.0 * NV as f64) as usize;
     let pair = [index(), index()];
     for held in [&pair[..1], &pair[..]] {
         let mut start = wanted;
@@ -65,7 +79,7 @@ fn completion<M, const NQ: usize, const NV: usize, const NU: usize, const NH: us
         assert!(m.constraint_rates(0.0, q, &found).amax() < 1e-10 * size);
         // The change is orthogonal, in the metric of the mass matrix, to all admissible variations.
         let change = Mechanism::mass_matrix(m, 0.0, q) * (found - start);
-        let mut other = random.vector(1.0);
+        let mut other = random.random_vector(1.0);
         held.iter().for_each(|k| other[*k] = v[*k]);
         if held.len() > 1 {
             // Two fixed components may nearly depend on each other; the velocities that they determine are
@@ -97,7 +111,14 @@ where
 
 /// Checks by finite differences that constraint velocities are the rates of the constraint residuals, and
 /// that biases follow from the rates of the constraint velocities.
-fn rates<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+fn check_constraint_rates<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
     m: &M,
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,
@@ -122,11 +143,17 @@ fn rates<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, 
 #[test]
 fn linkages() {
     let four_bar = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
-    check(&four_bar, &[0.7, 0.2, 1.8].into());
+    check_constrained_dynamics(&four_bar, &[0.7, 0.2, 1.8].into());
     let crank = SliderCrank { g: 9.81, r: 0.04, l: 0.13, m_crank: 0.9, m_rod: 0.5, m_piston: 0.35 };
-    check(&crank, &[0.8, -1.0, 0.15].into());
-    check(&BricardLinkage { g: 9.81, mass: 1.0, length: 1.0 }, &[0.3, -0.23, 0.3, -0.23, 0.3].into());
-    check(&TwoWindows { g: 9.81, mass: 1.0, length: 1.0 }, &[0.4, -0.4, 0.4, -0.4, 0.4].into());
+    check_constrained_dynamics(&crank, &[0.8, -1.0, 0.15].into());
+    check_constrained_dynamics(
+        &BricardLinkage { g: 9.81, mass: 1.0, length: 1.0 },
+        &[0.3, -0.23, 0.3, -0.23, 0.3].into(),
+    );
+    check_constrained_dynamics(
+        &TwoWindows { g: 9.81, mass: 1.0, length: 1.0 },
+        &[0.4, -0.4, 0.4, -0.4, 0.4].into(),
+    );
 }
 
 #[test]
@@ -146,28 +173,31 @@ fn platform() {
     for leg in 0..6 {
         guess[9 + 3 * leg] = 1.0;
     }
-    check(&platform, &guess);
+    check_constrained_dynamics(&platform, &guess);
 }
 
 #[test]
 fn rolling_bodies() {
     let disk = RollingDisk { g: 9.81, m: 2.0, radius: 0.4 };
-    check(&disk, &[0.0, 0.0, 0.4, 0.5, 0.3, 0.7].into());
+    check_constrained_dynamics(&disk, &[0.0, 0.0, 0.4, 0.5, 0.3, 0.7].into());
     let bowl = BallInBowl { g: 9.81, mass: 0.3, radius: 0.05, bowl: 0.45 };
-    check(&bowl, &[0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5].into());
+    check_constrained_dynamics(&bowl, &[0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5].into());
     let tube = BallInTube { g: 9.81, mass: 0.3, radius: 0.05, tube: 0.45 };
-    check(&tube, &[0.2, -0.35, 0.1, 0.5, 0.5, -0.5, 0.5].into());
+    check_constrained_dynamics(&tube, &[0.2, -0.35, 0.1, 0.5, 0.5, -0.5, 0.5].into());
     let funnel = BallInFunnel { g: 9.81, mass: 0.3, radius: 0.05, half_angle: 0.6 };
-    check(&funnel, &[0.2, -0.35, 0.7, 0.5, 0.5, -0.5, 0.5].into());
+    check_constrained_dynamics(&funnel, &[0.2, -0.35, 0.7, 0.5, 0.5, -0.5, 0.5].into());
     let dish = BallInDish { g: 9.81, mass: 0.3, radius: 0.05, curvature: 0.4 };
-    check(&dish, &[0.2, -0.1, 0.2, -0.1, 0.1, 0.5, 0.5, -0.5, 0.5].into());
+    check_constrained_dynamics(&dish, &[0.2, -0.1, 0.2, -0.1, 0.1, 0.5, 0.5, -0.5, 0.5].into());
     let cone = RollingCone { g: 9.81, mass: 0.3, height: 0.2, half_angle: 0.4, slope: 0.2 };
-    check(&cone, &[0.1, 0.2, -0.02, 0.0, (1.0_f64 - 0.49).sqrt(), 0.0, 0.7].into());
-    check(&Rattleback::BENCHMARK, &[0.0, 0.0, 0.02, 0.1, 0.1, 0.0, 0.98_f64.sqrt()].into());
+    check_constrained_dynamics(&cone, &[0.1, 0.2, -0.02, 0.0, (1.0_f64 - 0.49).sqrt(), 0.0, 0.7].into());
+    check_constrained_dynamics(
+        &Rattleback::BENCHMARK,
+        &[0.0, 0.0, 0.02, 0.1, 0.1, 0.0, 0.98_f64.sqrt()].into(),
+    );
     let mut upright = Bicycle::BENCHMARK.neutral();
     upright[3] = 0.1;
     upright[6] = (1.0_f64 - 0.01).sqrt();
-    check(&Bicycle::BENCHMARK, &upright);
+    check_constrained_dynamics(&Bicycle::BENCHMARK, &upright);
 }
 
 /// States that violate the constraints are rejected, and an assembly that fails reports the constraint.
@@ -235,7 +265,7 @@ struct Held<T: Real> {
 /// precision, too.
 #[test]
 fn single_precision_knows_what_is_off() {
-    fn check<T: Real>(tolerance: T) {
+    fn check_scalar_type<T: Real>(tolerance: T) {
         let one = T::one();
         let held = Held { length: one };
         let near = SVector::from([one / (one + one), one]);
@@ -249,8 +279,8 @@ fn single_precision_knows_what_is_off() {
         let found = held.assemble(&SVector::from([T::zero(), one + one]), &[0]).expect("it is above");
         assert!((found[1] - one).abs() < tolerance && found[0] == T::zero());
     }
-    check::<f64>(1e-14);
-    check::<f32>(1e-6);
+    check_scalar_type::<f64>(1e-14);
+    check_scalar_type::<f32>(1e-6);
 }
 
 /// A completed velocity preserves the rate of the crank. At the dead centre the velocity of the piston cannot

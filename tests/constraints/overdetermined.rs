@@ -27,7 +27,7 @@ struct Bennett {
 
 /// Returns a configuration with the given angle of the first pin, and a velocity. A closed form gives the
 /// guess for the second pin.
-fn state(angle: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
+fn state_with_angle(angle: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
     let linkage = Bennett {};
     let guess = 2.0 * (-4.0 / (angle / 2.0).tan()).atan();
     let q = linkage.assemble(&SVector::from([angle, guess, -angle]), &[0]).expect("it closes");
@@ -37,7 +37,7 @@ fn state(angle: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
 
 /// Returns the product of the tangents of the half angles of two neighbouring pins over its constant ratio:
 /// −1 on the closed form.
-fn bennett(q: &SVector<f64, 3>) -> f64 {
+fn bennett_ratio(q: &SVector<f64, 3>) -> f64 {
     let (alpha, beta) = (0.8_f64, (0.7 * 0.8_f64.sin()).asin());
     let ratio = ((alpha + beta) / 2.0).sin() / ((alpha - beta) / 2.0).sin();
     (q[0] / 2.0).tan() * (q[1] / 2.0).tan() / ratio
@@ -47,15 +47,15 @@ fn bennett(q: &SVector<f64, 3>) -> f64 {
 fn bennetts_linkage_moves_along_its_closed_form() {
     assert_eq!((Bennett::NV, Bennett::NC, Bennett::NP), (3, 3, 1));
     let linkage = Bennett {};
-    let (q, v) = state(0.7, 1.0);
-    assert!((bennett(&q) + 1.0).abs() < 1e-12, "{}", bennett(&q));
+    let (q, v) = state_with_angle(0.7, 1.0);
+    assert!((bennett_ratio(&q) + 1.0).abs() < 1e-12, "{}", bennett_ratio(&q));
     let energy =
         |q: &SVector<f64, 3>, v: &SVector<f64, 3>| linkage.kinetic_energy(q, v) + linkage.potential_energy(q);
     let method = DormandPrince::new().tolerance(1e-11, 1e-11);
     let mut farthest = 0.0_f64;
     for sample in simulate(&linkage).from(q, v).method(method).duration(5.0).sample_every(0.1) {
         let sample = sample.expect("the linkage turns on");
-        assert!((bennett(&sample.q) + 1.0).abs() < 1e-9, "{}", sample.q);
+        assert!((bennett_ratio(&sample.q) + 1.0).abs() < 1e-9, "{}", sample.q);
         assert!((sample.q[2] + sample.q[0]).abs() < 1e-12, "opposite pins turn alike");
         assert!((energy(&sample.q, &sample.v) - energy(&q, &v)).abs() < 1e-8);
         farthest = farthest.max((sample.q[0] - q[0]).abs());
@@ -67,7 +67,7 @@ fn bennetts_linkage_moves_along_its_closed_form() {
 fn its_multipliers_are_the_least_that_fulfil_the_equations() {
     let linkage = Bennett {};
     for (angle, rate) in [(0.7, 1.0), (1.9, -2.0), (-1.2, 0.4)] {
-        let (q, v) = state(angle, rate);
+        let (q, v) = state_with_angle(angle, rate);
         let tau = SVector::from([0.3, -0.2, 0.7]);
         let (a, lambda) = linkage.constrained_dynamics(&q, &v, &tau);
         let jacobian = linkage.constraint_jacobian(&q);
@@ -86,7 +86,8 @@ fn its_multipliers_are_the_least_that_fulfil_the_equations() {
 #[test]
 fn lanes_hold_what_single_states_give() {
     let linkage = Bennett {};
-    let each = [(0.7, 1.0), (1.9, -2.0), (-1.2, 0.4), (2.5, 0.0)].map(|(angle, rate)| state(angle, rate));
+    let each =
+        [(0.7, 1.0), (1.9, -2.0), (-1.2, 0.4), (2.5, 0.0)].map(|(angle, rate)| state_with_angle(angle, rate));
     let q: SVector<Lanes<f64, 4>, 3> = SVector::from_fn(|i, _| Lanes(each.map(|(q, _)| q[i])));
     let v: SVector<Lanes<f64, 4>, 3> = SVector::from_fn(|i, _| Lanes(each.map(|(_, v)| v[i])));
     let a = linkage.forward_dynamics_lanes(&q, &v, &SVector::zeros());

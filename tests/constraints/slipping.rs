@@ -26,7 +26,7 @@ struct Roller {
 impl Roller {
     /// Returns a state with this velocity of the centre along the incline, m/s, and this angular velocity,
     /// rad/s.
-    fn state(&self, velocity: f64, turning: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
+    fn disk_state(&self, velocity: f64, turning: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
         let (s, c) = self.slope.sin_cos();
         ([0.15 * s, 0.15 * c, 0.0].into(), [velocity * c, -velocity * s, turning].into())
     }
@@ -45,8 +45,8 @@ fn a_disk_slides_or_rolls_down() -> Result<(), Error> {
         let share = s / c / (3.0 * mu);
         let acceleration_down_slope = |a: &SVector<f64, 3>| a[0] * c - a[1] * s;
         let (q, v) = match share < 1.0 {
-            true => disk.state(1.0, -(1.0 - v0 * share / (1.0 - share * share).sqrt()) / 0.15),
-            false => disk.state(20.0, -10.0 / 0.15),
+            true => disk.disk_state(1.0, -(1.0 - v0 * share / (1.0 - share * share).sqrt()) / 0.15),
+            false => disk.disk_state(20.0, -10.0 / 0.15),
         };
         let (a, normal) = disk.constrained_dynamics(&q, &v, &SVector::zeros());
         let found = [normal[0], acceleration_down_slope(&a), a[2]];
@@ -59,7 +59,7 @@ fn a_disk_slides_or_rolls_down() -> Result<(), Error> {
             assert!((acceleration_down_slope(&a) - 2.0 / 3.0 * 9.81 * s).abs() < 1e-11);
         }
         // From rest, the motion approaches the same steady acceleration.
-        let (q, v) = disk.state(0.0, 0.0);
+        let (q, v) = disk.disk_state(0.0, 0.0);
         let method = DormandPrince::new().tolerance(1e-9, 1e-9);
         let end = simulate(&disk).from(q, v).method(method).duration(0.5).finish()?;
         let steady = if share < 1.0 { 2.0 / 3.0 * s } else { s - mu * c };
@@ -91,19 +91,19 @@ struct Coin {
 const COIN: Coin = Coin { mu: 0.25, v0: 0.02 };
 
 /// Returns a state with the tilted coin on its rim, and a random velocity.
-fn coin(random: &mut Random) -> (SVector<f64, 7>, SVector<f64, 6>) {
-    let axis = Vector3::new(random.uniform(1.0), random.uniform(1.0), 0.3);
+fn random_coin_state(random: &mut Random) -> (SVector<f64, 7>, SVector<f64, 6>) {
+    let axis = Vector3::new(random.uniform_number(1.0), random.uniform_number(1.0), 0.3);
     let turn = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), 0.9)
         * UnitQuaternion::from_scaled_axis(axis * 0.5);
     let near = [0.1, 0.2, 0.01, turn.i, turn.j, turn.k, turn.w].into();
     let q = COIN.project_configuration(&near).expect("the table is near");
-    let mut v: SVector<f64, 6> = random.vector(0.3);
+    let mut v: SVector<f64, 6> = random.random_vector(0.3);
     v.fixed_rows_mut::<3>(3).scale_mut(30.0);
     (q, COIN.project_velocity(&q, &v).expect("regular"))
 }
 
 /// Returns the slip velocity in ground axes, from the geometry of a disk.
-fn slip(q: &SVector<f64, 7>, v: &SVector<f64, 6>) -> Vector3<f64> {
+fn slip_velocity(q: &SVector<f64, 7>, v: &SVector<f64, 6>) -> Vector3<f64> {
     let turn = UnitQuaternion::from_quaternion([q[3], q[4], q[5], q[6]].into());
     let (axis, up) = (turn * Vector3::z(), Vector3::z());
     let lowest = -(up - axis * axis.z).normalize() * 0.012;
@@ -114,8 +114,8 @@ fn slip(q: &SVector<f64, 7>, v: &SVector<f64, 6>) -> Vector3<f64> {
 fn friction_dissipates() {
     let mut random = Random::new(5);
     for _ in 0..20 {
-        let (q, v) = coin(&mut random);
-        let s = slip(&q, &v);
+        let (q, v) = random_coin_state(&mut random);
+        let s = slip_velocity(&q, &v);
         assert!(s.z.abs() < 1e-14);
         let (a, normal) = COIN.constrained_dynamics(&q, &v, &SVector::zeros());
         // The power of all forces other than inertia and gravity.
@@ -138,8 +138,8 @@ fn friction_of_a_pull_resists_as_well() {
     let mut random = Random::new(6);
     let mut pulled = 0;
     for _ in 0..20 {
-        let (q, v) = coin(&mut random);
-        let s = slip(&q, &v);
+        let (q, v) = random_coin_state(&mut random);
+        let s = slip_velocity(&q, &v);
         let tau = COIN.generalized_forces(&q, &[4.0].into());
         let (a, normal) = COIN.try_constrained_dynamics(&q, &v, &tau).expect("it does not jam");
         pulled += usize::from(normal[0] < 0.0);
@@ -155,7 +155,7 @@ fn friction_of_a_pull_resists_as_well() {
 fn derivatives_are_those_of_the_motion() {
     let mut random = Random::new(7);
     for lift in [0.0, 4.0] {
-        let (q, v) = coin(&mut random);
+        let (q, v) = random_coin_state(&mut random);
         let tau = COIN.generalized_forces(&q, &[lift].into());
         let (by_q, by_v, by_tau) = COIN.forward_dynamics_derivatives(&q, &v, &tau);
         let scale = by_q.amax().max(by_v.amax());
@@ -184,7 +184,7 @@ fn derivatives_are_those_of_the_motion() {
 #[test]
 fn lanes_are_single_states() {
     let mut random = Random::new(8);
-    let states: Vec<_> = (0..4).map(|_| coin(&mut random)).collect();
+    let states: Vec<_> = (0..4).map(|_| random_coin_state(&mut random)).collect();
     let q: SVector<f64x4, 7> = SVector::from_fn(|i, _| Lanes::from_fn(|k| states[k].0[i]));
     let v: SVector<f64x4, 6> = SVector::from_fn(|i, _| Lanes::from_fn(|k| states[k].1[i]));
     for lifted in [0..0, 2..3, 0..4] {

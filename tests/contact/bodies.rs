@@ -17,7 +17,7 @@ struct Ball {
 }
 
 /// Returns the heights of the apexes of a ball that is dropped from `height` above its contact position.
-fn apexes(m: &Ball, height: f64, h: f64, duration: f64) -> Vec<f64> {
+fn apex_heights(m: &Ball, height: f64, h: f64, duration: f64) -> Vec<f64> {
     let mut q = m.neutral();
     q[2] = 0.05 + height;
     let run = simulate(m).from(q, [0.0; 6]).method(TimeStepping::step(h)).duration(duration);
@@ -34,7 +34,7 @@ fn apexes_are_those_of_the_coefficient_of_restitution() {
     for e in [0.3, 0.5, 0.8, 0.95, 1.0] {
         let m = Ball { restitution: e };
         let [coarse, fine] = [1e-3, 1e-4].map(|h| {
-            let found = apexes(&m, 1.0, h, 1.6);
+            let found = apex_heights(&m, 1.0, h, 1.6);
             (found[0] - e * e).abs()
         });
         assert!(coarse < 8e-3 && fine < 8e-4, "{e}: {coarse}, {fine}");
@@ -141,7 +141,7 @@ struct Block {
 }
 
 impl Block {
-    fn laid(&self) -> SVector<f64, 7> {
+    fn lying_configuration(&self) -> SVector<f64, 7> {
         let mut q = self.neutral();
         q[2] = 0.05;
         q
@@ -153,7 +153,7 @@ impl Block {
 #[test]
 fn a_block_sticks_for_an_hour() {
     let m = Block { tilt: 15.0_f64.to_radians(), friction: 0.5 };
-    let q = m.laid();
+    let q = m.lying_configuration();
     let run = simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(0.1)).duration(3600.0);
     let end = run.sample_every(3600.0).last().unwrap().unwrap();
     assert!((end.q - q).norm() < 1e-9, "{:e}", (end.q - q).norm());
@@ -165,7 +165,8 @@ fn a_block_sticks_for_an_hour() {
 fn a_block_slides_down_a_steep_slope() {
     let (tilt, friction) = (30.0_f64.to_radians(), 0.3);
     let m = Block { tilt, friction };
-    let run = simulate(&m).from(m.laid(), [0.0; 6]).method(TimeStepping::step(1e-3)).duration(1.0);
+    let run =
+        simulate(&m).from(m.lying_configuration(), [0.0; 6]).method(TimeStepping::step(1e-3)).duration(1.0);
     let end = run.last().unwrap().unwrap();
     let acceleration = G * (tilt.sin() - friction * tilt.cos());
     assert!((end.q[0] - acceleration / 2.0).abs() < 1e-9, "{:e}", end.q[0] - acceleration / 2.0);
@@ -178,7 +179,7 @@ fn a_block_slides_to_rest() {
     let m = Block { tilt: 0.0, friction: 0.3 };
     let mut v = SVector::zeros();
     v[0] = 1.5;
-    let run = simulate(&m).from(m.laid(), v).method(TimeStepping::step(1e-3)).duration(2.0);
+    let run = simulate(&m).from(m.lying_configuration(), v).method(TimeStepping::step(1e-3)).duration(2.0);
     let end = run.last().unwrap().unwrap();
     let way = 1.5 * 1.5 / (2.0 * 0.3 * G);
     assert!((end.q[0] - way).abs() < 1e-5 && end.v.norm() < 1e-13, "{:e}", end.q[0] - way);

@@ -9,7 +9,7 @@ use crate::laws::{Chain, Pile, Random};
 
 /// Follows a motion and checks that its energy does not grow and that surfaces do not penetrate. Returns the
 /// number of samples and the last configuration.
-fn follow<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+fn follow_motion<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,
@@ -63,7 +63,7 @@ fn tiles_fall_into_a_corner() {
     for _ in 0..10 {
         let m = Tile { friction: random.one_of([0.0, 0.3, 0.8]), restitution: random.one_of([0.0, 0.3]) };
         let q = SVector::from([0.3, 0.3, random.next() * 3.0]);
-        let (_, end) = follow(&m, &q, &random.vector(1.0), 2.0);
+        let (_, end) = follow_motion(&m, &q, &random.random_vector(1.0), 2.0);
         assert!(end.iter().all(|x| x.is_finite()));
     }
 }
@@ -76,7 +76,7 @@ fn balls_fall_on_each_other() {
         let m = Pile { friction: random.one_of([0.0, 0.3, 0.8]), restitution: random.one_of([0.0, 0.4]) };
         let mut q = m.neutral();
         (q[0], q[2], q[7], q[9], q[16]) = (-0.11, 0.12, 0.11, 0.15, 0.4);
-        follow(&m, &q, &random.vector(0.3), 0.4);
+        follow_motion(&m, &q, &random.random_vector(0.3), 0.4);
     }
 }
 
@@ -91,7 +91,7 @@ fn a_double_pendulum_strikes_the_floor() {
             restitution: random.one_of([0.0, 0.5]),
             height: 0.1 - (0.5 * q[0].sin() + 0.5 * (q[0] + q[1]).sin()).min(0.0),
         };
-        follow(&m, &q, &random.vector(2.0), 2.0);
+        follow_motion(&m, &q, &random.random_vector(2.0), 2.0);
     }
 }
 
@@ -101,7 +101,7 @@ fn a_double_pendulum_strikes_the_floor() {
 fn time_stepping_leads_to_the_same() {
     let m = Tile { friction: 0.4, restitution: 0.0 };
     let (q, v) = ([0.5, 0.15, 0.1].into(), [0.5, 0.0, 0.0].into());
-    let (_, end) = follow(&m, &q, &v, 0.3);
+    let (_, end) = follow_motion(&m, &q, &v, 0.3);
     let distance_from_exact_end = |h: f64| {
         let run = simulate(&m).from(q, v).method(TimeStepping::step(h)).duration(0.3);
         (run.finish().unwrap().q - end).norm()

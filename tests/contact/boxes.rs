@@ -1,6 +1,6 @@
 //! Contacts between boxes, and between capsules and boxes: faces, edges and corners.
 
-use super::laws::{Random, check};
+use super::laws::{Random, check_impact_conditions};
 use linkwork::contact;
 use linkwork::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
@@ -69,7 +69,7 @@ struct Log {
 
 /// Returns the configuration of both boxes, in which the upper one has its centre at `place` and the
 /// orientation `turn`.
-pub fn placed(m: &Two, place: [f64; 3], turn: UnitQuaternion<f64>) -> SVector<f64, 14> {
+pub fn configuration_of_boxes(m: &Two, place: [f64; 3], turn: UnitQuaternion<f64>) -> SVector<f64, 14> {
     let mut q = m.neutral();
     q[2] = LOW[2];
     (q[7], q[8], q[9]) = (place[0], place[1], place[2]);
@@ -80,7 +80,7 @@ pub fn placed(m: &Two, place: [f64; 3], turn: UnitQuaternion<f64>) -> SVector<f6
 /// Returns the distance of two disjoint boxes. The columns of `a` and `b` are the boxes' axes times half of
 /// their lengths; `c` is the offset of their centres. The distance is the minimum over all corners of each
 /// box to the other box, and over all pairs of edges.
-fn distance(a: &Matrix3<f64>, b: &Matrix3<f64>, c: Vector3<f64>) -> f64 {
+fn distance_of_boxes(a: &Matrix3<f64>, b: &Matrix3<f64>, c: Vector3<f64>) -> f64 {
     let signs_of_corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { -1.0 } else { 1.0 });
     let corner_of_block = |block: &Matrix3<f64>, k: usize| block * Vector3::from(signs_of_corner(k));
     // Distance of a point from a box, relative to its centre.
@@ -123,17 +123,17 @@ fn distance(a: &Matrix3<f64>, b: &Matrix3<f64>, c: Vector3<f64>) -> f64 {
     least
 }
 
-fn scaled(turn: &UnitQuaternion<f64>, half: [f64; 3]) -> Matrix3<f64> {
+fn scaled_axes(turn: &UnitQuaternion<f64>, half: [f64; 3]) -> Matrix3<f64> {
     turn.to_rotation_matrix().into_inner() * Matrix3::from_diagonal(&half.into())
 }
 
 pub fn any_turn(random: &mut Random) -> UnitQuaternion<f64> {
-    let [x, y, z]: [f64; 3] = random.vector::<3>(3.0).into();
+    let [x, y, z]: [f64; 3] = random.random_vector::<3>(3.0).into();
     UnitQuaternion::from_scaled_axis(Vector3::new(x, y, z))
 }
 
 /// Returns the position on the line from `far` to the origin at which the minimum of the gaps is `wanted`.
-pub fn met(gap: impl Fn(Vector3<f64>) -> f64, far: Vector3<f64>, wanted: f64) -> Vector3<f64> {
+pub fn position_with_gap(gap: impl Fn(Vector3<f64>) -> f64, far: Vector3<f64>, wanted: f64) -> Vector3<f64> {
     let mut steps = (0..=200).map(|k| 1.0 - f64::from(k) / 200.0);
     let mut inside = steps.find(|part| gap(far * *part) <= wanted).expect("surfaces meet");
     let mut out = inside + 1.0 / 200.0;
@@ -152,10 +152,11 @@ fn gaps_are_distances() {
     let (log, mut beside) = (Log { friction: 0.0 }, 0);
     let (low, bar) = (Matrix3::from_diagonal(&LOW.into()), Matrix3::from_diagonal(&[0.1, 1.0, 0.1].into()));
     for _ in 0..60 {
-        let (turn, far) = (any_turn(&mut random), Vector3::from(random.vector::<3>(1.0)).normalize() * 2.0);
-        let (high, line) = (scaled(&turn, HIGH), scaled(&turn, [0.3, 0.0, 0.0]));
+        let (turn, far) =
+            (any_turn(&mut random), Vector3::from(random.random_vector::<3>(1.0)).normalize() * 2.0);
+        let (high, line) = (scaled_axes(&turn, HIGH), scaled_axes(&turn, [0.3, 0.0, 0.0]));
         let least_gap_to_seat = |place: Vector3<f64>| {
-            let q = placed(&m, [place[0], place[1], place[2] + LOW[2]], turn);
+            let q = configuration_of_boxes(&m, [place[0], place[1], place[2] + LOW[2]], turn);
             m.contact_gaps(&q).rows(0, 13).min()
         };
         let least_gap_to_beam = |place: Vector3<f64>| {
@@ -164,15 +165,15 @@ fn gaps_are_distances() {
             log.contact_gaps(&q).min()
         };
         for wanted in [0.0, 1e-6] {
-            let place = met(least_gap_to_seat, far, wanted);
-            let found = distance(&high, &low, place);
+            let place = position_with_gap(least_gap_to_seat, far, wanted);
+            let found = distance_of_boxes(&high, &low, place);
             beside += usize::from((found - wanted).abs() > 1e-9);
             assert!(
                 found < 1e-7 + 100.0 * wanted && least_gap_to_seat(place * 1.3) > 0.0,
                 "{wanted} {found} {turn} {place}"
             );
-            let place = met(least_gap_to_beam, far, wanted);
-            let found = distance(&line, &bar, place) - 0.05;
+            let place = position_with_gap(least_gap_to_beam, far, wanted);
+            let found = distance_of_boxes(&line, &bar, place) - 0.05;
             beside += usize::from((found - wanted).abs() > 1e-9);
             assert!(
                 found < 1e-7 + 100.0 * wanted && least_gap_to_beam(place * 1.3) > 0.0,
@@ -191,7 +192,7 @@ fn boxes_lie_on_each_other() {
     for (yaw, x, y) in
         [(0.0, 0.0, 0.0), (0.0, 0.05, 0.0), (0.4, 0.03, -0.06), (core::f64::consts::FRAC_PI_2, 0.0, 0.0)]
     {
-        let q = placed(&m, [x, y, 0.125], UnitQuaternion::from_euler_angles(0.0, 0.0, yaw));
+        let q = configuration_of_boxes(&m, [x, y, 0.125], UnitQuaternion::from_euler_angles(0.0, 0.0, yaw));
         let forces = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
         let rows = Two::CONTACT_ROWS;
         let carried: f64 = rows.iter().take(13).map(|row| forces[row.first]).sum();
@@ -220,7 +221,7 @@ fn edges_strike_edges() {
         // Along the lower edge, the centre of the upper box is directly above its contact point.
         let center = met - arm + Vector3::new(0.0, arm[1], 0.0);
         let met = met + Vector3::new(0.0, arm[1] + center[1], 0.0);
-        let mut q = placed(&m, [center[0], center[1], center[2] + 1.0], turn);
+        let mut q = configuration_of_boxes(&m, [center[0], center[1], center[2] + 1.0], turn);
         q[2] = 1.0;
         let gaps = m.contact_gaps(&q);
         assert!(gaps[12].abs() < 1e-15 && gaps.rows(0, 12).min() > 1e-3, "{gaps}");
@@ -254,16 +255,20 @@ fn boxes_strike_by_the_laws() {
             restitution: random.one_of([0.0, 0.6, 1.0]),
         };
         let turn = if k % 3 == 0 { UnitQuaternion::identity() } else { any_turn(&mut random) };
-        let far = Vector3::from(random.vector::<3>(1.0)).normalize();
+        let far = Vector3::from(random.random_vector::<3>(1.0)).normalize();
         // Both boxes are above the floor.
         let configuration_at_place = |place: Vector3<f64>| {
-            let mut q = placed(&m, [place[0], place[1], place[2] + 1.0], turn);
+            let mut q = configuration_of_boxes(&m, [place[0], place[1], place[2] + 1.0], turn);
             q[2] = 1.0;
             q
         };
-        let place = met(|place| m.contact_gaps(&configuration_at_place(place)).rows(0, 13).min(), far, 0.0);
-        let (q, v) = (configuration_at_place(place), random.vector(2.0));
-        check(&m, &q, &v);
+        let place = position_with_gap(
+            |place| m.contact_gaps(&configuration_at_place(place)).rows(0, 13).min(),
+            far,
+            0.0,
+        );
+        let (q, v) = (configuration_at_place(place), random.random_vector(2.0));
+        check_impact_conditions(&m, &q, &v);
         let found = contact::impact(&m, 0.0, &q, &v).unwrap();
         let linear_and_angular_momentum = |v: &SVector<f64, 12>| {
             let p = m.mass_matrix(&q) * v;
@@ -288,7 +293,7 @@ fn boxes_strike_by_the_laws() {
 fn a_box_falls_on_an_edge() {
     let m = Two { gravity: G, friction: 0.5, restitution: 0.0 };
     let other = Swapped { gravity: G, friction: 0.5, restitution: 0.0 };
-    let q = placed(&m, [0.08, 0.02, 0.3], UnitQuaternion::from_euler_angles(0.3, 0.5, 0.2));
+    let q = configuration_of_boxes(&m, [0.08, 0.02, 0.3], UnitQuaternion::from_euler_angles(0.3, 0.5, 0.2));
     let h = 1e-3;
     let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
     let mut before = total_energy(&q, &SVector::zeros());

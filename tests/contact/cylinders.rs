@@ -1,6 +1,6 @@
 //! Boxes and capsules on cylinders.
 
-use super::boxes::{any_turn, met};
+use super::boxes::{any_turn, position_with_gap};
 use super::laws::Random;
 use linkwork::contact;
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
@@ -155,7 +155,8 @@ fn gaps_of_cylinders_are_distances() {
     let (m, mut random) = (Barrels { slope: 0.0 }, Random(11));
     let mut missed = 0;
     for _ in 0..60 {
-        let (turn, far) = (any_turn(&mut random), Vector3::from(random.vector::<3>(1.0)).normalize() * 1.5);
+        let (turn, far) =
+            (any_turn(&mut random), Vector3::from(random.random_vector::<3>(1.0)).normalize() * 1.5);
         let c = turn.coords;
         let gap = |first: usize, place: Vector3<f64>| {
             let mut q = m.neutral();
@@ -166,7 +167,7 @@ fn gaps_of_cylinders_are_distances() {
             gaps.as_slice()[range].iter().copied().fold(f64::INFINITY, f64::min)
         };
         // The axis of the capsule is along x.
-        let bar = met(|p| gap(14, p + Vector3::y() * 6.0), far, 0.0);
+        let bar = position_with_gap(|p| gap(14, p + Vector3::y() * 6.0), far, 0.0);
         let along = turn * Vector3::x() * 0.15;
         let (mut low, mut high) = (-1.0, 1.0);
         let distance_at = |t: f64| from_drum(bar + along * t, 0.2, 0.2);
@@ -176,7 +177,7 @@ fn gaps_of_cylinders_are_distances() {
         }
         assert!((distance_at(low) - 0.05).abs() < 1e-8, "{} {turn} {bar}", distance_at(low));
 
-        let block = met(|p| gap(7, p + Vector3::y() * 3.0), far, 0.0);
+        let block = position_with_gap(|p| gap(7, p + Vector3::y() * 3.0), far, 0.0);
         // Slightly farther outside they do not overlap, and are close to each other.
         let outside = from_box(block * 1.002, &turn, [0.15, 0.1, 0.05], 0.2, 0.4);
         missed += usize::from(!(1e-7..0.01 * block.norm()).contains(&outside));

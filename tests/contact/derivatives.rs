@@ -56,14 +56,21 @@ struct Engine {
 }
 
 /// Returns the derivative of a function at zero by central differences of sixth order.
-fn slope<const N: usize>(f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
+fn derivative_at_zero<const N: usize>(f: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
     let h = 2e-3;
     let central_difference = |k: f64| f(k * h) - f(-k * h);
     (central_difference(1.0) * 45.0 - central_difference(2.0) * 9.0 + central_difference(3.0)) / (60.0 * h)
 }
 
 /// Checks every column of every contact derivative against finite differences.
-pub fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+pub fn check_contact_derivatives<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
     m: &M,
     t: f64,
     (q, v): (&SVector<f64, NQ>, &SVector<f64, NV>),
@@ -84,17 +91,17 @@ pub fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usi
         let motion_at_velocity_step = |s: f64| motion_with_contacts(q, &(v + unit_step(s)), tau);
         let motion_at_force_step = |s: f64| motion_with_contacts(q, v, &(tau + unit_step(s)));
         for (what, expected, column) in [
-            ("∂v̇/∂q", slope(|s| motion_at_displacement(s).a), found.by_q.column(k)),
-            ("∂v̇/∂v", slope(|s| motion_at_velocity_step(s).a), found.by_v.column(k)),
-            ("∂v̇/∂τ", slope(|s| motion_at_force_step(s).a), found.by_tau.column(k)),
+            ("∂v̇/∂q", derivative_at_zero(|s| motion_at_displacement(s).a), found.by_q.column(k)),
+            ("∂v̇/∂v", derivative_at_zero(|s| motion_at_velocity_step(s).a), found.by_v.column(k)),
+            ("∂v̇/∂τ", derivative_at_zero(|s| motion_at_force_step(s).a), found.by_tau.column(k)),
         ] {
             let off = (column - expected).amax();
             assert!(off < 1e-9 * (1.0 + held.a.amax() + expected.amax()), "{what}, {k}: {off:e}");
         }
         for (what, expected, column) in [
-            ("∂f/∂q", slope(|s| motion_at_displacement(s).forces), found.forces_by_q.column(k)),
-            ("∂f/∂v", slope(|s| motion_at_velocity_step(s).forces), found.forces_by_v.column(k)),
-            ("∂f/∂τ", slope(|s| motion_at_force_step(s).forces), found.forces_by_tau.column(k)),
+            ("∂f/∂q", derivative_at_zero(|s| motion_at_displacement(s).forces), found.forces_by_q.column(k)),
+            ("∂f/∂v", derivative_at_zero(|s| motion_at_velocity_step(s).forces), found.forces_by_v.column(k)),
+            ("∂f/∂τ", derivative_at_zero(|s| motion_at_force_step(s).forces), found.forces_by_tau.column(k)),
         ] {
             let off = (column - expected).amax();
             assert!(off < 1e-9 * (1.0 + held.forces.amax() + expected.amax()), "{what}, {k}: {off:e}");
@@ -103,7 +110,7 @@ pub fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usi
 }
 
 /// Returns a configuration and velocity of the quadruped, and joint torques.
-pub fn stance() -> (SVector<f64, 19>, SVector<f64, 18>, SVector<f64, 18>) {
+pub fn quadruped_stance() -> (SVector<f64, 19>, SVector<f64, 18>, SVector<f64, 18>) {
     let mut q = Solo {}.neutral();
     q[2] = 0.26;
     q = Solo {}.integrate(&q, &SVector::from_fn(|k, _| if k < 3 { 0.0 } else { 0.1 * k as f64 - 0.35 }));
@@ -119,7 +126,7 @@ pub fn stance() -> (SVector<f64, 19>, SVector<f64, 18>, SVector<f64, 18>) {
 #[test]
 fn a_quadruped_on_its_feet() {
     use Touch::{Open, Slips, Sticks};
-    let (q, v, tau) = stance();
+    let (q, v, tau) = quadruped_stance();
     for touches in [
         [Sticks, Open, Open, Sticks],
         [Sticks, Sticks, Sticks, Open],
@@ -127,7 +134,7 @@ fn a_quadruped_on_its_feet() {
         [Slips, Slips, Slips, Slips],
         [Open; 4],
     ] {
-        check(&Solo {}, 0.0, (&q, &v), &tau, &touches);
+        check_contact_derivatives(&Solo {}, 0.0, (&q, &v), &tau, &touches);
     }
 }
 
@@ -140,7 +147,7 @@ fn a_ball_in_a_hollow_in_the_wind() {
     let v = SVector::from_fn(|k, _| 0.5 + 0.3 * k as f64);
     let tau = SVector::from_fn(|k, _| 0.2 - 0.1 * k as f64);
     for touch in [Touch::Sticks, Touch::Slips] {
-        check(&m, 0.3, (&q, &v), &tau, &[touch]);
+        check_contact_derivatives(&m, 0.3, (&q, &v), &tau, &[touch]);
     }
 }
 
@@ -151,7 +158,7 @@ fn a_piston_on_its_stop() {
     let q = m.assemble(&[0.6, -0.8, 0.2].into(), &[0]).unwrap();
     let v = m.complete_velocity(&q, &[3.0, 0.0, 5.0].into(), &[0, 2]).unwrap();
     for touch in [Touch::Sticks, Touch::Open] {
-        check(&m, 0.0, (&q, &v), &[1.5, 0.0, 0.1].into(), &[touch]);
+        check_contact_derivatives(&m, 0.0, (&q, &v), &[1.5, 0.0, 0.1].into(), &[touch]);
     }
 }
 
@@ -180,7 +187,7 @@ fn inputs_move_what_is_held() {
     };
     let linear = contact::linear_motion(&Cart {}, 0.0, &q, &v, &u, &[Touch::Slips]).unwrap();
     assert_eq!(linear.acceleration, acceleration_with_input(u));
-    let expected = slope(|s| acceleration_with_input(u.add_scalar(s)));
+    let expected = derivative_at_zero(|s| acceleration_with_input(u.add_scalar(s)));
     assert!((linear.by_u - expected).amax() < 1e-10, "{expected}");
     assert!(linear.by_u.amax() > 0.1, "the motor moves it");
 }
@@ -220,11 +227,17 @@ fn a_table_shares_its_weight() {
     for k in 0..7 {
         let unit_step = |s: f64| SVector::<f64, 7>::from_fn(|i, _| if i == k { s } else { 0.0 });
         let mut columns = vec![
-            (slope(|s| acceleration_on_table(m.integrate(&q, &unit_step(s)), v, tau)), found.by_q.column(k)),
-            (slope(|s| acceleration_on_table(q, v, tau + unit_step(s))), found.by_tau.column(k)),
+            (
+                derivative_at_zero(|s| acceleration_on_table(m.integrate(&q, &unit_step(s)), v, tau)),
+                found.by_q.column(k),
+            ),
+            (derivative_at_zero(|s| acceleration_on_table(q, v, tau + unit_step(s))), found.by_tau.column(k)),
         ];
         if !(3..6).contains(&k) {
-            columns.push((slope(|s| acceleration_on_table(q, v + unit_step(s), tau)), found.by_v.column(k)));
+            columns.push((
+                derivative_at_zero(|s| acceleration_on_table(q, v + unit_step(s), tau)),
+                found.by_v.column(k),
+            ));
         }
         for (expected, column) in columns {
             let off = (column - expected).amax();
@@ -247,7 +260,7 @@ pub struct OnPoints {
 /// correctors, in the state of `stance`.
 #[test]
 fn a_quadruped_on_points_as_in_pinocchio() {
-    let (q, v, tau) = stance();
+    let (q, v, tau) = quadruped_stance();
     let m = OnPoints {};
     let touches = [Touch::Sticks; 2];
     let found = contact::forward_dynamics_derivatives(&m, 0.0, &q, &v, &tau, &touches).unwrap();
@@ -358,7 +371,7 @@ fn a_quadruped_on_points_as_in_pinocchio() {
 #[test]
 fn steps_of_a_held_quadruped() {
     use discrete::DifferentiableStep;
-    let (q, v, _) = stance();
+    let (q, v, _) = quadruped_stance();
     let m = OnPoints {};
     let touches = [Touch::Sticks, Touch::Slips];
     // The state is that after a touchdown: sticking points have no velocity.
@@ -366,7 +379,7 @@ fn steps_of_a_held_quadruped() {
     let v = contact::impact(&m, 0.0, &q, &v).unwrap().v;
     q[2] += 0.01;
 
-    fn check<S: DifferentiableStep<f64>>(
+    fn check_step_derivatives<S: DifferentiableStep<f64>>(
         m: &contact::Holding<'_, OnPoints, f64, 2, 6>,
         method: &S,
         (q, v): (&SVector<f64, 19>, &SVector<f64, 18>),
@@ -383,7 +396,7 @@ fn steps_of_a_held_quadruped() {
             let unit_step = |s: f64, first: usize| {
                 SVector::<f64, 18>::from_fn(|i, _| if i + first == k { s } else { 0.0 })
             };
-            let expected = slope(|s| {
+            let expected = derivative_at_zero(|s| {
                 state_change_over_step(
                     &OnPoints {}.integrate(q, &unit_step(s, 0)),
                     &(v + unit_step(s, 18)),
@@ -394,7 +407,7 @@ fn steps_of_a_held_quadruped() {
             assert!(off < 1e-7 * (1.0 + expected.amax()), "{k}: {off:e}");
         }
         for k in 0..12 {
-            let expected = slope(|s| {
+            let expected = derivative_at_zero(|s| {
                 state_change_over_step(q, v, &SVector::from_fn(|i, _| if i == k { u[i] + s } else { u[i] }))
             });
             let off = (b.column(k) - expected).amax();
@@ -403,15 +416,22 @@ fn steps_of_a_held_quadruped() {
     }
     let held = contact::hold(&m, touches);
     for held in [held, held.stabilized(30.0), held.with_gains(0.0, 50.0), held.with_gains(700.0, 0.0)] {
-        check(&held, &Rk4::step(2e-3), (&q, &v));
-        check(&held, &ImplicitMidpoint::step(2e-3), (&q, &v));
+        check_step_derivatives(&held, &Rk4::step(2e-3), (&q, &v));
+        check_step_derivatives(&held, &ImplicitMidpoint::step(2e-3), (&q, &v));
     }
 }
 
 /// Touchdown with given contact modes has derivatives, also through a closed loop.
 #[test]
 fn landings_have_derivatives() {
-    fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+    fn check_touchdown_derivatives<
+        M,
+        const NQ: usize,
+        const NV: usize,
+        const NU: usize,
+        const NK: usize,
+        const NR: usize,
+    >(
         m: &M,
         (q, v): (&SVector<f64, NQ>, &SVector<f64, NV>),
         touches: &[Touch; NK],
@@ -436,12 +456,18 @@ fn landings_have_derivatives() {
             let touchdown_at_displacement = |s: f64| landed(&m.integrate(q, &unit_step(s)), v);
             let touchdown_at_velocity_step = |s: f64| landed(q, &(v + unit_step(s)));
             let of_velocity = [
-                (slope(|s| touchdown_at_displacement(s).v), found.by_q.column(k)),
-                (slope(|s| touchdown_at_velocity_step(s).v), found.by_v.column(k)),
+                (derivative_at_zero(|s| touchdown_at_displacement(s).v), found.by_q.column(k)),
+                (derivative_at_zero(|s| touchdown_at_velocity_step(s).v), found.by_v.column(k)),
             ];
             let of_impulses = [
-                (slope(|s| touchdown_at_displacement(s).impulses), found.impulses_by_q.column(k)),
-                (slope(|s| touchdown_at_velocity_step(s).impulses), found.impulses_by_v.column(k)),
+                (
+                    derivative_at_zero(|s| touchdown_at_displacement(s).impulses),
+                    found.impulses_by_q.column(k),
+                ),
+                (
+                    derivative_at_zero(|s| touchdown_at_velocity_step(s).impulses),
+                    found.impulses_by_v.column(k),
+                ),
             ];
             for (expected, column) in of_velocity {
                 assert!((column - expected).amax() < 1e-8 * (1.0 + expected.amax()), "{k}: {expected}");
@@ -451,11 +477,11 @@ fn landings_have_derivatives() {
             }
         }
     }
-    let (q, v, _) = stance();
+    let (q, v, _) = quadruped_stance();
     use Touch::{Open, Slips, Sticks};
-    check(&Solo {}, (&q, &v), &[Sticks, Open, Slips, Sticks]);
+    check_touchdown_derivatives(&Solo {}, (&q, &v), &[Sticks, Open, Slips, Sticks]);
     let m = Engine {};
     let q = m.assemble(&[0.6, -0.8, 0.2].into(), &[0]).unwrap();
     let v = m.complete_velocity(&q, &[3.0, 0.0, 5.0].into(), &[0, 2]).unwrap();
-    check(&m, (&q, &v), &[Sticks]);
+    check_touchdown_derivatives(&m, (&q, &v), &[Sticks]);
 }

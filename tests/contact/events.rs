@@ -3,7 +3,7 @@
 use linkwork::integrate::EventDriven;
 use linkwork::prelude::*;
 
-fn exact() -> EventDriven<f64> {
+fn exact_method() -> EventDriven<f64> {
     EventDriven::new().tolerance(1e-13, 1e-13)
 }
 
@@ -25,7 +25,7 @@ fn a_ball_bounces_until_it_rests() {
     let (g, e) = (9.81_f64, 0.8_f64);
     let fall = (2.0 / g).sqrt();
     let m = Ball { restitution: e };
-    let simulate_ball = || simulate(&m).from([1.0], [0.0]).method(exact());
+    let simulate_ball = || simulate(&m).from([1.0], [0.0]).method(exact_method());
     let mut apex = 0.0;
     for n in 1..12 {
         apex += fall * (e.powi(n - 1) + e.powi(n));
@@ -46,7 +46,7 @@ fn a_ball_bounces_until_it_rests() {
     assert!((last - rest).abs() < 1e-12, "{last} {rest}");
     assert!(samples < 600, "{samples}");
     let stays = Ball { restitution: 0.0 };
-    let end = simulate(&stays).from([1.0], [0.0]).method(exact()).duration(1e4).finish().unwrap();
+    let end = simulate(&stays).from([1.0], [0.0]).method(exact_method()).duration(1e4).finish().unwrap();
     assert!(end.q[0].abs() < 1e-15 && end.v[0].abs() < 1e-15, "{end:?}");
 }
 
@@ -57,7 +57,12 @@ fn an_elastic_ball_keeps_its_energy() {
     let fall = (2.0 / 9.81_f64).sqrt();
     for start in [1.0_f64, 1e-10] {
         let period = fall * start.sqrt() * 2.0;
-        let end = simulate(&m).from([start], [0.0]).method(exact()).duration(50.0 * period).finish().unwrap();
+        let end = simulate(&m)
+            .from([start], [0.0])
+            .method(exact_method())
+            .duration(50.0 * period)
+            .finish()
+            .unwrap();
         let energy = end.v[0] * end.v[0] / 2.0 + 9.81 * end.q[0];
         assert!((energy / (9.81 * start) - 1.0).abs() < 1e-9, "{start}: {energy} {end:?}");
     }
@@ -83,7 +88,7 @@ fn a_sphere_rolls_down() {
     let m = Sphere { tilt: 15.0_f64.to_radians(), friction: 0.3 };
     let mut q = m.neutral();
     q[2] = 0.05;
-    let end = simulate(&m).from(q, [0.0; 6]).method(exact()).duration(2.0).finish().unwrap();
+    let end = simulate(&m).from(q, [0.0; 6]).method(exact_method()).duration(2.0).finish().unwrap();
     let a = 5.0 / 7.0 * 9.81 * m.tilt.sin();
     assert!((a - 1.813_582_023_182_663_4).abs() < 1e-15);
     let speed = end.v[0].hypot(end.v[2]);
@@ -99,7 +104,7 @@ fn a_bowling_ball_begins_to_roll() {
     let mut q = m.neutral();
     q[2] = 0.05;
     let rolls = 2.0 * 5.0 / (7.0 * 0.2 * 9.81);
-    let run = simulate(&m).from(q, [3.0, 4.0, 0.0, 0.0, 0.0, 0.0]).method(exact()).duration(2.0);
+    let run = simulate(&m).from(q, [3.0, 4.0, 0.0, 0.0, 0.0, 0.0]).method(exact_method()).duration(2.0);
     let mut found = None;
     for sample in run {
         let sample = sample.unwrap();
@@ -145,14 +150,14 @@ fn a_block_breaks_loose_and_stops() {
     let applied_force = |t: f64| if t < 4.0 { 1.5 * t } else { 0.0 };
     let loose = hold / 1.5;
     // The force ends at a control instant.
-    let run = simulate(&m).inputs(|t, _, _| [applied_force(t)].into()).method(exact()).duration(4.0);
+    let run = simulate(&m).inputs(|t, _, _| [applied_force(t)].into()).method(exact_method()).duration(4.0);
     let end = run.finish().unwrap();
     let s = 4.0 - loose;
     assert!((end.v[0] - 0.5 * 1.5 * s * s / 3.0).abs() < 1e-11, "{end:?}");
     assert!((end.q[0] - 1.5 * s * s * s / 18.0).abs() < 1e-11, "{end:?}");
     let brake = hold / 3.0;
     let stop = end.v[0] / brake;
-    let run = simulate(&m).from(end.q, end.v).start_at(4.0).method(exact()).duration(3600.0);
+    let run = simulate(&m).from(end.q, end.v).start_at(4.0).method(exact_method()).duration(3600.0);
     let mut rests = None;
     for sample in run {
         let sample = sample.unwrap();
@@ -192,7 +197,7 @@ fn a_crate_tips() {
     // F · 0.4 = m g · 0.1 at F = m g / 4.
     let rate = 10.0;
     let tips = 2.0 * 9.81 / 4.0 / rate;
-    let run = simulate(&m).from(q, [0.0; 6]).inputs(|t, _, _| [rate * t].into()).method(exact());
+    let run = simulate(&m).from(q, [0.0; 6]).inputs(|t, _, _| [rate * t].into()).method(exact_method());
     let rests = run.clone().duration(tips - 1e-3).finish().unwrap();
     assert!((rests.q - q).amax() < 1e-13, "{rests:?}");
     // Rotation about the edge: initially I θ̈ = 0.4 rate (t − tips).
@@ -231,7 +236,7 @@ fn a_block_rocks_as_housner_says() {
     let q = [half - (half * cosine - height * sine), half * sine + height * cosine, -tilt];
     let inertia = 4.0 / 3.0 * 3.0 * radius * radius;
     let potential_energy_at_tilt = |tilt: f64| 3.0 * 9.81 * radius * (alpha - tilt).cos();
-    let run = simulate(&m).from(q, [0.0; 3]).method(exact()).duration(2.0);
+    let run = simulate(&m).from(q, [0.0; 3]).method(exact_method()).duration(2.0);
     let (mut before, mut impacts) = (None::<f64>, 0);
     let mut rate = (2.0 * (potential_energy_at_tilt(tilt) - potential_energy_at_tilt(0.0)) / inertia).sqrt();
     for sample in run {

@@ -21,7 +21,7 @@ struct Ball {
     press: Scalar,
 }
 
-fn resting() -> SVector<f64, 7> {
+fn resting_configuration() -> SVector<f64, 7> {
     [0.0, 0.0, 0.05, 0.0, 0.0, 0.0, 1.0].into()
 }
 
@@ -29,11 +29,11 @@ fn resting() -> SVector<f64, 7> {
 #[test]
 fn a_rolling_sphere_is_held_by_friction() {
     let m = Ball { tilt: 15.0_f64.to_radians(), friction: 0.5 };
-    let force = m.force(&resting(), &SVector::zeros()).unwrap();
+    let force = m.force(&resting_configuration(), &SVector::zeros()).unwrap();
     assert!((force - Vector3::new(-0.072_543_280_927_306_54, 0.0, 0.1 * 9.81 * m.tilt.cos())).amax() < 1e-9);
-    assert_eq!(m.press(&resting(), &SVector::zeros()).unwrap(), force[2]);
+    assert_eq!(m.press(&resting_configuration(), &SVector::zeros()).unwrap(), force[2]);
     // No force acts in the air.
-    let mut q = resting();
+    let mut q = resting_configuration();
     q[2] += 1e-6;
     assert_eq!(m.force(&q, &SVector::zeros()).unwrap(), Vector3::zeros());
 }
@@ -44,7 +44,7 @@ fn a_sliding_sphere_is_braked() {
     let m = Ball { tilt: 0.0, friction: 0.2 };
     for speed in [1e-4, 1.0, 30.0] {
         let v = [0.6 * speed, -0.8 * speed, 0.0, 0.0, 0.0, 0.0].into();
-        let force = m.force(&resting(), &v).unwrap();
+        let force = m.force(&resting_configuration(), &v).unwrap();
         let weight = 0.1 * 9.81;
         assert!((force - Vector3::new(-0.12, 0.16, 1.0) * weight).amax() < 1e-9, "{force}");
     }

@@ -1,7 +1,7 @@
 //! Bilaterally enforced contacts with stabilization gains: decay of gaps and contact velocities, and steps
 //! with given accelerations.
 
-use super::derivatives::{OnPoints, stance};
+use super::derivatives::{OnPoints, quadruped_stance};
 use linkwork::contact::{self, Touch};
 use linkwork::discrete;
 use linkwork::nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -11,7 +11,7 @@ use linkwork::prelude::*;
 /// millimetre.
 #[test]
 fn gaps_of_what_is_held_decay() {
-    let (mut q, _, _) = stance();
+    let (mut q, _, _) = quadruped_stance();
     let m = OnPoints {};
     q[2] -= m.contact_gaps(&q)[0] - 1e-3;
     let simulate_held_contact = |rate: f64| {
@@ -28,7 +28,7 @@ fn gaps_of_what_is_held_decay() {
 /// the velocity has a gain.
 #[test]
 fn rates_of_what_is_held_decay_by_a_gain_of_their_own() {
-    let (q, _, _) = stance();
+    let (q, _, _) = quadruped_stance();
     let m = OnPoints {};
     // The foot moves down together with the whole robot.
     let turned = UnitQuaternion::from_quaternion(Quaternion::new(q[6], q[3], q[4], q[5]));
@@ -46,7 +46,7 @@ fn rates_of_what_is_held_decay_by_a_gain_of_their_own() {
 /// computes them, and its contact forces enforce the contacts.
 #[test]
 fn steps_are_made_of_known_accelerations() {
-    let (q, v, _) = stance();
+    let (q, v, _) = quadruped_stance();
     let (m, touches, h) = (OnPoints {}, [Touch::Sticks, Touch::Slips], 2e-3);
     let held = contact::hold(&m, touches).with_gains(0.0, 50.0);
     let u = SVector::<f64, 12>::from_fn(|k, _| 0.4 * (0.9 * k as f64).cos());

@@ -6,7 +6,7 @@ use linkwork::prelude::*;
 
 const G: f64 = 9.81;
 
-fn exact() -> EventDriven<f64> {
+fn exact_method() -> EventDriven<f64> {
     EventDriven::new().tolerance(1e-12, 1e-12)
 }
 
@@ -99,7 +99,7 @@ struct Rod {
 
 impl Rod {
     /// Returns a state of the rod at the angle `tilt` to the floor, with its tip sliding backwards at 1 m/s.
-    fn sliding(tilt: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
+    fn sliding_state(tilt: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
         let (sin, cos) = tilt.sin_cos();
         ([cos, sin, tilt].into(), [-1.0 - rate * sin, rate * cos, rate].into())
     }
@@ -113,7 +113,7 @@ fn a_rod_slides_where_no_paradox_is() {
     let m = Rod { friction: 1.3 };
     for k in 1..15 {
         let (tilt, rate) = (0.1 * f64::from(k), 0.5);
-        let (q, v) = Rod::sliding(tilt, rate);
+        let (q, v) = Rod::sliding_state(tilt, rate);
         let rates = m.contact_rates(&q, &v);
         assert!(rates[0].abs() < 1e-14 && (rates[1].abs() - 1.0).abs() < 1e-14, "{rates}");
         let (sin, cos) = tilt.sin_cos();
@@ -134,7 +134,7 @@ fn a_rod_slides_where_no_paradox_is() {
 fn a_rod_in_the_paradox_stops() {
     let m = Rod { friction: 2.0 };
     let tilt = 2.0_f64.atan();
-    let (q, v) = Rod::sliding(tilt, 0.0);
+    let (q, v) = Rod::sliding_state(tilt, 0.0);
     let (sin, cos) = tilt.sin_cos();
     assert!((1.0 + 3.0 * cos * (cos - 2.0 * sin) + 0.8).abs() < 1e-14);
     let stopped = contact::land(&m, 0.0, &q, &v, &[Touch::Sticks]).unwrap();
@@ -147,7 +147,7 @@ fn a_rod_in_the_paradox_stops() {
     }
     let run = simulate(&m).from(q, v);
     let steps = run.clone().method(TimeStepping::step(1e-5)).duration(0.1).finish().unwrap();
-    let events = run.method(exact()).duration(0.1).finish().unwrap();
+    let events = run.method(exact_method()).duration(0.1).finish().unwrap();
     assert!((steps.q - events.q).amax() < 1e-4, "{} {}", steps.q, events.q);
     assert!(m.contact_rates(&events.q, &events.v).amax() < 1e-9);
     let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
@@ -177,7 +177,7 @@ fn a_ladder_leaves_the_wall() {
     let rate = (1.5 * G / half * start.sin() / 3.0).sqrt();
     let speed = half * rate * leaves;
     let (mut nearest, mut after) = (f64::INFINITY, 0);
-    for sample in simulate(&m).from(q, [0.0; 3]).method(exact()).duration(1.1) {
+    for sample in simulate(&m).from(q, [0.0; 3]).method(exact_method()).duration(1.1) {
         let sample = sample.unwrap();
         let height = sample.q[1] / half;
         nearest = nearest.min((height - leaves).abs());
@@ -215,7 +215,7 @@ fn a_valve_chatters() {
     let (omega, preload, restitution) = ((800.0_f64 / 0.02).sqrt(), 0.004, 0.6);
     let m = Valve { restitution };
     let simulate_valve =
-        |t: f64| simulate(&m).from([0.0], [1.5]).method(exact()).duration(t).finish().unwrap();
+        |t: f64| simulate(&m).from([0.0], [1.5]).method(exact_method()).duration(t).finish().unwrap();
     let (mut t, mut speed) = (0.0, 1.5_f64);
     for k in 0..60 {
         let flight = 2.0 / omega * (speed / (omega * preload)).atan();

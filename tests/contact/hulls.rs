@@ -183,8 +183,8 @@ fn distances_from_a_hull_are_those_from_a_box() {
     };
     for _ in 0..50 {
         let (ball, block, turn) = (
-            random.vector::<3>(1.0).normalize() * 0.5,
-            random.vector::<3>(0.2),
+            random.random_vector::<3>(1.0).normalize() * 0.5,
+            random.random_vector::<3>(0.2),
             any_turn(&mut random).coords,
         );
         let ball = ball * (1.0 + random.next() * 0.5);
@@ -205,7 +205,7 @@ fn distances_from_a_hull_are_those_from_a_box() {
             turn[3],
         ]
         .into();
-        let v = random.vector::<12>(1.0);
+        let v = random.random_vector::<12>(1.0);
         let (gaps, rates) = (m.contact_gaps(&q), m.contact_rates(&q, &v));
         assert!((gaps[0] - gaps[1]).abs() < 1e-12, "{gaps}");
         assert!((rates[0] - rates[1]).abs() < 1e-10, "{rates}");

@@ -12,7 +12,7 @@ impl Random {
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    pub fn vector<const N: usize>(&mut self, size: f64) -> SVector<f64, N> {
+    pub fn random_vector<const N: usize>(&mut self, size: f64) -> SVector<f64, N> {
         SVector::from_fn(|_, _| self.next() * size)
     }
 
@@ -23,7 +23,14 @@ impl Random {
 
 /// Checks that an impact satisfies the contact conditions. Returns whether restitution was reduced so that
 /// the energy does not grow.
-pub fn check<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+pub fn check_impact_conditions<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
     m: &M,
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,

@@ -44,7 +44,7 @@ fn light_feet_lose_no_digits() {
             let forces = contact::acting(&m, 0.0, &q, &v, &SVector::zeros()).unwrap();
             assert!((forces[0] - press).abs() < 1e-6, "{}: {}", m.foot, forces[0] - press);
         }
-        let v: SVector<f64, 3> = random.vector(3.0);
+        let v: SVector<f64, 3> = random.random_vector(3.0);
         let found = contact::land(&m, 0.0, &q, &v, &[Touch::Sticks]).unwrap();
         let spin = -(v[0] * cosine + v[1] * sine);
         assert!((found.v[2] - spin).abs() < 1e-9, "{}: {}", m.foot, found.v[2] - spin);

@@ -1,7 +1,7 @@
 //! Dropped boxes and balls: the order in which contacts and their surfaces are declared has no effect, and
 //! contacts add no energy.
 
-use super::boxes::{Swapped, Two, any_turn, placed};
+use super::boxes::{Swapped, Two, any_turn, configuration_of_boxes};
 use super::laws::Random;
 use linkwork::contact::Contacts;
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
@@ -76,8 +76,8 @@ fn orders_of_declaration_make_no_difference() {
         let (friction, restitution) = ([0.0, 0.3, 0.8][k % 3], [0.0, 0.5][k % 2]);
         let m = Two { gravity: 9.81, friction, restitution };
         let turn = if k == 0 { UnitQuaternion::identity() } else { any_turn(&mut random) };
-        let at: [f64; 3] = random.vector::<3>(0.1).into();
-        let q = placed(&m, [at[0], at[1], 0.26], turn);
+        let at: [f64; 3] = random.random_vector::<3>(0.1).into();
+        let q = configuration_of_boxes(&m, [at[0], at[1], 0.26], turn);
         let mut v = SVector::<f64, 12>::zeros();
         v.fixed_rows_mut::<3>(6).copy_from(&(turn.inverse() * Vector3::new(0.0, 0.0, -1.0)));
         let other = Swapped { gravity: 9.81, friction, restitution };
@@ -103,8 +103,8 @@ fn flat_landings_stay_level() {
         let friction = [0.0, 0.3][k % 2];
         let m = Two { gravity: 9.81, friction, restitution: 0.0 };
         let other = Swapped { gravity: 9.81, friction, restitution: 0.0 };
-        let at: [f64; 2] = random.vector::<2>(0.1).into();
-        let q = placed(&m, [at[0], at[1], 0.1261], UnitQuaternion::identity());
+        let at: [f64; 2] = random.random_vector::<2>(0.1).into();
+        let q = configuration_of_boxes(&m, [at[0], at[1], 0.1261], UnitQuaternion::identity());
         let mut v = SVector::<f64, 12>::zeros();
         v[8] = -1.9;
         let most = difference((&m, &other), (q, v), (2e-3, 2));
@@ -125,7 +125,7 @@ fn orders_with_strong_friction_make_no_difference() {
     for k in 0..100 {
         let (friction, restitution) = ([2.0, 0.3, 2.0, 0.8][k % 4], [0.0, 0.5][k / 4 % 2]);
         let turn = any_turn(&mut random);
-        let at: [f64; 3] = random.vector::<3>(0.1).into();
+        let at: [f64; 3] = random.random_vector::<3>(0.1).into();
         let m = Heap { friction, restitution };
         let mut q = m.neutral();
         (q[0], q[2], q[7], q[8], q[9]) = (0.05, 0.2, at[0], at[1], 0.45);
@@ -143,8 +143,8 @@ fn drop(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
     let mut random = Random(seed);
     let m = Two { gravity: 9.81, friction: 0.5, restitution };
     let turn = any_turn(&mut random);
-    let at: [f64; 3] = random.vector::<3>(0.1).into();
-    let q = placed(&m, [at[0], at[1], 0.3], turn);
+    let at: [f64; 3] = random.random_vector::<3>(0.1).into();
+    let q = configuration_of_boxes(&m, [at[0], at[1], 0.3], turn);
     let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
     let mut before = total_energy(&q, &SVector::zeros());
     let (mut gain, mut least) = (0.0_f64, 0.0_f64);

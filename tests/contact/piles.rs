@@ -18,7 +18,7 @@ struct Stack {
 
 /// Checks that a stack of four boxes stays at rest, although its 47 contact points, of which 16 are closed,
 /// are redundant.
-fn stack() {
+fn check_stack_at_rest() {
     let m = Stack {};
     let mut q = m.neutral();
     for k in 0..4 {
@@ -32,7 +32,7 @@ fn stack() {
 
 #[test]
 fn boxes_stand_on_boxes() {
-    thread::Builder::new().stack_size(32 << 20).spawn(stack).unwrap().join().unwrap();
+    thread::Builder::new().stack_size(32 << 20).spawn(check_stack_at_rest).unwrap().join().unwrap();
 }
 
 /// House of two cards that lean on each other: the edge of the left card touches the face of the right one.

@@ -27,7 +27,7 @@ rod!(Velocities, e);
 
 /// Returns the normal and slip velocities of the end after an impact of a rod that does not rotate, and the
 /// loss of kinetic energy. The argument `rates` holds the velocities of the end before the impact.
-fn impact<M>(m: &M, angle: f64, [gap, slip]: [f64; 2]) -> ([f64; 2], f64)
+fn impact_of_rod<M>(m: &M, angle: f64, [gap, slip]: [f64; 2]) -> ([f64; 2], f64)
 where
     M: Contacts<3, 3, 0, 1, 2, Scalar = f64>,
 {
@@ -66,11 +66,11 @@ fn an_oblique_rod_leaves_faster_than_by_newton() {
             let pressed = (tt + nt * w[(0, 1)].signum() * slip) / (nn * tt - nt * nt);
             let along = (-nt * w[(0, 1)].signum() - nn * slip) / (nn * tt - nt * nt);
             assert!(along.abs() < friction * pressed && share.abs() < friction);
-            let (found, taken) = impact(&poisson, angle, [-1.0, slip]);
+            let (found, taken) = impact_of_rod(&poisson, angle, [-1.0, slip]);
             let wanted = e * (1.0 + share * slip);
             assert!((found[0] - wanted).abs() < 1e-12 && found[1].abs() < 1e-12, "{found:?} {wanted}");
             assert!(taken > 0.0);
-            let (found, _) = impact(&newton, angle, [-1.0, slip]);
+            let (found, _) = impact_of_rod(&newton, angle, [-1.0, slip]);
             assert!((found[0] - e).abs() < 1e-12 && found[1].abs() < 1e-12, "{found:?}");
         }
     }
@@ -83,8 +83,8 @@ fn while_a_rod_slips_both_laws_are_one() {
     let (friction, e, gravity) = (0.1, 0.6, 0.0);
     for angle in [0.6, 0.8, 1.0] {
         for slip in [-3.0, 3.0] {
-            let (poisson, _) = impact(&Impulses { gravity, friction, e }, angle, [-1.0, slip]);
-            let (newton, _) = impact(&Velocities { gravity, friction, e }, angle, [-1.0, slip]);
+            let (poisson, _) = impact_of_rod(&Impulses { gravity, friction, e }, angle, [-1.0, slip]);
+            let (newton, _) = impact_of_rod(&Velocities { gravity, friction, e }, angle, [-1.0, slip]);
             assert!((poisson[0] - e).abs() < 1e-12, "{poisson:?}");
             assert!(
                 (poisson[1] - newton[1]).abs() < 1e-12 && poisson[1] * slip > 0.0,
@@ -202,7 +202,7 @@ struct Pendulum {
 }
 
 /// Checks the conditions on an impact that both laws of restitution share.
-fn check<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
+fn check_impact_conditions<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
     m: &M,
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,
@@ -241,14 +241,14 @@ fn impacts_obey_the_laws() {
         if random.next() > 0.3 {
             q[0] = 1.0;
         }
-        check(&m, &q, &random.vector(3.0));
+        check_impact_conditions(&m, &q, &random.random_vector(3.0));
     }
     for _ in 0..2000 {
         let (a, b) = (random.next() * 3.0, random.next() * 3.0);
         let height = -(0.5 * a.sin() + 0.5 * (a + b).sin());
         let friction = random.one_of([0.0, 0.3, 0.7, 3.0]);
         let m = Pendulum { friction, restitution: random.one_of([0.5, 0.9, 1.0]), height };
-        check(&m, &[a, b].into(), &random.vector(3.0));
+        check_impact_conditions(&m, &[a, b].into(), &random.random_vector(3.0));
     }
 }
 

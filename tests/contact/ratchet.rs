@@ -30,7 +30,7 @@ const WEIGHT: f64 = 0.5 * 9.81;
 
 /// Returns the displacement of the rack after 0.05 s from rest, with the pawl on a flank at the position `u`
 /// of the rack and at the height `z`.
-fn moves(friction: f64, load: f64, [u, z]: [f64; 2]) -> f64 {
+fn displacement_of_rack(friction: f64, load: f64, [u, z]: [f64; 2]) -> f64 {
     let m = Ratchet { friction, load };
     let q = SVector::from([-u, z]);
     contact::check(&m, 0.0, &q).unwrap();
@@ -46,17 +46,17 @@ fn a_pawl_holds_one_way() {
     let (gentle, steep) = ([0.03, 0.015], [0.19, 0.02]);
     for friction in [0.3, 0.6] {
         let load = -climbing_force(0.5, friction);
-        assert!(moves(friction, load * 1.001, gentle) < -1e-7, "{friction}");
+        assert!(displacement_of_rack(friction, load * 1.001, gentle) < -1e-7, "{friction}");
         if friction > 0.5 {
             // The flank supports the pawl without a load, and with a load up to the limit.
-            assert!(moves(friction, load * 0.999, gentle).abs() < 1e-12);
+            assert!(displacement_of_rack(friction, load * 0.999, gentle).abs() < 1e-12);
         }
     }
     let load = climbing_force(2.0, 0.3);
-    assert!(moves(0.3, load * 1.001, steep) > 1e-7);
-    assert!(moves(0.3, load * 0.999, steep).abs() < 1e-12);
+    assert!(displacement_of_rack(0.3, load * 1.001, steep) > 1e-7);
+    assert!(displacement_of_rack(0.3, load * 0.999, steep).abs() < 1e-12);
     for times in [2.0, 1e3] {
-        let moved = moves(0.6, WEIGHT * times, steep);
+        let moved = displacement_of_rack(0.6, WEIGHT * times, steep);
         assert!(moved.abs() < 1e-12, "{times}: {moved}");
     }
 }

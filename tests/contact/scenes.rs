@@ -34,7 +34,7 @@ struct Bricks {
 
 impl Bricks {
     /// Returns the configuration of both bricks from the positions of their centres and their orientations.
-    fn posed(&self, poses: [([f64; 3], UnitQuaternion<f64>); 2]) -> SVector<f64, 14> {
+    fn configuration_of_bricks(&self, poses: [([f64; 3], UnitQuaternion<f64>); 2]) -> SVector<f64, 14> {
         let mut q = self.neutral();
         for (k, (place, turn)) in poses.into_iter().enumerate() {
             q.fixed_rows_mut::<3>(7 * k).copy_from_slice(&place);
@@ -45,7 +45,7 @@ impl Bricks {
 
     /// Advances by so many steps, and checks each: finite, without more energy than `gain` from step to step.
     /// Returns the end and the largest violation of the contact conditions.
-    fn checked(
+    fn check_steps(
         &self,
         start: (SVector<f64, 14>, SVector<f64, 12>),
         method: TimeStepping<f64>,
@@ -89,7 +89,7 @@ fn random_scenes_of_two_bricks_go_on() {
         let mut v = SVector::zeros();
         let poses = match seed % 3 {
             0 => {
-                v = random.vector(2.0);
+                v = random.random_vector(2.0);
                 [
                     ([0.0, 0.0, far], any_turn(&mut random)),
                     ([0.3 * far, 0.0, 3.1 * far], any_turn(&mut random)),
@@ -110,7 +110,7 @@ fn random_scenes_of_two_bricks_go_on() {
             _ => step.leapfrog(),
         };
         let weight = m.mass * (1.0 + m.ratio);
-        m.checked((m.posed(poses), v), step, (h, 60, 100.0 * weight * h * h));
+        m.check_steps((m.configuration_of_bricks(poses), v), step, (h, 60, 100.0 * weight * h * h));
     }
 }
 
@@ -124,7 +124,8 @@ fn a_brick_knocks_another_over() {
         let poses = [([0.0, 0.0, 0.025], level), ([0.025, 0.0, 0.025], level)];
         let mut v = SVector::zeros();
         (v[0], v[4]) = (0.075, 3.0);
-        let (end, _) = m.checked((m.posed(poses), v), TimeStepping::step(h), (h, steps, 1e-6));
+        let (end, _) =
+            m.check_steps((m.configuration_of_bricks(poses), v), TimeStepping::step(h), (h, steps, 1e-6));
         // Neither stands, and the second one lies.
         assert!(end[2] < 0.024 && end[9] < 0.013, "{end}");
     }

@@ -49,7 +49,7 @@ fn bodies_stand_as_deep_as_they_are_heavy() {
 
 /// Returns the time at which a body leaves the ground after an impact at one metre per second, and its
 /// velocity then. `at` returns the state at a time.
-fn rebound(at: impl Fn(f64) -> Sample<f64, 1, 1, 0>, longest: f64) -> (f64, f64) {
+fn rebound_time_and_velocity(at: impl Fn(f64) -> Sample<f64, 1, 1, 0>, longest: f64) -> (f64, f64) {
     let (mut early, mut late) = (longest * 0.3, longest);
     for _ in 0..50 {
         let middle = (early + late) / 2.0;
@@ -67,13 +67,13 @@ fn impacts_last_as_long_as_closed_forms_say() {
     let state_at =
         |t: f64| simulate(&m).from([0.0], [-1.0]).method(precise_method()).duration(t).finish().unwrap();
     let half = core::f64::consts::PI * (m.mass / m.stiffness).sqrt();
-    let (time, speed) = rebound(state_at, half * 1.5);
+    let (time, speed) = rebound_time_and_velocity(state_at, half * 1.5);
     assert!((time / half - 1.0).abs() < 1e-9 && (speed - 1.0).abs() < 1e-9, "{time} {half} {speed}");
     let m = Round { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation: 0.0 };
     let state_at =
         |t: f64| simulate(&m).from([0.0], [-1.0]).method(precise_method()).duration(t).finish().unwrap();
     let depth = (5.0 * m.mass / (4.0 * m.stiffness)).powf(0.4);
-    let (time, speed) = rebound(state_at, 4.0 * depth);
+    let (time, speed) = rebound_time_and_velocity(state_at, 4.0 * depth);
     assert!(
         (time / depth - 2.943_274).abs() < 1e-5 && (speed - 1.0).abs() < 1e-8,
         "{} {speed}",
@@ -89,10 +89,10 @@ fn restitution_falls_with_the_speed() {
         let expected_restitution = |speed: f64| 1.0 - 2.0 / 3.0 * dissipation * speed;
         let m = Ball { g: 0.0, mass: 0.5, stiffness: 1e4, dissipation };
         let state_at = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
-        let (_, linear) = rebound(state_at, 0.05);
+        let (_, linear) = rebound_time_and_velocity(state_at, 0.05);
         let m = Round { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation };
         let state_at = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
-        let (_, round) = rebound(state_at, 0.05);
+        let (_, round) = rebound_time_and_velocity(state_at, 0.05);
         for found in [linear, round] {
             assert!(
                 (found - expected_restitution(1.0)).abs() < dissipation * dissipation,

@@ -24,13 +24,13 @@ struct Block {
 const G: f64 = 9.81;
 const LEVEL: Block = Block { friction: 0.4, stiction: 0.6, tilt: 0.0 };
 
-fn exact() -> EventDriven<f64> {
+fn exact_method() -> EventDriven<f64> {
     EventDriven::new().tolerance(1e-12, 1e-12)
 }
 
 /// Distance and speed at time `t` of a block on level ground whose pulling force grows by `ramp`, N/s: it
 /// sticks until the force is `μₛ m g`, and then accelerates by `(F − μ m g) / m`.
-fn pulled(ramp: f64, t: f64) -> [f64; 2] {
+fn pulled_block_motion(ramp: f64, t: f64) -> [f64; 2] {
     let (weight, mass) = (2.0 * G, 2.0);
     let start = 0.6 * weight / ramp;
     let s = t - start;
@@ -48,11 +48,11 @@ fn a_pulled_block_breaks_away_at_the_static_force() {
                 .inputs(move |t, _, _| SVector::<f64, 2>::from(direction) * (ramp * t))
                 .duration(duration)
         };
-        let before = simulate_pulled_block(0.58).method(exact()).finish().unwrap();
+        let before = simulate_pulled_block(0.58).method(exact_method()).finish().unwrap();
         assert!(before.v.amax() < 1e-14 && before.q.amax() < 1e-14, "{before:?}");
-        let end = simulate_pulled_block(1.5).method(exact()).finish().unwrap();
+        let end = simulate_pulled_block(1.5).method(exact_method()).finish().unwrap();
         let steps = simulate_pulled_block(1.5).method(TimeStepping::step(1e-3)).finish().unwrap();
-        let [distance, speed] = pulled(ramp, 1.5);
+        let [distance, speed] = pulled_block_motion(ramp, 1.5);
         for (i, along) in direction.into_iter().enumerate() {
             assert!((end.q[i] - distance * along).abs() < 1e-10, "{end:?} {distance}");
             assert!((end.v[i] - speed * along).abs() < 1e-10, "{end:?} {speed}");
@@ -74,7 +74,7 @@ fn a_block_on_a_slope_rests_or_slides() {
     for (v, distance, speed) in
         [(0.0, 0.0, 0.0), (0.1, 0.1 + down / 2.0, 0.1 + down), (-1.0, -1.0 / (2.0 * up), 0.0)]
     {
-        let end = simulate_on_slope(v).method(exact()).finish().unwrap();
+        let end = simulate_on_slope(v).method(exact_method()).finish().unwrap();
         assert!((end.q[0] - distance).abs() < 1e-11 && (end.v[0] - speed).abs() < 1e-11, "{v} {end:?}");
         let steps = simulate_on_slope(v).method(TimeStepping::step(1e-3)).finish().unwrap();
         assert!((steps.q[0] - distance).abs() < 1e-3 && (steps.v[0] - speed).abs() < 1e-9, "{v} {steps:?}");
@@ -98,7 +98,7 @@ fn a_block_on_a_spring_sticks_and_slips() {
         let t = first + n * period - excess / speed;
         let simulate_on_spring =
             || simulate(&LEVEL).from([0.0; 3], [0.0; 3]).inputs(move |t, q: &_, _: &_| spring_pull(t, q));
-        let end = simulate_on_spring().method(exact()).duration(t).finish().unwrap();
+        let end = simulate_on_spring().method(exact_method()).duration(t).finish().unwrap();
         assert!((end.q[0] - n * speed * period).abs() < 1e-9, "{end:?} {}", n * speed * period);
         assert!(end.v.amax() < 1e-14, "{end:?}");
     }

@@ -19,7 +19,7 @@ struct BallOnHills {
 }
 
 /// Returns the minimum distance of a point from the hills by a numerical search.
-fn looked(m: &BallOnHills, [x, y, z]: [f64; 3]) -> f64 {
+fn searched_distance_to_hills(m: &BallOnHills, [x, y, z]: [f64; 3]) -> f64 {
     let squared_distance_to_hill = |u: f64, w: f64| {
         let height = m.height * (u / m.length).cos() * (w / m.length).sin();
         (u - x).powi(2) + (w - y).powi(2) + (height - z).powi(2)
@@ -48,7 +48,7 @@ fn distances_from_hills_are_the_least() {
         let ground = m.height * (x / m.length).cos() * (y / m.length).sin();
         let gap_at_height = |z: f64| m.contact_gaps(&[x, y, z, 0.0, 0.0, 0.0, 1.0].into())[0];
         for above in [0.095, 0.1, 0.11] {
-            let found = looked(&m, [x, y, ground + above]) - m.radius;
+            let found = searched_distance_to_hills(&m, [x, y, ground + above]) - m.radius;
             assert!(
                 (gap_at_height(ground + above) - found).abs() < 1e-7,
                 "{x} {y} {above}: {} {found}",

@@ -1,6 +1,6 @@
 //! Moments of friction: torsional friction about the normal, and rolling friction.
 
-use crate::derivatives::check;
+use crate::derivatives::check_contact_derivatives;
 use crate::laws::Random;
 use linkwork::contact::{self, Contacts, Touch};
 use linkwork::integrate::EventDriven;
@@ -29,14 +29,14 @@ struct Ball {
 const LEVEL: Ball = Ball { tilt: 0.0, friction: 0.5, torsional: 0.002, rolling: 0.001 };
 
 impl Ball {
-    fn laid(&self) -> SVector<f64, 7> {
+    fn lying_configuration(&self) -> SVector<f64, 7> {
         let mut q = self.neutral();
         q[2] = RADIUS;
         q
     }
 }
 
-fn exact() -> EventDriven<f64> {
+fn exact_method() -> EventDriven<f64> {
     EventDriven::new().tolerance(1e-12, 1e-12)
 }
 
@@ -52,13 +52,13 @@ fn moments_follow_their_contact() {
 /// at rest.
 #[test]
 fn a_spinning_ball_stops() {
-    let (m, q) = (LEVEL, LEVEL.laid());
+    let (m, q) = (LEVEL, LEVEL.lying_configuration());
     let v = SVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 20.0]);
     let inertia = 0.4 * MASS * RADIUS * RADIUS;
     let stops = 20.0 * inertia / (0.002 * MASS * G);
     let rotation_angle = |q: &SVector<f64, 7>| 2.0 * q[5].atan2(q[6]).rem_euclid(core::f64::consts::PI);
     let turned = (10.0 * stops).rem_euclid(2.0 * core::f64::consts::PI);
-    let simulate_spinning_ball = || simulate(&m).from(q, v).method(exact());
+    let simulate_spinning_ball = || simulate(&m).from(q, v).method(exact_method());
     let half = simulate_spinning_ball().duration(stops / 2.0).finish().unwrap();
     assert!((half.v[5] - 10.0).abs() < 1e-10, "{half:?}");
     let end = simulate_spinning_ball().duration(100.0).finish().unwrap();
@@ -74,11 +74,11 @@ fn a_spinning_ball_stops() {
 /// rest for an hour.
 #[test]
 fn a_rolling_ball_stops() {
-    let (m, q) = (LEVEL, LEVEL.laid());
+    let (m, q) = (LEVEL, LEVEL.lying_configuration());
     let v = SVector::from([1.0, 0.0, 0.0, 0.0, 20.0, 0.0]);
     let brakes = 5.0 / 7.0 * 0.001 * G / RADIUS;
     let way = 0.5 / brakes;
-    let simulate_rolling_ball = || simulate(&m).from(q, v).method(exact());
+    let simulate_rolling_ball = || simulate(&m).from(q, v).method(exact_method());
     let two = simulate_rolling_ball().duration(2.0).finish().unwrap();
     assert!((two.q[0] - (2.0 - 2.0 * brakes)).abs() < 1e-9, "{two:?}");
     let end = simulate_rolling_ball().duration(20.0).finish().unwrap();
@@ -100,8 +100,8 @@ fn a_ball_stays_on_a_gentle_slope() {
         let (sin, cos) = m.tilt.sin_cos();
         let a = 5.0 / 7.0 * G * (sin - 0.1 * cos).max(0.0);
         for t in [1.0, 3.0] {
-            let run = simulate(&m).from(m.laid(), [0.0; 6]);
-            let events = run.clone().method(exact()).duration(t).finish().unwrap();
+            let run = simulate(&m).from(m.lying_configuration(), [0.0; 6]);
+            let events = run.clone().method(exact_method()).duration(t).finish().unwrap();
             let steps = run.method(TimeStepping::step(1e-3)).duration(t).finish().unwrap();
             assert!((events.q[0] + a * t * t / 2.0).abs() < 1e-9, "{tilt}: {events:?}");
             assert!((steps.q[0] + a * t * t / 2.0).abs() < 1e-5, "{tilt}: {steps:?}");
@@ -111,7 +111,7 @@ fn a_ball_stays_on_a_gentle_slope() {
 
 #[test]
 fn moments_act_against_what_turns() {
-    let (m, q) = (LEVEL, LEVEL.laid());
+    let (m, q) = (LEVEL, LEVEL.lying_configuration());
     let (u, none) = (SVector::<f64, 0>::zeros(), SVector::<f64, 6>::zeros());
     let weight = MASS * G;
     let spins = contact::acting(&m, 0.0, &q, &[0.0, 0.0, 0.0, 0.0, 0.0, 3.0].into(), &u).unwrap();
@@ -138,8 +138,8 @@ fn derivatives_know_moments() {
     use Touch::{Open, Slips, Sticks};
     let m = Ball { tilt: 0.2, ..LEVEL };
     let mut random = Random(11);
-    let q = m.integrate(&m.laid(), &random.vector(1.0));
-    let (v, tau) = (random.vector(1.0), random.vector(1.0));
+    let q = m.integrate(&m.lying_configuration(), &random.random_vector(1.0));
+    let (v, tau) = (random.random_vector(1.0), random.random_vector(1.0));
     for touches in [
         [Sticks, Slips, Slips],
         [Slips, Slips, Slips],
@@ -147,7 +147,7 @@ fn derivatives_know_moments() {
         [Sticks, Sticks, Sticks],
         [Slips, Open, Slips],
     ] {
-        check(&m, 0.0, (&q, &v), &tau, &touches);
+        check_contact_derivatives(&m, 0.0, (&q, &v), &tau, &touches);
     }
 }
 
@@ -163,8 +163,10 @@ fn impacts_obey_the_laws() {
             torsional: random.one_of([0.0, 1e-3, 0.1]),
             rolling: random.one_of([0.0, 1e-3, 0.1]),
         };
-        let q = m.integrate(&m.laid(), &SVector::from([0.0, 0.0, 0.0, 1.0, 2.0, random.next()]));
-        let v = random.vector::<6>(3.0).component_mul(&SVector::from([1.0, 1.0, 1.0, 20.0, 20.0, 20.0]));
+        let q =
+            m.integrate(&m.lying_configuration(), &SVector::from([0.0, 0.0, 0.0, 1.0, 2.0, random.next()]));
+        let v =
+            random.random_vector::<6>(3.0).component_mul(&SVector::from([1.0, 1.0, 1.0, 20.0, 20.0, 20.0]));
         let found = contact::impact(&m, 0.0, &q, &v).unwrap();
         let (rates, impulses) = (m.contact_rates(&q, &found.v), found.impulses);
         let (before, after) = (m.kinetic_energy(&q, &v), m.kinetic_energy(&q, &found.v));
@@ -252,7 +254,7 @@ fn outputs_read_moments() {
     let v: SVector<f64, 6> = [1.0, 0.0, 0.0, 0.0, 20.0, -15.0].into();
     let moments = SVector::<f64, 3>::from([0.0, -0.001, 0.002]) * (MASS * G);
     let lost = -(0.001 * 20.0 + 0.002 * 15.0) * MASS * G;
-    let q = LEVEL.laid();
+    let q = LEVEL.lying_configuration();
     let m = Felt {};
     assert!((m.couple(&q, &v).unwrap() + moments).amax() < 1e-8);
     assert!((m.taken(&q, &v).unwrap() - lost).abs() < 1e-6, "{:?} {lost}", m.taken(&q, &v));

@@ -1,6 +1,8 @@
 //! Jacobians of implicit midpoint steps, of steps under constraints and of multipliers, against differences.
 
-use super::{Carrier, Driven, Linkage, assert_columns, check_step, check_steps, slopes};
+use super::{
+    Carrier, Driven, Linkage, assert_columns, check_step, check_steps, derivatives_along_directions,
+};
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 use linkwork::{ConstrainedDerivatives, Mechanism, discrete};
@@ -97,19 +99,19 @@ pub(super) fn check_constrained<
 ) where
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = f64>,
 {
-    let t = random.uniform(0.3);
-    let mut near = m.integrate(preferred, &random.vector(0.1));
+    let t = random.uniform_number(0.3);
+    let mut near = m.integrate(preferred, &random.random_vector(0.1));
     for _ in 0..10 {
         let residuals = m.constraint_residuals(t, &near);
         let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(0.0));
         near = m.integrate(&near, &m.constraint_correction(t, &near, &gap));
     }
-    let (q, v) = m.project(t, &near, &random.vector(1.0)).expect("it can be assembled");
-    let u = random.vector(2.0);
+    let (q, v) = m.project(t, &near, &random.random_vector(1.0)).expect("it can be assembled");
+    let u = random.random_vector(2.0);
     check_step(&format!("{name}, Rk4"), m, &Rk4::step(0.01), t, (&q, &v, &u));
     check_step(&format!("{name}, Euler"), m, &SemiImplicitEuler::step(0.01), t, (&q, &v, &u));
     check_step(&format!("{name}, midpoint"), m, &ImplicitMidpoint::step(0.01), t, (&q, &v, &u));
-    check_multipliers(name, m, t, (&q, &v, &random.vector(3.0)));
+    check_multipliers(name, m, t, (&q, &v, &random.random_vector(3.0)));
 }
 
 fn check_multipliers<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
@@ -121,7 +123,7 @@ fn check_multipliers<M, const NQ: usize, const NV: usize, const NU: usize, const
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = f64>,
 {
     let (by_q, by_v, by_tau) = m.multiplier_derivatives(t, q, v, tau);
-    let expected = slopes(|dq, dv, dtau: &SVector<f64, NV>| {
+    let expected = derivatives_along_directions(|dq, dv, dtau: &SVector<f64, NV>| {
         m.constrained_dynamics(t, &m.integrate(q, dq), &(v + dv), &(tau + dtau)).1
     });
     let expected: Vec<f64> = expected.iter().flatten().copied().collect();
@@ -137,7 +139,7 @@ fn constrained_steps_change_as_their_jacobians_say() {
     let closed = linkage.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
     check_constrained("linkage", &linkage, &mut random, &closed);
     for k in 0..3 {
-        let mut near = |x: f64| x * (1.0 + random.uniform(0.15));
+        let mut near = |x: f64| x * (1.0 + random.uniform_number(0.15));
         let bars = FourBar { base: near(1.8), crank_length: near(0.9), mass: near(2.0) };
         let arms = Arms { span: near(1.9), mass: near(0.8), rate: near(5.0) };
         let ball = Ballbot { radius: near(0.3), mass: near(1.0) };

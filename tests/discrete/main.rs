@@ -71,19 +71,24 @@ struct Linkage {
 
 /// Returns a unit direction times `size` in the tangent space of displacements, changes of velocity and
 /// changes of inputs: the component `k − first`, or zero.
-fn direction<const N: usize>(k: usize, first: usize, size: f64) -> SVector<f64, N> {
+fn unit_direction_times<const N: usize>(k: usize, first: usize, size: f64) -> SVector<f64, N> {
     SVector::from_fn(|i, _| if first + i == k { size } else { 0.0 })
 }
 
 /// Returns the derivatives of `f` along each direction of state and inputs, by central differences of eighth
 /// order.
-fn slopes<const NV: usize, const NU: usize, const R: usize>(
+fn derivatives_along_directions<const NV: usize, const NU: usize, const R: usize>(
     f: impl Fn(&SVector<f64, NV>, &SVector<f64, NV>, &SVector<f64, NU>) -> SVector<f64, R>,
 ) -> Vec<SVector<f64, R>> {
     let h = 1e-3;
     let weights = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
-    let value_along =
-        |k: usize, x: f64| f(&direction(k, 0, x), &direction(k, NV, x), &direction(k, 2 * NV, x));
+    let value_along = |k: usize, x: f64| {
+        f(
+            &unit_direction_times(k, 0, x),
+            &unit_direction_times(k, NV, x),
+            &unit_direction_times(k, 2 * NV, x),
+        )
+    };
     let derivative_along = |k| {
         let central_difference = |x: f64| value_along(k, x) - value_along(k, -x);
         weights.iter().zip([h, 2.0 * h, 3.0 * h, 4.0 * h]).map(|(w, x)| central_difference(x) * (w / h)).sum()
@@ -111,10 +116,10 @@ fn check_steps<M, S, const NQ: usize, const NV: usize, const NU: usize>(
 {
     for seed in 0..3 {
         let mut random = Random::new(seed);
-        let q = m.integrate(&m.neutral(), &SVector::from_fn(|_, _| random.uniform(1.2)));
-        let v = SVector::from_fn(|_, _| random.uniform(speed));
-        let u = SVector::from_fn(|_, _| random.uniform(push));
-        check_step(&format!("{name}, {seed}"), m, method, random.uniform(1.0), (&q, &v, &u));
+        let q = m.integrate(&m.neutral(), &SVector::from_fn(|_, _| random.uniform_number(1.2)));
+        let v = SVector::from_fn(|_, _| random.uniform_number(speed));
+        let u = SVector::from_fn(|_, _| random.uniform_number(push));
+        check_step(&format!("{name}, {seed}"), m, method, random.uniform_number(1.0), (&q, &v, &u));
     }
 }
 
@@ -140,24 +145,33 @@ fn check_step<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     let displaced_step = |dq: &_, dv: &SVector<f64, NV>, du: &SVector<f64, NU>| {
         step_state(&m.integrate(q, dq), &(v + dv), &(u + du))
     };
-    let by_q: Vec<f64> = slopes(|dq, dv, du| m.difference(&next_q, &displaced_step(dq, dv, du).0))
+    let by_q: Vec<f64> =
+        derivatives_along_directions(|dq, dv, du| m.difference(&next_q, &displaced_step(dq, dv, du).0))
+            .iter()
+            .flatten()
+            .copied()
+            .collect();
+    let by_v: Vec<f64> = derivatives_along_directions(|dq, dv, du| displaced_step(dq, dv, du).1)
         .iter()
         .flatten()
         .copied()
         .collect();
-    let by_v: Vec<f64> =
-        slopes(|dq, dv, du| displaced_step(dq, dv, du).1).iter().flatten().copied().collect();
     let q_blocks = [found.q_by_q.as_slice(), found.q_by_v.as_slice(), found.q_by_u.as_slice()];
     let v_blocks = [found.v_by_q.as_slice(), found.v_by_v.as_slice(), found.v_by_u.as_slice()];
     let largest_magnitude = |blocks: &[&[f64]]| blocks.concat().iter().fold(1.0_f64, |s, x| s.max(x.abs()));
     assert_columns(&format!("{name}: configuration"), &q_blocks, &by_q, largest_magnitude(&q_blocks));
     assert_columns(&format!("{name}: velocity"), &v_blocks, &by_v, largest_magnitude(&v_blocks));
     // Adjoint products equal products with the transposed blocks.
-    let (a, b) = (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(1.0)));
+    let (a, b) = (
+        SVector::from_fn(|_, _| random.uniform_number(1.0)),
+        SVector::from_fn(|_, _| random.uniform_number(1.0)),
+    );
     let (back_q, back_v, back_u) = found.adjoint(&a, &b);
-    let (dq, dv) =
-        (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(1.0)));
-    let du = SVector::from_fn(|_, _| random.uniform(1.0));
+    let (dq, dv) = (
+        SVector::from_fn(|_, _| random.uniform_number(1.0)),
+        SVector::from_fn(|_, _| random.uniform_number(1.0)),
+    );
+    let du = SVector::from_fn(|_, _| random.uniform_number(1.0));
     let forth = a.dot(&(found.q_by_q * dq + found.q_by_v * dv + found.q_by_u * du))
         + b.dot(&(found.v_by_q * dq + found.v_by_v * dv + found.v_by_u * du));
     let back = back_q.dot(&dq) + back_v.dot(&dv) + back_u.dot(&du);
@@ -191,8 +205,9 @@ fn check_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
     };
     let found = m.linear_motion(q, v, u);
     assert!((found.acceleration - acceleration_at(q, v, u)).amax() < 1e-12);
-    let expected =
-        slopes(|dq, dv, du| acceleration_at(&Mechanism::integrate(m, q, dq), &(v + dv), &(u + du)));
+    let expected = derivatives_along_directions(|dq, dv, du| {
+        acceleration_at(&Mechanism::integrate(m, q, dq), &(v + dv), &(u + du))
+    });
     let expected: Vec<f64> = expected.iter().flatten().copied().collect();
     let scale = expected.iter().fold(1.0_f64, |s, x| s.max(x.abs()));
     let blocks = [found.by_q.as_slice(), found.by_v.as_slice(), found.by_u.as_slice()];
@@ -203,8 +218,12 @@ fn check_motion<M, const NQ: usize, const NV: usize, const NU: usize>(
 fn motions_change_as_the_linear_system_says() {
     let mut random = Random::new(7);
     let carrier = Carrier {};
-    let q = carrier.integrate(&Carrier::neutral(&carrier), &SVector::from_fn(|_, _| random.uniform(1.0)));
-    let (v, u) = (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(4.0)));
+    let q =
+        carrier.integrate(&Carrier::neutral(&carrier), &SVector::from_fn(|_, _| random.uniform_number(1.0)));
+    let (v, u) = (
+        SVector::from_fn(|_, _| random.uniform_number(1.0)),
+        SVector::from_fn(|_, _| random.uniform_number(4.0)),
+    );
     check_motion("carrier", &carrier, &q, &v, &u);
     // The matrix of the linear motion equals that of the mechanism's `linearize`.
     let (a, b) = carrier.linearize(&q, &v, &u);
@@ -224,7 +243,7 @@ fn motions_change_as_the_linear_system_says() {
 /// A single step equals a simulation of that duration, for every method and with constraints.
 #[test]
 fn single_steps_are_those_of_simulations() {
-    fn check<M, S, const NQ: usize, const NV: usize>(
+    fn check_method<M, S, const NQ: usize, const NV: usize>(
         m: &M,
         method: S,
         h: f64,
@@ -243,12 +262,12 @@ fn single_steps_are_those_of_simulations() {
     let (linkage, driven, h) = (Linkage {}, Driven { rate: 30.0 }, 0.01);
     let q = linkage.assemble(&[0.9, -0.5, 1.4].into(), &[0]).expect("it can be assembled");
     let v = linkage.complete_velocity(&q, &[1.0, 0.0, 0.0].into(), &[0]).expect("it moves");
-    check(&linkage, Rk4::step(h), h, &q, &v);
-    check(&linkage, ImplicitMidpoint::step(h), h, &q, &v);
-    check(&linkage, SemiImplicitEuler::step(h), h, &q, &v);
-    check(&driven, Rk4::step(h), h, &[0.4].into(), &[1.0].into());
-    check(&driven, ImplicitMidpoint::step(h), h, &[0.4].into(), &[1.0].into());
-    check(&driven, Rosenbrock::step(h), h, &[0.4].into(), &[1.0].into());
+    check_method(&linkage, Rk4::step(h), h, &q, &v);
+    check_method(&linkage, ImplicitMidpoint::step(h), h, &q, &v);
+    check_method(&linkage, SemiImplicitEuler::step(h), h, &q, &v);
+    check_method(&driven, Rk4::step(h), h, &[0.4].into(), &[1.0].into());
+    check_method(&driven, ImplicitMidpoint::step(h), h, &[0.4].into(), &[1.0].into());
+    check_method(&driven, Rosenbrock::step(h), h, &[0.4].into(), &[1.0].into());
 }
 
 #[test]
@@ -270,8 +289,12 @@ fn bad_periods_are_errors() {
 fn frames_are_found_by_number() {
     let mut random = Random::new(3);
     let carrier = Carrier {};
-    let q = carrier.integrate(&Carrier::neutral(&carrier), &SVector::from_fn(|_, _| random.uniform(1.0)));
-    let (v, a) = (SVector::from_fn(|_, _| random.uniform(1.0)), SVector::from_fn(|_, _| random.uniform(1.0)));
+    let q =
+        carrier.integrate(&Carrier::neutral(&carrier), &SVector::from_fn(|_, _| random.uniform_number(1.0)));
+    let (v, a) = (
+        SVector::from_fn(|_, _| random.uniform_number(1.0)),
+        SVector::from_fn(|_, _| random.uniform_number(1.0)),
+    );
     let load = index_of(<Carrier as Frames<11, 9>>::FRAMES, "load").expect("it is one");
     let named = frame!(Carrier, "load");
     assert_eq!(carrier.placement_of(load, 0.0, &q), Some(carrier.frame_placement(named, &q)));

@@ -140,7 +140,7 @@ fn steps_in_speeds_change_as_their_jacobians_say() {
 fn constrained_steps_in_speeds_change_as_their_jacobians_say() {
     let mut random = Random::new(23);
     for k in 0..2 {
-        let mut near = |x: f64| x * (1.0 + random.uniform(0.15));
+        let mut near = |x: f64| x * (1.0 + random.uniform_number(0.15));
         let bars = FourBar { base: near(1.8), mass: near(2.0) };
         let arms = Arms { span: near(1.9), rate: near(5.0) };
         let ball = Ballbot { radius: near(0.3), mass: near(1.0) };

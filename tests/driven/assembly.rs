@@ -40,27 +40,27 @@ four_bar!(pub FourBar, {});
 
 impl FourBar {
     /// Returns the joint angles of the linkage for a crank angle and an assembly mode `side`.
-    pub fn angles(&self, side: f64, angle: f64) -> SVector<f64, 3> {
+    pub fn joint_angles(&self, side: f64, angle: f64) -> SVector<f64, 3> {
         let bars = [self.base, self.first, self.second, self.third];
-        let [pin, end] = corners(bars, side, angle);
+        let [pin, end] = linkage_corners(bars, side, angle);
         let coupler = (end[1] - pin[1]).atan2(end[0] - pin[0]);
-        [angle, wrapped(coupler - angle), end[1].atan2(end[0] - self.base)].into()
+        [angle, wrapped_angle(coupler - angle), end[1].atan2(end[0] - self.base)].into()
     }
 }
 
 /// Returns the pin of the crank and the end of the coupler of a four-bar linkage, by intersection of circles.
-pub fn corners([base, first, second, third]: [f64; 4], side: f64, angle: f64) -> [[f64; 2]; 2] {
+pub fn linkage_corners([base, first, second, third]: [f64; 4], side: f64, angle: f64) -> [[f64; 2]; 2] {
     let pin = [first * angle.cos(), first * angle.sin()];
-    [pin, jansen::corner(pin, [base, 0.0], second, third, side)]
+    [pin, jansen::corner_of_triangle(pin, [base, 0.0], second, third, side)]
 }
 
 /// Returns the bar lengths, the assembly mode and the crank angle of a random four-bar linkage. The sine of
 /// the transmission angle is at least `least`.
-pub fn random(source: &mut Random, least: f64) -> ([f64; 4], f64, f64) {
+pub fn random_linkage(source: &mut Random, least: f64) -> ([f64; 4], f64, f64) {
     loop {
-        let bars = [(); 4].map(|()| 0.6 + source.uniform(0.4));
-        let side = if source.uniform(1.0) < 0.0 { -1.0 } else { 1.0 };
-        let angle = source.uniform(PI);
+        let bars = [(); 4].map(|()| 0.6 + source.uniform_number(0.4));
+        let side = if source.uniform_number(1.0) < 0.0 { -1.0 } else { 1.0 };
+        let angle = source.uniform_number(PI);
         let pin = [bars[1] * angle.cos(), bars[1] * angle.sin()];
         let square = (pin[0] - bars[0]).powi(2) + pin[1].powi(2);
         let cosine = (bars[2] * bars[2] + bars[3] * bars[3] - square) / (2.0 * bars[2] * bars[3]);
@@ -70,13 +70,13 @@ pub fn random(source: &mut Random, least: f64) -> ([f64; 4], f64, f64) {
     }
 }
 
-fn wrapped(angle: f64) -> f64 {
+fn wrapped_angle(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
 }
 
 /// Returns the largest difference of angles modulo whole turns.
-fn distance(a: &SVector<f64, 3>, b: &SVector<f64, 3>) -> f64 {
-    (a - b).iter().fold(0.0, |most, off| most.max(wrapped(*off).abs()))
+fn largest_angle_difference(a: &SVector<f64, 3>, b: &SVector<f64, 3>) -> f64 {
+    (a - b).iter().fold(0.0, |most, off| most.max(wrapped_angle(*off).abs()))
 }
 
 /// Checks that assembly from a guess of the crank angle alone, with or without additional turns, yields one
@@ -85,22 +85,24 @@ fn distance(a: &SVector<f64, 3>, b: &SVector<f64, 3>) -> f64 {
 fn partial_guesses_stay_within_half_a_turn() {
     let mut source = Random::new(5);
     for case in 0..1000 {
-        let (bars, side, angle) = random(&mut source, 0.02);
+        let (bars, side, angle) = random_linkage(&mut source, 0.02);
         let m = FourBar { base: bars[0], first: bars[1], second: bars[2], third: bars[3] };
         let turns = 6.0 * PI * f64::from(case % 3);
-        let guess = [angle + turns, if case % 2 == 0 { 0.0 } else { source.uniform(9.0) }, 0.0].into();
+        let guess = [angle + turns, if case % 2 == 0 { 0.0 } else { source.uniform_number(9.0) }, 0.0].into();
         let q = m.assemble(&guess, &[0]).unwrap_or_else(|error| panic!("{bars:?}, {guess}: {error}"));
         assert!(m.constraint_residuals(&q).amax() < 1e-12 && q[0] == guess[0]);
         assert!((q - guess).amax() <= PI + 1e-12, "{bars:?}: from {guess} to {q}");
-        let ways = [side, -side].map(|side| m.angles(side, angle));
+        let ways = [side, -side].map(|side| m.joint_angles(side, angle));
         let modes = ways.map(|way| m.assembly_mode(&way, &[0]).unwrap());
         assert_eq!(modes[0], -modes[1]);
         let found = m.assembly_mode(&q, &[0]).unwrap();
         let own = usize::from(found != modes[0]);
-        assert!(distance(&q, &ways[own]) < 1e-9, "{bars:?}: {q}");
+        assert!(largest_angle_difference(&q, &ways[own]) < 1e-9, "{bars:?}: {q}");
         // The same guess leads to the other mode if it is requested.
         let other = m.assemble_in_mode(&guess, &[0], -found).unwrap();
-        assert!(distance(&other, &ways[1 - own]) < 1e-9 && (other - guess).amax() <= PI + 1e-12);
+        assert!(
+            largest_angle_difference(&other, &ways[1 - own]) < 1e-9 && (other - guess).amax() <= PI + 1e-12
+        );
         assert_eq!(m.assemble_in_mode(&guess, &[0], found), Ok(q));
     }
 }
@@ -112,12 +114,12 @@ fn guesses_near_a_mode_lead_to_it() {
     let mut source = Random::new(6);
     let mut same = 0;
     for _ in 0..1000 {
-        let (bars, side, angle) = random(&mut source, 0.1);
+        let (bars, side, angle) = random_linkage(&mut source, 0.1);
         let m = FourBar { base: bars[0], first: bars[1], second: bars[2], third: bars[3] };
         let near = 0.6;
-        let guess: SVector<f64, 3> =
-            m.angles(side, angle) + SVector::from([0.0, source.uniform(near), source.uniform(near)]);
-        let Some(way) = followed(&m, guess) else { continue };
+        let guess: SVector<f64, 3> = m.joint_angles(side, angle)
+            + SVector::from([0.0, source.uniform_number(near), source.uniform_number(near)]);
+        let Some(way) = follow_homotopy(&m, guess) else { continue };
         let q = m.assemble(&guess, &[0]).unwrap();
         if (q - way).amax() < 1e-6 {
             same += 1;
@@ -130,7 +132,7 @@ fn guesses_near_a_mode_lead_to_it() {
 }
 
 /// Returns the end of the homotopy, or `None` if its path comes near a singular configuration.
-fn followed(m: &FourBar, guess: SVector<f64, 3>) -> Option<SVector<f64, 3>> {
+fn follow_homotopy(m: &FourBar, guess: SVector<f64, 3>) -> Option<SVector<f64, 3>> {
     let (mut q, mode) = (guess, m.assembly_mode(&guess, &[0]));
     let start = m.constraint_residuals(&q);
     for step in 1..=400 {
@@ -179,7 +181,7 @@ fn gears_turn_as_far_as_they_must() {
 fn singular_positions_have_no_mode() {
     let m = FourBar { base: 1.0, first: 0.5, second: 1.0, third: 0.5 };
     assert_eq!(m.assembly_mode(&[0.0, 0.0, 0.0].into(), &[0]), None);
-    let (open, crossed) = (m.angles(1.0, 0.8), m.angles(-1.0, 0.8));
+    let (open, crossed) = (m.joint_angles(1.0, 0.8), m.joint_angles(-1.0, 0.8));
     assert!(open[1] + 0.8 < 1e-12 && crossed[1] + 0.8 < -0.1);
     assert_eq!(m.assembly_mode(&open, &[0]).map(|mode| -mode), m.assembly_mode(&crossed, &[0]));
 }

@@ -1,8 +1,8 @@
 //! Random four-bar linkages with random velocities and accelerations of the crank, against d'Alembert's
 //! principle with corners from intersections of circles.
 
-use super::assembly::{FourBar, corners, four_bar, random};
-use super::derivative;
+use super::assembly::{FourBar, four_bar, linkage_corners, random_linkage};
+use super::time_derivative;
 use linkwork::prelude::*;
 use support::compare::assert_close;
 use support::random::Random;
@@ -20,20 +20,20 @@ four_bar!(
 );
 
 /// Returns the first and second derivatives at zero, by central differences of order six.
-fn differences(f: impl Fn(f64) -> f64) -> [f64; 2] {
+fn first_and_second_derivatives(f: impl Fn(f64) -> f64) -> [f64; 2] {
     let h = 2e-3;
     let even_difference = |k: f64| f(k * h) + f(-k * h);
     let second = (2.0 * even_difference(3.0) - 27.0 * even_difference(2.0) + 270.0 * even_difference(1.0)
         - 490.0 * f(0.0))
         / (180.0 * h * h);
-    [derivative(f, 0.0), second]
+    [time_derivative(f, 0.0), second]
 }
 
 /// Returns the reference torque on the crank of a four-bar linkage, from formulas independent of the library.
-fn torque(bars: [f64; 4], side: f64, angle: f64, speed: f64, growth: f64) -> f64 {
+fn crank_torque(bars: [f64; 4], side: f64, angle: f64, speed: f64, growth: f64) -> f64 {
     let [base, first, second, third] = bars;
     let pose_of_bar = |k: usize, angle: f64| -> [f64; 3] {
-        let [pin, end] = corners(bars, side, angle);
+        let [pin, end] = linkage_corners(bars, side, angle);
         let (a, b, com) = match k {
             0 => ([0.0, 0.0], pin, [first / 3.0, 0.0]),
             1 => (pin, end, [second / 2.0, 0.1]),
@@ -47,7 +47,7 @@ fn torque(bars: [f64; 4], side: f64, angle: f64, speed: f64, growth: f64) -> f64
     for (k, (mass, inertia)) in [1.0, 1.5, 0.8].into_iter().zip(inertias).enumerate() {
         let here = pose_of_bar(k, angle)[2];
         for i in 0..3 {
-            let [by, bend] = differences(|more| match i {
+            let [by, bend] = first_and_second_derivatives(|more| match i {
                 2 => {
                     let turned = pose_of_bar(k, angle + more)[2] - here;
                     turned.sin().atan2(turned.cos())
@@ -70,17 +70,17 @@ fn torque(bars: [f64; 4], side: f64, angle: f64, speed: f64, growth: f64) -> f64
 fn drives_of_random_four_bars_follow_dalembert() {
     let (mut source, mut checked) = (Random::new(31), 0);
     for _ in 0..300 {
-        let (bars, side, angle) = random(&mut source, 0.4);
+        let (bars, side, angle) = random_linkage(&mut source, 0.4);
         let [base, first, second, third] = bars;
-        let (speed, growth) = (source.uniform(5.0), source.uniform(20.0));
-        let expected = torque(bars, side, angle, speed, growth);
+        let (speed, growth) = (source.uniform_number(5.0), source.uniform_number(20.0));
+        let expected = crank_torque(bars, side, angle, speed, growth);
         // The differences may use angles beyond the position with coupler and rocker in line.
         if !expected.is_finite() {
             continue;
         }
         checked += 1;
         let m = FourBar { base, first, second, third };
-        let at = m.angles(side, angle);
+        let at = m.joint_angles(side, angle);
         let q = m.assemble(&at, &[0]).unwrap();
         let v = m.complete_velocity(&q, &[speed, 0.0, 0.0].into(), &[0]).unwrap();
         let a = m.complete_acceleration(&q, &v, &[growth, 0.0, 0.0].into(), &[0]).unwrap();

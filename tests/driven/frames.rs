@@ -78,7 +78,7 @@ fn arms_on_frames_tell_their_torques() {
         let expected = [0.7 * 0.1 * w1 * w1 * s1, 0.7 * (9.81 - 0.1 * w1 * w1 * c1)];
         assert_close("lamp", &lamp.get("lamp.place").unwrap().force.data.0[0][..2], &expected, 1e-11);
         // The sum of all torques about the shoulder is the rate of the angular momentum.
-        let rate = super::derivative(|t| m.spin(t, &q)[2], t);
+        let rate = super::time_derivative(|t| m.spin(t, &q)[2], t);
         let weights = 9.81 * (2.0 * 0.25 * c1 + 0.5 * c1 + 0.2 * c2 - 0.7 * 0.1 * s1);
         let lamp = lamp.get("lamp.place").unwrap();
         let about = -0.1 * s1 * lamp.force[1] - 0.1 * c1 * lamp.force[0];

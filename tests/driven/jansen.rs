@@ -53,7 +53,7 @@ pub type Point = [f64; 2];
 
 /// Returns the third corner of a triangle over `a` and `b` from its distances to them. The corner is to the
 /// left of the direction from `a` to `b` if `side` is 1.
-pub fn corner(a: Point, b: Point, from_a: f64, from_b: f64, side: f64) -> Point {
+pub fn corner_of_triangle(a: Point, b: Point, from_a: f64, from_b: f64, side: f64) -> Point {
     let d = [b[0] - a[0], b[1] - a[1]];
     let square = d[0] * d[0] + d[1] * d[1];
     let along = (from_a * from_a - from_b * from_b + square) / (2.0 * square);
@@ -73,13 +73,13 @@ fn body_point(a: Point, b: Point, x: f64, y: f64) -> Point {
 struct Skeleton(Vec<(f64, Point, f64, [Point; 2])>);
 
 /// Returns the corners of the leg by intersections of circles.
-fn skeleton(angle: f64) -> Skeleton {
+fn skeleton_at_angle(angle: f64) -> Skeleton {
     let (pivot, centre) = ([-0.38, -0.078], [0.0, 0.0]);
     let pin = [0.15 * angle.cos(), 0.15 * angle.sin()];
-    let top = corner(pivot, pin, 0.415, 0.5, 1.0);
+    let top = corner_of_triangle(pivot, pin, 0.415, 0.5, 1.0);
     let left = body_point(pivot, top, 0.026_098_795_180_722_9, 0.400_149_788_067_062);
-    let bottom = corner(pivot, pin, 0.393, 0.619, -1.0);
-    let rear = corner(left, bottom, 0.394, 0.367, -1.0);
+    let bottom = corner_of_triangle(pivot, pin, 0.393, 0.619, -1.0);
+    let rear = corner_of_triangle(left, bottom, 0.394, 0.367, -1.0);
     let rod_inertia = |m: f64, l: f64| m * l * l / 12.0;
     Skeleton(vec![
         (0.1, [0.075, 0.0], rod_inertia(0.1, 0.15), [centre, pin]),
@@ -93,31 +93,32 @@ fn skeleton(angle: f64) -> Skeleton {
 }
 
 impl Skeleton {
-    fn angle(&self, k: usize) -> f64 {
+    fn angle_of_bar(&self, k: usize) -> f64 {
         let [a, b] = self.0[k].3;
         (b[1] - a[1]).atan2(b[0] - a[0])
     }
 
-    fn centre(&self, k: usize) -> Point {
+    fn center_of_bar(&self, k: usize) -> Point {
         let (_, com, _, [a, b]) = self.0[k];
         body_point(a, b, com[0], com[1])
     }
 }
 
 /// Returns the energy, with velocities from differences of the corners.
-fn energy(speed: f64, t: f64) -> f64 {
-    let time_derivative = |f: &dyn Fn(f64) -> f64| super::derivative(|t| f(speed * t), t);
-    let here = skeleton(speed * t);
+fn energy_at_time(speed: f64, t: f64) -> f64 {
+    let time_derivative = |f: &dyn Fn(f64) -> f64| super::time_derivative(|t| f(speed * t), t);
+    let here = skeleton_at_angle(speed * t);
     let mut sum = 0.0;
     for (k, (mass, _, inertia, _)) in here.0.iter().enumerate() {
-        let v = [0, 1].map(|i| time_derivative(&|angle| skeleton(angle).centre(k)[i]));
+        let v = [0, 1].map(|i| time_derivative(&|angle| skeleton_at_angle(angle).center_of_bar(k)[i]));
         // The difference starts at the current angle, so that no jump by a whole turn occurs.
-        let base = here.angle(k);
+        let base = here.angle_of_bar(k);
         let w = time_derivative(&|angle| {
-            let turned = skeleton(angle).angle(k) - base;
+            let turned = skeleton_at_angle(angle).angle_of_bar(k) - base;
             turned.sin().atan2(turned.cos())
         });
-        sum += mass * ((v[0] * v[0] + v[1] * v[1]) / 2.0 + 9.81 * here.centre(k)[1]) + inertia * w * w / 2.0;
+        sum += mass * ((v[0] * v[0] + v[1] * v[1]) / 2.0 + 9.81 * here.center_of_bar(k)[1])
+            + inertia * w * w / 2.0;
     }
     sum
 }
@@ -132,20 +133,20 @@ fn the_power_of_the_crank_is_the_rate_of_energy() {
     let mut last: Option<SVector<f64, 6>> = None;
     for k in 0..=24 {
         let t = f64::from(k) * std::f64::consts::TAU / speed / 24.0;
-        let s = skeleton(speed * t);
+        let s = skeleton_at_angle(speed * t);
         let relative_angle = |k: usize, of: f64| {
-            let angle = s.angle(k) - of;
+            let angle = s.angle_of_bar(k) - of;
             angle.sin().atan2(angle.cos())
         };
         // The first guess follows from the corners, each later one from the previous instant.
         let turned = speed * t;
         let corners = [
-            s.angle(1),
-            s.angle(2),
-            relative_angle(3, s.angle(2)),
+            s.angle_of_bar(1),
+            s.angle_of_bar(2),
+            relative_angle(3, s.angle_of_bar(2)),
             relative_angle(4, turned),
             relative_angle(5, turned),
-            relative_angle(6, s.angle(1)),
+            relative_angle(6, s.angle_of_bar(1)),
         ];
         let q = m.assemble(t, &last.unwrap_or(corners.into()), &[]).unwrap();
         last = Some(q);
@@ -154,10 +155,10 @@ fn the_power_of_the_crank_is_the_rate_of_energy() {
             assert!(off.sin().atan2(off.cos()).abs() < 1e-7, "{k}: {q} {corners:?}");
         }
         let v = m.project_velocity(t, &q, &SVector::zeros()).unwrap();
-        let total_energy = |t: f64| energy(speed, t);
+        let total_energy = |t: f64| energy_at_time(speed, t);
         let found = m.kinetic_energy(t, &q, &v) + m.potential_energy(t, &q);
         assert_close("energy", &[found], &[total_energy(t)], 1e-6);
         let place = *m.on_crank(t, &q, &v).get("crank.place").unwrap();
-        assert_close("power", &[place.torque[2] * speed], &[super::derivative(total_energy, t)], 1e-5);
+        assert_close("power", &[place.torque[2] * speed], &[super::time_derivative(total_energy, t)], 1e-5);
     }
 }

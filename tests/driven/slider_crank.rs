@@ -179,7 +179,7 @@ impl ByHand {
 const OMEGA: f64 = 35.0;
 
 /// Returns 24 instants over one revolution of the crank, s.
-fn turn() -> impl Iterator<Item = f64> {
+fn instants_of_revolution() -> impl Iterator<Item = f64> {
     (0..24).map(|k| f64::from(k) * std::f64::consts::TAU / OMEGA / 24.0)
 }
 
@@ -216,7 +216,7 @@ macro_rules! check {
 
 #[test]
 fn drives_over_a_turn_balance_inertia() {
-    for t in turn() {
+    for t in instants_of_revolution() {
         check!(Positioned { omega: OMEGA }, t);
         check!(Independent { omega: OMEGA }, t);
     }
@@ -227,7 +227,7 @@ fn drives_over_a_turn_balance_inertia() {
 fn a_given_rate_drives() {
     assert_eq!((Rated::NP, Rated::NS, Rated::NC), (1, 0, 3));
     let m = Rated { omega: OMEGA };
-    for t in turn() {
+    for t in instants_of_revolution() {
         let hand = ByHand::new(OMEGA * t, OMEGA);
         let q = m.assemble(&[OMEGA * t, hand.rod[0], hand.piston[0]].into(), &[0]).unwrap();
         let v = m.complete_velocity(&q, &SVector::zeros(), &[]).unwrap();
@@ -243,7 +243,7 @@ fn a_given_rate_drives() {
 #[test]
 fn inverse_dynamics_find_the_torque_of_a_motion() {
     let m = Motorised {};
-    for t in turn() {
+    for t in instants_of_revolution() {
         let hand = ByHand::new(OMEGA * t, OMEGA);
         let q = m.assemble(&[OMEGA * t, hand.rod[0], hand.piston[0]].into(), &[0]).unwrap();
         let v = m.complete_velocity(&q, &[OMEGA, 0.0, 0.0].into(), &[0]).unwrap();
@@ -284,7 +284,7 @@ fn frames_drive_loops() {
     let closed = ClosedForm { omega: OMEGA };
     assert_eq!(ClosedForm::NV, 0);
     let (none, rest) = (SVector::<f64, 0>::zeros(), SVector::<f64, 0>::zeros());
-    for t in turn() {
+    for t in instants_of_revolution() {
         let hand = ByHand::new(OMEGA * t, OMEGA);
         let q = m.assemble(t, &[hand.rod[0] - 0.2, hand.piston[0]].into(), &[]).unwrap();
         let v = m.project_velocity(t, &q, &SVector::zeros()).unwrap();

@@ -57,7 +57,7 @@ struct Pair {
 }
 
 /// Returns the derivatives of `f` by differences, a column for each direction.
-fn differences<const N: usize>(f: impl Fn(&SVector<f64, N>) -> SVector<f64, N>) -> SMatrix<f64, N, N> {
+fn difference_columns<const N: usize>(f: impl Fn(&SVector<f64, N>) -> SVector<f64, N>) -> SMatrix<f64, N, N> {
     const STEP: f64 = 1e-5;
     let difference_column = |k: usize| {
         let step = SVector::from_fn(|i, _| if i == k { STEP } else { 0.0 });
@@ -74,24 +74,24 @@ macro_rules! free_body {
             let (m, mut random) = ($mechanism, Random::new(11));
             let prepared = m.prepare();
             for _ in 0..5 {
-                let q = random.configuration(&m);
-                let (v, tau) = (random.vector::<NV>(1.0), random.vector::<NV>(2.0));
+                let q = random.random_configuration(&m);
+                let (v, tau) = (random.random_vector::<NV>(1.0), random.random_vector::<NV>(2.0));
                 let assert_near = |what: &str, found: &SMatrix<f64, NV, NV>, limit: &SMatrix<f64, NV, NV>| {
                     let error = (found - limit).amax() / (1.0 + limit.amax());
                     assert!(error < 1e-7, "{what}: off by {error:e}");
                 };
-                let by_q = differences(|e| m.forward_dynamics(&m.integrate(&q, e), &v, &tau));
-                let by_v = differences(|e| m.forward_dynamics(&q, &(v + e), &tau));
+                let by_q = difference_columns(|e| m.forward_dynamics(&m.integrate(&q, e), &v, &tau));
+                let by_v = difference_columns(|e| m.forward_dynamics(&q, &(v + e), &tau));
                 let found = m.forward_dynamics_derivatives(&q, &v, &tau);
                 assert_near("∂v̇/∂q", &found.0, &by_q);
                 assert_near("∂v̇/∂v", &found.1, &by_v);
                 let found = prepared.forward_dynamics_derivatives(&q, &v, &tau);
                 assert_near("∂v̇/∂q, prepared", &found.0, &by_q);
                 assert_near("∂v̇/∂v, prepared", &found.1, &by_v);
-                let u = random.vector::<{ $type::NU }>(2.0);
+                let u = random.random_vector::<{ $type::NU }>(2.0);
                 let acceleration_at = |q: &_, v: &_| m.forward_dynamics(q, v, &m.generalized_forces(q, &u));
-                let by_q = differences(|e| acceleration_at(&m.integrate(&q, e), &v));
-                let by_v = differences(|e| acceleration_at(&q, &(v + e)));
+                let by_q = difference_columns(|e| acceleration_at(&m.integrate(&q, e), &v));
+                let by_v = difference_columns(|e| acceleration_at(&q, &(v + e)));
                 let (a, _) = m.linearize(&q, &v, &u);
                 let block_of_state_matrix = |column: usize| a.fixed_view::<NV, NV>(NV, column).into_owned();
                 assert_near("linearised by q", &block_of_state_matrix(0), &by_q);

@@ -1,7 +1,7 @@
 //! Free-body diagrams of bodies with contacts, under prescribed contact forces and under the forces of the
 //! complementarity conditions.
 
-use super::check;
+use super::check_diagram;
 use linkwork::contact::{self, Touch};
 use linkwork::free_body::Origin;
 use linkwork::prelude::*;
@@ -57,16 +57,17 @@ fn given_forces_of_contacts_change_momenta() {
         [Slips, Slips, Sticks, Open, Sticks],
         [Sticks, Sticks, Slips, Sticks, Open],
     ] {
-        let q = m.integrate(&m.neutral(), &random.vector(0.5));
-        let (v, u): (SVector<f64, 7>, SVector<f64, 1>) = (random.vector(1.0), random.vector(3.0));
+        let q = m.integrate(&m.neutral(), &random.random_vector(0.5));
+        let (v, u): (SVector<f64, 7>, SVector<f64, 1>) =
+            (random.random_vector(1.0), random.random_vector(3.0));
         let tau = m.generalized_forces(&q, &u);
         let held = contact::forward_dynamics(&m, 0.0, &q, &v, &tau, &touches).unwrap();
         let state_after = |h: f64| (m.integrate(&q, &(v * h + held.a * (0.5 * h * h))), v + held.a * h);
-        check(&m.on_trunk_under(&q, &v, &u, &held.forces), |h| {
+        check_diagram(&m.on_trunk_under(&q, &v, &u, &held.forces), |h| {
             let (q, v) = state_after(h);
             [m.p_trunk(&q, &v), m.h_trunk(&q, &v), m.c_trunk(&q)]
         });
-        check(&m.on_leg_under(&q, &v, &u, &held.forces), |h| {
+        check_diagram(&m.on_leg_under(&q, &v, &u, &held.forces), |h| {
             let (q, v) = state_after(h);
             [m.p_leg(&q, &v), m.h_leg(&q, &v), m.c_leg(&q)]
         });

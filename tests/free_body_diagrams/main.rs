@@ -18,7 +18,7 @@ type Seen = [SVector<f64, 3>; 3];
 
 /// Compares the sums of the diagram with the rates of the momenta, of which `seen` gives the values at a
 /// time.
-fn check<const N: usize>(diagram: &Diagram<f64, N>, seen: impl Fn(f64) -> Seen) {
+fn check_diagram<const N: usize>(diagram: &Diagram<f64, N>, seen: impl Fn(f64) -> Seen) {
     let h = 1e-4;
     let (before, now, after) = (seen(-h), seen(0.0), seen(h));
     let momentum_rate = |k: usize| (after[k] - before[k]) / (2.0 * h);
@@ -48,7 +48,7 @@ macro_rules! check {
             let (q, v) = ($m.integrate(&q, &(v * h + a * (0.5 * h * h))), v + a * h);
             [$m.$momentum(&q, &v), $m.$angular(&q, &v), $m.$center(&q)]
         };
-        check(&$m.$body(&q, &v, $u), momenta_after)
+        check_diagram(&$m.$body(&q, &v, $u), momenta_after)
     }};
 }
 
@@ -142,9 +142,9 @@ fn what_acts_on_a_body_changes_its_momenta() {
     let m = Arm { stiffness: 60.0 };
     let mut random = Random::new(23);
     for _ in 0..4 {
-        let q = m.integrate(&m.neutral(), &random.vector(1.0));
-        let v = random.vector(2.0);
-        let u = random.vector(5.0);
+        let q = m.integrate(&m.neutral(), &random.random_vector(1.0));
+        let v = random.random_vector(2.0);
+        let u = random.random_vector(5.0);
         let a = m.forward_dynamics(&q, &v, &m.generalized_forces(&q, &u));
         check!(m, (q, v, a), &u, on_second, p_second, h_second, c_second);
         check!(m, (q, v, a), &u, on_first, p_first, h_first, c_first);
@@ -329,7 +329,7 @@ fn friction_acts_with_the_normal_force() {
         let tau = SVector::zeros();
         let (a, normal) = m.constrained_dynamics(t, &q, &v, &tau);
         let diagram = m.on_disk(t, &q, &v);
-        check(&diagram, |h| {
+        check_diagram(&diagram, |h| {
             let (q, v) = (m.integrate(&q, &(v * h + a * (0.5 * h * h))), v + a * h);
             [m.p(t + h, &q, &v), m.h(t + h, &q, &v), SVector::from([q[0], q[1], 0.0])]
         });

@@ -1,7 +1,7 @@
 //! Bodies and particles placed by `at` and `frame`: the forces that enforce their placement act on them and,
 //! in reverse, on the bodies that carry them.
 
-use super::check;
+use super::check_diagram;
 use linkwork::free_body::Origin;
 use linkwork::prelude::*;
 use support::random::Random;
@@ -67,19 +67,19 @@ fn places_hold_what_moves_on_them() {
     let m = Places {};
     let mut random = Random::new(12);
     for t in [0.0, 0.4, 1.3] {
-        let q = m.integrate(&m.neutral(), &random.vector(0.7));
-        let (v, u) = (random.vector(1.5), random.vector(4.0));
+        let q = m.integrate(&m.neutral(), &random.random_vector(0.7));
+        let (v, u) = (random.random_vector(1.5), random.random_vector(4.0));
         let a = m.forward_dynamics(t, &q, &v, &m.generalized_forces(t, &q, &u));
         let state_after = |h: f64| (m.integrate(&q, &(v * h + a * (0.5 * h * h))), v + a * h);
-        check(&m.on_arm(t, &q, &v, &u), |h| {
+        check_diagram(&m.on_arm(t, &q, &v, &u), |h| {
             let (q, v) = state_after(h);
             [m.p_arm(t + h, &q, &v), m.h_arm(t + h, &q, &v), m.c_arm(t + h, &q)]
         });
-        check(&m.on_bead(t, &q, &v, &u), |h| {
+        check_diagram(&m.on_bead(t, &q, &v, &u), |h| {
             let (q, v) = state_after(h);
             [m.p_bead(t + h, &q, &v), m.h_bead(t + h, &q, &v), m.c_bead(t + h, &q)]
         });
-        check(&m.on_plate(t, &q, &v, &u), |h| {
+        check_diagram(&m.on_plate(t, &q, &v, &u), |h| {
             let (q, v) = state_after(h);
             [m.p_plate(t + h, &q, &v), m.h_plate(t + h, &q, &v), m.c_plate(t + h, &q)]
         });

@@ -73,8 +73,8 @@ fn joints_may_be_declared_in_any_order() {
     let (usual, turned) = (FromTheGround {}, FromTheHand {});
     let reordered_velocity = |v: &SVector<f64, 5>| SVector::from([v[2], v[3], v[4], v[1], v[0]]);
     let mut random = Random::new(15);
-    let q = random.configuration(&usual);
-    let (v, a) = (random.vector(1.0), random.vector(1.0));
+    let q = random.random_configuration(&usual);
+    let (v, a) = (random.random_vector(1.0), random.random_vector(1.0));
     let turned_q = SVector::from([q[2], q[3], q[4], q[5], q[1], q[0]]);
     let forces = reordered_velocity(&usual.inverse_dynamics(&q, &v, &a));
     let turned_forces = turned.inverse_dynamics(&turned_q, &reordered_velocity(&v), &reordered_velocity(&a));
@@ -90,8 +90,8 @@ fn free_joint_moves_on_a_screw() {
     let mut random = Random::new(16);
     let frame = frame!(Spacecraft, "hub");
     for size in [0.0, 1e-12, 1e-9, 1e-6, 1e-4, 1e-2, 0.4, 0.6, 3.0, 10.0] {
-        let q = random.configuration(&Spacecraft {});
-        let mut dv: SVector<f64, 12> = random.vector(size);
+        let q = random.random_configuration(&Spacecraft {});
+        let mut dv: SVector<f64, 12> = random.random_vector(size);
         dv.fixed_rows_mut::<6>(6).fill(0.0);
         let (linear, angular) = (Vector3::new(dv[0], dv[1], dv[2]), Vector3::new(dv[3], dv[4], dv[5]));
         let mut twist = SMatrix::<f64, 4, 4>::zeros();
@@ -130,7 +130,7 @@ macro_rules! check_screw {
         let coupling = SMatrix::<f64, 3, 2>::new(1.0, 0.0, 0.0, pitch, 0.0, 1.0);
         let mut random = Random::new(8);
         for _ in 0..10 {
-            let (q, v, a) = (random.vector(2.0), random.vector(2.0), random.vector(2.0));
+            let (q, v, a) = (random.random_vector(2.0), random.random_vector(2.0), random.random_vector(2.0));
             let (cq, cv, ca) = (coupling * q, coupling * v, coupling * a);
             let mass_matrix = coupling.transpose() * collar.mass_matrix(&cq) * coupling;
             assert_close("mass matrix", screw.mass_matrix(&q).as_slice(), mass_matrix.as_slice(), IDENTITY);
@@ -164,7 +164,7 @@ macro_rules! check_against_chain {
         let (socket, last) = (frame!($chain, "socket"), frame!($chain, "last"));
         let mut random = Random::new(9);
         for _ in 0..10 {
-            let (q, v, a) = (random.vector(1.0), random.vector(1.0), random.vector(1.0));
+            let (q, v, a) = (random.random_vector(1.0), random.random_vector(1.0), random.random_vector(1.0));
             let relative = chain.frame_placement(socket, &q).inv_mul(&chain.frame_placement(last, &q));
             // Motion relative to the socket: that of the chain with a fixed pivot, in axes of the last body.
             let (mut v_only, mut a_only) = (v, a);

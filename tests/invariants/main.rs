@@ -12,14 +12,16 @@ use support::robots::*;
 
 /// Returns the derivative at zero by central differences of fourth order; for motions of unit magnitude the
 /// error is about 1e-11.
-fn rate<const R: usize, const C: usize>(f: impl Fn(f64) -> SMatrix<f64, R, C>) -> SMatrix<f64, R, C> {
+fn matrix_rate_at_zero<const R: usize, const C: usize>(
+    f: impl Fn(f64) -> SMatrix<f64, R, C>,
+) -> SMatrix<f64, R, C> {
     let h = 1e-3;
     ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
 }
 
 /// Returns the derivative of a scalar function at zero by central differences of fourth order.
-fn slope(f: impl Fn(f64) -> f64) -> f64 {
-    rate(|s| SMatrix::<f64, 1, 1>::new(f(s)))[0]
+fn derivative_at_zero(f: impl Fn(f64) -> f64) -> f64 {
+    matrix_rate_at_zero(|s| SMatrix::<f64, 1, 1>::new(f(s)))[0]
 }
 
 /// Tolerance of rates against finite differences.
@@ -29,7 +31,7 @@ const IDENTITY: f64 = 1e-11;
 
 /// Checks consequences of the trait alone. `dissipation` is the power that dashpots dissipate at velocity
 /// `v`.
-fn check<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn check_trait_consequences<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     dissipation: impl Fn(&SVector<f64, NV>) -> f64,
 ) where
@@ -37,11 +39,11 @@ fn check<M, const NQ: usize, const NV: usize, const NU: usize>(
 {
     let mut random = Random::new(3);
     for _ in 0..4 {
-        let q = random.configuration(m);
-        let (v, tau) = (random.vector(1.0), random.vector(1.0));
+        let q = random.random_configuration(m);
+        let (v, tau) = (random.random_vector(1.0), random.random_vector(1.0));
         check_equation_of_motion(m, &q, &v, &tau);
         check_energy(m, &q, &v, &tau, dissipation(&v));
-        check_configurations(m, &q, &v, &random.vector(1.0));
+        check_configurations(m, &q, &v, &random.random_vector(1.0));
     }
 }
 
@@ -69,7 +71,7 @@ fn check_equation_of_motion<M, const NQ: usize, const NV: usize, const NU: usize
     let momentum_at =
         |s: f64| m.generalized_momentum(0.0, &m.integrate(q, &(v * s)), &(v + acceleration * s));
     let expected = m.momentum_rate(0.0, q, v) + tau;
-    assert_close("ṗ", expected.as_slice(), rate(momentum_at).as_slice(), RATE);
+    assert_close("ṗ", expected.as_slice(), matrix_rate_at_zero(momentum_at).as_slice(), RATE);
 }
 
 fn check_energy<M, const NQ: usize, const NV: usize, const NU: usize>(
@@ -84,13 +86,13 @@ fn check_energy<M, const NQ: usize, const NV: usize, const NU: usize>(
     let gradient = SVector::<f64, NV>::from_fn(|i, _| {
         let mut direction = SVector::<f64, NV>::zeros();
         direction[i] = 1.0;
-        slope(|s| m.potential_energy(0.0, &m.integrate(q, &(direction * s))))
+        derivative_at_zero(|s| m.potential_energy(0.0, &m.integrate(q, &(direction * s))))
     });
     let still = m.bias_forces(0.0, q, &SVector::zeros());
     assert_close("h(q, 0) = ∂U/∂q", still.as_slice(), gradient.as_slice(), RATE);
 
     let acceleration = m.forward_dynamics(0.0, q, v, tau);
-    let power = slope(|s| {
+    let power = derivative_at_zero(|s| {
         let q = m.integrate(q, &(v * s));
         m.kinetic_energy(0.0, &q, &(v + acceleration * s)) + m.potential_energy(0.0, &q)
     });
@@ -111,8 +113,8 @@ fn check_configurations<M, const NQ: usize, const NV: usize, const NU: usize>(
 
     let moved = m.integrate(q, dv);
     let rate_of_dv = m.tangent_rate(dv, v);
-    let through_dv = rate(|s| m.integrate(q, &(dv + rate_of_dv * s)));
-    let directly = rate(|s| m.integrate(&moved, &(v * s)));
+    let through_dv = matrix_rate_at_zero(|s| m.integrate(q, &(dv + rate_of_dv * s)));
+    let directly = matrix_rate_at_zero(|s| m.integrate(&moved, &(v * s)));
     assert_close("tangent rate", through_dv.as_slice(), directly.as_slice(), RATE);
     assert_close("difference", m.difference(q, &moved).as_slice(), dv.as_slice(), 1e-13);
 }
@@ -122,10 +124,10 @@ fn check_undamped<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M)
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    check(m, |_| 0.0);
+    check_trait_consequences(m, |_| 0.0);
     let mut random = Random::new(4);
-    let q = random.configuration(m);
-    let v = random.vector(1.0);
+    let q = random.random_configuration(m);
+    let v = random.random_vector(1.0);
     let still = m.bias_forces(0.0, &q, &SVector::zeros());
     let (single, double) = (m.bias_forces(0.0, &q, &v) - still, m.bias_forces(0.0, &q, &(v * 2.0)) - still);
     assert_close("h(q, 2 v)", double.as_slice(), (single * 4.0).as_slice(), IDENTITY);
@@ -173,7 +175,7 @@ undamped! {
 #[test]
 fn dashpots() {
     let m = workshop();
-    check(&m, |v| {
+    check_trait_consequences(&m, |v| {
         m.shoulder_damping * v[0] * v[0] + m.slide_damping * v[1] * v[1] + m.turn_damping * v[2] * v[2]
     });
 }
@@ -189,8 +191,8 @@ macro_rules! check_kinematics {
         let frame = frame!($type, $frame);
         let mut random = Random::new(5);
         for _ in 0..4 {
-            let q = random.configuration(&m);
-            let (v, a) = (random.vector(1.0), random.vector(1.0));
+            let q = random.random_configuration(&m);
+            let (v, a) = (random.random_vector(1.0), random.random_vector(1.0));
             let state_after = |s: f64| (m.integrate(&q, &(v * s)), v + a * s);
             let (velocity, turning) = {
                 let velocity = m.frame_velocity(frame, &q, &v);
@@ -204,18 +206,21 @@ macro_rules! check_kinematics {
                 m.frame_velocity(frame, &q, &v).as_slice(),
                 IDENTITY,
             );
-            let moving = rate(|s| m.frame_placement(frame, &state_after(s).0).translation.vector);
+            let moving =
+                matrix_rate_at_zero(|s| m.frame_placement(frame, &state_after(s).0).translation.vector);
             assert_close("velocity", velocity.as_slice(), moving.as_slice(), RATE);
             let rotation = m.frame_placement(frame, &q).rotation.into_inner();
-            let rotating = rate(|s| m.frame_placement(frame, &state_after(s).0).rotation.into_inner());
+            let rotating =
+                matrix_rate_at_zero(|s| m.frame_placement(frame, &state_after(s).0).rotation.into_inner());
             let expected = turning.cross_matrix() * rotation;
             assert_close("angular velocity", expected.as_slice(), rotating.as_slice(), RATE);
-            let accelerating = rate(|s| m.frame_velocity(frame, &state_after(s).0, &state_after(s).1));
+            let accelerating =
+                matrix_rate_at_zero(|s| m.frame_velocity(frame, &state_after(s).0, &state_after(s).1));
             let acceleration = m.frame_acceleration(frame, &q, &v, &a);
             assert_close("acceleration", acceleration.as_slice(), accelerating.as_slice(), RATE);
 
             let momentum = m.momentum(&q, &v);
-            let drift = rate(|s| m.center_of_mass(&state_after(s).0)) * m.total_mass();
+            let drift = matrix_rate_at_zero(|s| m.center_of_mass(&state_after(s).0)) * m.total_mass();
             assert_close("momentum", &momentum.as_slice()[..3], drift.as_slice(), RATE);
         }
     };
@@ -239,10 +244,10 @@ fn frames_move_as_they_say() {
 fn motors_do_not_change_the_momentum() {
     let mut random = Random::new(6);
     for _ in 0..4 {
-        let q = random.configuration(&Solo12);
-        let (v, u) = (random.vector(1.0), random.vector(1.0));
+        let q = random.random_configuration(&Solo12);
+        let (v, u) = (random.random_vector(1.0), random.random_vector(1.0));
         let a = Solo12.forward_dynamics(&q, &v, &Solo12.generalized_forces(&q, &u));
-        let rate = rate(|s| Solo12.momentum(&Solo12.integrate(&q, &(v * s)), &(v + a * s)));
+        let rate = matrix_rate_at_zero(|s| Solo12.momentum(&Solo12.integrate(&q, &(v * s)), &(v + a * s)));
         let expected = [0.0, 0.0, -9.81 * Solo12.total_mass(), 0.0, 0.0, 0.0];
         assert_close("force and torque from outside", rate.as_slice(), &expected, RATE);
     }
@@ -259,8 +264,8 @@ fn inputs_work_where_they_act() {
     assert_eq!(Workshop::VELOCITIES, ["shoulder", "track.slide", "track.turn"]);
     let mut random = Random::new(7);
     for _ in 0..10 {
-        let q = random.configuration(&m);
-        let (v, u): (_, SVector<f64, 7>) = (random.vector(1.0), random.vector(1.0));
+        let q = random.random_configuration(&m);
+        let (v, u): (_, SVector<f64, 7>) = (random.random_vector(1.0), random.random_vector(1.0));
         let tip = m.frame_velocity(frame!(Workshop, "tip"), &q, &v);
         let carriage = m.frame_placement(frame!(Workshop, "carriage"), &q).rotation;
         let (velocity, turning) =
@@ -295,8 +300,8 @@ fn inputs_work_where_they_act() {
 fn spacecraft_keeps_momentum_and_energy() {
     let m = Spacecraft {};
     let mut random = Random::new(17);
-    let q = random.configuration(&m);
-    let v = random.vector(1.0);
+    let q = random.random_configuration(&m);
+    let v = random.random_vector(1.0);
     let total_energy = |q: &_, v: &_| m.kinetic_energy(q, v) + m.potential_energy(q);
     let (momentum, start) = (m.momentum(&q, &v), total_energy(&q, &v));
     let method = DormandPrince::new().tolerance(1e-13, 1e-13);
@@ -367,19 +372,19 @@ struct Robot<T> {
     push: Force,
 }
 
-fn robot<T: Real>() -> Robot<T> {
+fn sample_robot<T: Real>() -> Robot<T> {
     let [g, m, l, k, c] = [9.81, 1.3, 0.7, 5.0, 0.2].map(linkwork::nalgebra::convert);
     Robot { g, m, l, k, c }
 }
 
 #[test]
 fn scalar_types_agree() {
-    let (single, double) = (robot::<f32>(), robot::<f64>());
-    check(&double, |v| 0.2 * v[0] * v[0]);
+    let (single, double) = (sample_robot::<f32>(), sample_robot::<f64>());
+    check_trait_consequences(&double, |v| 0.2 * v[0] * v[0]);
     let mut random = Random::new(10);
     for _ in 0..10 {
-        let q = random.configuration(&double);
-        let [v, a] = [random.vector::<4>(2.0), random.vector::<4>(2.0)];
+        let q = random.random_configuration(&double);
+        let [v, a] = [random.random_vector::<4>(2.0), random.random_vector::<4>(2.0)];
         let (q32, v32, a32) = (q.cast::<f32>(), v.cast::<f32>(), a.cast::<f32>());
         let assert_close_in_single = |what: &str, a: &[f32], b: &[f64]| {
             assert_close(what, &a.iter().copied().map(f64::from).collect::<Vec<_>>(), b, 2e-5);

@@ -5,7 +5,7 @@ use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Quantity;
-use linkwork_compiler::{compile, expand, read};
+use linkwork_compiler::{compile, expand, read_source};
 use proc_macro2::TokenStream;
 use std::ops::Range;
 use std::path::Path;
@@ -14,7 +14,7 @@ use support::random::Random;
 
 /// Returns the source of an arm of three spatial pins with a range of springs from a row, some of them with
 /// dashpots in parallel.
-fn arm(springs: Range<usize>) -> [TokenStream; 2] {
+fn arm_with_springs(springs: Range<usize>) -> [TokenStream; 2] {
     let mut item = "struct Arm {".to_string();
     let mut parent = "ground".to_string();
     for (k, axis) in ["z", "y", "x"].into_iter().enumerate() {
@@ -44,9 +44,9 @@ fn arm(springs: Range<usize>) -> [TokenStream; 2] {
     ["gravity = -9.81 * z, derivatives", &item].map(|text| text.parse().expect("the source is Rust"))
 }
 
-fn compiled([arguments, item]: [TokenStream; 2]) -> Output {
+fn compile_mechanism([arguments, item]: [TokenStream; 2]) -> Output {
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let source = read(arguments, item, Path::new(""), &mut cx);
+    let source = read_source(arguments, item, Path::new(""), &mut cx);
     let Some((_, output)) = source.and_then(|source| compile(&source, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
@@ -54,12 +54,12 @@ fn compiled([arguments, item]: [TokenStream; 2]) -> Output {
 }
 
 /// Evaluates a generated function and the functions that it calls, at a state and an acceleration.
-fn run(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Vec<f64>> {
+fn run_function(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Vec<f64>> {
     let f = output.functions.iter().find(|f| f.name == name)?;
     let called = ["__passive_forces", "__passive_derivatives"].map(|other| match other == name {
         true => Vec::new(),
         false if name.starts_with("__") => Vec::new(),
-        false => run(output, other, state).unwrap_or_default(),
+        false => run_function(output, other, state).unwrap_or_default(),
     });
     let symbol_value = |s| match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => state[0][k],
@@ -69,7 +69,7 @@ fn run(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Vec<f64>> {
         Quantity::PassiveDerivative(k) => called[1][k],
         _ => f64::NAN,
     };
-    Some(f.program.run(&symbol_value))
+    Some(f.program.interpret_program(&symbol_value))
 }
 
 /// Checks that the forces of springs add up. With few springs every function contains their forces; with many
@@ -77,16 +77,18 @@ fn run(output: &Output, name: &str, state: &[[f64; 3]; 3]) -> Option<Vec<f64>> {
 #[test]
 fn many_springs_are_the_sum_of_few() {
     const EACH: usize = 20;
-    let (whole, none) = (compiled(arm(0..5 * EACH)), compiled(arm(0..0)));
-    let parts: Vec<Output> = (0..5).map(|k| compiled(arm(k * EACH..(k + 1) * EACH))).collect();
+    let (whole, none) =
+        (compile_mechanism(arm_with_springs(0..5 * EACH)), compile_mechanism(arm_with_springs(0..0)));
+    let parts: Vec<Output> =
+        (0..5).map(|k| compile_mechanism(arm_with_springs(k * EACH..(k + 1) * EACH))).collect();
     let is_called = |output: &Output| output.functions.iter().any(|f| f.name == "__passive_forces");
     assert!(is_called(&whole) && !parts.iter().any(is_called), "what is compared is derived in two ways");
     let mut random = Random::new(36);
     for _ in 0..5 {
-        let state: [[f64; 3]; 3] = std::array::from_fn(|_| random.vector::<3>(1.5).into());
+        let state: [[f64; 3]; 3] = std::array::from_fn(|_| random.random_vector::<3>(1.5).into());
         for name in ["bias_forces", "inverse_dynamics", "inverse_dynamics_derivatives", "momentum_rate"] {
             let values_of_output =
-                |output: &Output| run(output, name, &state).expect("the function is there");
+                |output: &Output| run_function(output, name, &state).expect("the function is there");
             let without = values_of_output(&none);
             let mut sum = without.clone();
             for part in &parts {
@@ -104,10 +106,10 @@ fn many_springs_are_the_sum_of_few() {
 #[test]
 fn what_is_written_grows_as_springs_do() {
     let size_of_generated_code = |springs: usize| {
-        let output = compiled(arm(0..springs));
+        let output = compile_mechanism(arm_with_springs(0..springs));
         let operation_count = |name: &str| {
             let f = output.functions.iter().find(|f| f.name == name).expect("the function is there");
-            f.program.counts.total()
+            f.program.counts.total_operations()
         };
         for name in
             ["bias_forces", "inverse_dynamics", "forward_dynamics", "momentum_rate", "coriolis_matrix"]
@@ -117,8 +119,8 @@ fn what_is_written_grows_as_springs_do() {
         for name in ["inverse_dynamics_derivatives", "forward_dynamics_derivatives", "linearize"] {
             assert!(operation_count(name) < 600, "{name}: {}", operation_count(name));
         }
-        let all: usize = output.functions.iter().map(|f| f.program.counts.total()).sum();
-        let [arguments, item] = arm(0..springs);
+        let all: usize = output.functions.iter().map(|f| f.program.counts.total_operations()).sum();
+        let [arguments, item] = arm_with_springs(0..springs);
         [all, expand(arguments, item, Path::new("")).text.len()]
     };
     let (some, more) = (size_of_generated_code(150), size_of_generated_code(300));

@@ -1,6 +1,6 @@
 //! Tent: constraints, and springs whose ends are driven as functions of time.
 
-use super::gradient;
+use super::potential_gradient;
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 use linkwork::{Mechanism, at};
@@ -488,8 +488,8 @@ fn constraints_hold_against_many_springs_at_any_time() {
         let q = tent.project_configuration(t, &SVector::from([1.2, -0.7, 1.9])).expect("the bars close");
         let mut pull = tent.bias_forces(t, &q, &SVector::zeros());
         pull[0] += 3.0 * f64::sin(t);
-        assert_similar("∂U/∂q", pull.as_slice(), gradient(&m, &q).as_slice(), 1e-9);
-        let [v, tau]: [SVector<f64, 3>; 2] = [random.vector(1.0), random.vector(1.0)];
+        assert_similar("∂U/∂q", pull.as_slice(), potential_gradient(&m, &q).as_slice(), 1e-9);
+        let [v, tau]: [SVector<f64, 3>; 2] = [random.random_vector(1.0), random.random_vector(1.0)];
         let (a, lambda) = tent.constrained_dynamics(t, &q, &v, &tau);
         let forces = tent.mass_matrix(t, &q) * a + tent.bias_forces(t, &q, &v);
         let given = tau + tent.constraint_jacobian(t, &q).transpose() * lambda;

@@ -1,6 +1,6 @@
 //! Checks of energies, motion and derivatives of a trampoline, a deck on many springs.
 
-use super::{gradient, slope, unit};
+use super::{derivative_at_zero, potential_gradient, unit_vector};
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 use support::compare::{assert_close, assert_same_dynamics, assert_similar};
@@ -306,12 +306,12 @@ fn springs_pull_against_the_energy_that_they_store() {
     let m = trampoline();
     let mut random = Random::new(31);
     for _ in 0..5 {
-        let q = random.configuration(&m);
-        let v: SVector<f64, 7> = random.vector(2.0);
+        let q = random.random_configuration(&m);
+        let v: SVector<f64, 7> = random.random_vector(2.0);
         assert_similar(
             "∂U/∂q",
             m.bias_forces(&q, &SVector::zeros()).as_slice(),
-            gradient(&m, &q).as_slice(),
+            potential_gradient(&m, &q).as_slice(),
             1e-9,
         );
         // Only the damping forces are odd in the velocities.
@@ -328,13 +328,14 @@ fn the_motion_of_many_springs_is_one_motion() {
     let m = trampoline();
     let mut random = Random::new(32);
     for _ in 0..5 {
-        let q = random.configuration(&m);
-        let [v, tau]: [SVector<f64, 7>; 2] = [random.vector(2.0), random.vector(3.0)];
+        let q = random.random_configuration(&m);
+        let [v, tau]: [SVector<f64, 7>; 2] = [random.random_vector(2.0), random.random_vector(3.0)];
         let a = m.forward_dynamics(&q, &v, &tau);
         assert_close("τ", (m.mass_matrix(&q) * a + m.bias_forces(&q, &v)).as_slice(), tau.as_slice(), 1e-9);
         assert_close("τ", m.inverse_dynamics(&q, &v, &a).as_slice(), tau.as_slice(), 1e-9);
-        let rate =
-            slope(|s| m.generalized_momentum(&m.integrate(&q, &(v * s + a * (s * s / 2.0))), &(v + a * s)));
+        let rate = derivative_at_zero(|s| {
+            m.generalized_momentum(&m.integrate(&q, &(v * s + a * (s * s / 2.0))), &(v + a * s))
+        });
         assert_similar("ṗ", (m.momentum_rate(&q, &v) + tau).as_slice(), rate.as_slice(), 1e-6);
     }
 }
@@ -344,26 +345,34 @@ fn derivatives_know_what_given_forces_depend_on() {
     let m = trampoline();
     let mut random = Random::new(33);
     for _ in 0..3 {
-        let q = random.configuration(&m);
-        let [v, a]: [SVector<f64, 7>; 2] = [random.vector(1.0), random.vector(1.0)];
+        let q = random.random_configuration(&m);
+        let [v, a]: [SVector<f64, 7>; 2] = [random.random_vector(1.0), random.random_vector(1.0)];
         let tau = m.inverse_dynamics(&q, &v, &a);
         let (by_q, by_v) = m.inverse_dynamics_derivatives(&q, &v, &a);
         let (of_a_by_q, of_a_by_v, _) = m.forward_dynamics_derivatives(&q, &v, &tau);
         for i in 0..7 {
-            let displaced_configuration = |s: f64| m.integrate(&q, &(unit::<7>(i) * s));
-            let perturbed_velocity = |s: f64| v + unit::<7>(i) * s;
+            let displaced_configuration = |s: f64| m.integrate(&q, &(unit_vector::<7>(i) * s));
+            let perturbed_velocity = |s: f64| v + unit_vector::<7>(i) * s;
             let columns = [
-                ("∂τ/∂q", by_q.column(i), slope(|s| m.inverse_dynamics(&displaced_configuration(s), &v, &a))),
-                ("∂τ/∂v", by_v.column(i), slope(|s| m.inverse_dynamics(&q, &perturbed_velocity(s), &a))),
+                (
+                    "∂τ/∂q",
+                    by_q.column(i),
+                    derivative_at_zero(|s| m.inverse_dynamics(&displaced_configuration(s), &v, &a)),
+                ),
+                (
+                    "∂τ/∂v",
+                    by_v.column(i),
+                    derivative_at_zero(|s| m.inverse_dynamics(&q, &perturbed_velocity(s), &a)),
+                ),
                 (
                     "∂v̇/∂q",
                     of_a_by_q.column(i),
-                    slope(|s| m.forward_dynamics(&displaced_configuration(s), &v, &tau)),
+                    derivative_at_zero(|s| m.forward_dynamics(&displaced_configuration(s), &v, &tau)),
                 ),
                 (
                     "∂v̇/∂v",
                     of_a_by_v.column(i),
-                    slope(|s| m.forward_dynamics(&q, &perturbed_velocity(s), &tau)),
+                    derivative_at_zero(|s| m.forward_dynamics(&q, &perturbed_velocity(s), &tau)),
                 ),
             ];
             for (what, column, expected) in columns {

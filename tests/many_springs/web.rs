@@ -473,7 +473,7 @@ fn several_states_call_the_function_in_lanes() {
     let m = Web { k: 20.0 };
     let mut random = Random::new(34);
     let states: [[SVector<f64, 2>; 3]; 4] =
-        std::array::from_fn(|_| std::array::from_fn(|_| random.vector::<2>(2.0)));
+        std::array::from_fn(|_| std::array::from_fn(|_| random.random_vector::<2>(2.0)));
     let lanes_of_states =
         |part: usize| SVector::<_, 2>::from_fn(|i, _| Lanes(states.map(|state| state[part][i])));
     let [q, v, tau] = [0, 1, 2].map(lanes_of_states);

@@ -14,7 +14,14 @@ use rolling_disk::RollingDisk;
 /// Integrates with `Rk4` and checks the constraints after each step to the tolerance of the projection: 16
 /// times machine precision, relative to state entries above one. Returns the largest energy change in the
 /// first tenth and in the whole run, J.
-pub fn drift<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+pub fn check_constraint_drift<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
     m: &M,
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,
@@ -53,10 +60,12 @@ fn a_linkage() -> Result<(), Error> {
     let m = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
     let q = m.assemble(&[0.7, 0.2, 1.8].into(), &[0]).expect("the crank goes all the way round");
     let still = SVector::zeros();
-    let [tenth, all] = drift(&m, &q, &still, 1e-3, 1_000_000)?;
+    let [tenth, all] = check_constraint_drift(&m, &q, &still, 1e-3, 1_000_000)?;
     assert!(all < 12.0 * tenth && all < 1e-6, "{tenth:e} J, then {all:e} J");
-    let [[_, coarse], [_, fine]] =
-        [drift(&m, &q, &still, 8e-3, 5_000)?, drift(&m, &q, &still, 4e-3, 10_000)?];
+    let [[_, coarse], [_, fine]] = [
+        check_constraint_drift(&m, &q, &still, 8e-3, 5_000)?,
+        check_constraint_drift(&m, &q, &still, 4e-3, 10_000)?,
+    ];
     assert!(coarse > 15.0 * fine, "{coarse:e} J and {fine:e} J");
     Ok(())
 }
@@ -71,9 +80,10 @@ fn a_disk() -> Result<(), Error> {
     let rates = [u[2] / c, u[0], u[1] - u[2] * s / c];
     let q = [0.0, 0.0, r * c, 0.0, 0.35, 0.7].into();
     let v = [r * u[1], -r * u[0] * c, -r * u[0] * s, rates[0], rates[1], rates[2]].into();
-    let [tenth, all] = drift(&m, &q, &v, 1e-3, 1_000_000)?;
+    let [tenth, all] = check_constraint_drift(&m, &q, &v, 1e-3, 1_000_000)?;
     assert!(all < 12.0 * tenth && all < 1e-6, "{tenth:e} J, then {all:e} J");
-    let [[_, coarse], [_, fine]] = [drift(&m, &q, &v, 8e-3, 5_000)?, drift(&m, &q, &v, 4e-3, 10_000)?];
+    let [[_, coarse], [_, fine]] =
+        [check_constraint_drift(&m, &q, &v, 8e-3, 5_000)?, check_constraint_drift(&m, &q, &v, 4e-3, 10_000)?];
     assert!(coarse > 15.0 * fine, "{coarse:e} J and {fine:e} J");
     Ok(())
 }

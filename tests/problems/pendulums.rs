@@ -4,7 +4,7 @@ use linkwork::nalgebra::{SMatrix, SVector, Vector2};
 use linkwork::{frame, mechanism};
 use std::f64::consts::{FRAC_PI_2, PI};
 use support::compare::assert_close;
-use support::simulate::advance;
+use support::simulate::state_after_duration;
 use support::table::Record;
 
 /// Returns the complete elliptic integral of the first kind of modulus `k`, by the arithmetic-geometric mean.
@@ -31,8 +31,8 @@ struct Pendulum {
 fn iftomm_a01_pendulum() {
     let table = Record::load("problems/pendulums.json");
     let (mut time, mut q, mut v) = (0.0, SVector::from([-FRAC_PI_2]), SVector::from([0.0]));
-    for [t, x, y] in table.rows("position") {
-        (q, v) = advance(&Pendulum {}, &q, &v, t - time);
+    for [t, x, y] in table.rows_with_key("position") {
+        (q, v) = state_after_duration(&Pendulum {}, &q, &v, t - time);
         time = t;
         let position = Pendulum {}.frame_placement(frame!(Pendulum, "bob"), &q).translation.vector;
         assert_close(format!("position at {t} s"), position.as_slice(), &[x, y, 0.0], 1e-11);
@@ -40,10 +40,11 @@ fn iftomm_a01_pendulum() {
         assert_close(format!("energy at {t} s"), &[energy], &[0.0], 1e-11);
     }
 
-    let period = table.number("period");
+    let period = table.number_with_key("period");
     let closed_form = 4.0 * elliptic_k((PI / 4.0).sin()) / 9.81_f64.sqrt();
     assert_close("period", &[closed_form], &[period], 1e-14);
-    let (q, v) = advance(&Pendulum {}, &SVector::from([-FRAC_PI_2]), &SVector::from([0.0]), period);
+    let (q, v) =
+        state_after_duration(&Pendulum {}, &SVector::from([-FRAC_PI_2]), &SVector::from([0.0]), period);
     assert_close("after one period", &[q[0], v[0]], &[-FRAC_PI_2, 0.0], 1e-11);
 }
 
@@ -66,13 +67,13 @@ struct TwoPendulums {
 /// Follows a trajectory in absolute angles, to a hundred times the error of another program's integration in
 /// double precision (DOP853): `errors` at the times of the table.
 fn check_two_pendulums<const N: usize>(name: &str, errors: [f64; N]) {
-    let rows = Record::load("problems/pendulums.json").rows::<5>(name);
+    let rows = Record::load("problems/pendulums.json").rows_with_key::<5>(name);
     assert_eq!(rows.len(), N + 1);
     let [_, a1, a2, r1, r2] = rows[0];
     let (mut q, mut v) = (Vector2::new(a1, a2 - a1), Vector2::new(r1, r2 - r1));
     for (pair, error) in rows.windows(2).zip(errors) {
         let [t, expected @ ..] = pair[1];
-        (q, v) = advance(&TwoPendulums {}, &q, &v, t - pair[0][0]);
+        (q, v) = state_after_duration(&TwoPendulums {}, &q, &v, t - pair[0][0]);
         let actual = [q[0], q[0] + q[1], v[0], v[0] + v[1]];
         assert_close(format!("{name} at {t} s"), &actual, &expected, 100.0 * error);
     }
@@ -167,7 +168,7 @@ fn physical_pendulum_returns_after_its_period() {
     for amplitude in [0.1_f64, 1.0, 2.0, 3.0] {
         let slowness = (2.0 * rod.l / (3.0 * rod.g)).sqrt();
         let period = 4.0 * elliptic_k((amplitude / 2.0).sin()) * slowness;
-        let (q, v) = advance(&rod, &SVector::from([amplitude]), &SVector::from([0.0]), period);
+        let (q, v) = state_after_duration(&rod, &SVector::from([amplitude]), &SVector::from([0.0]), period);
         assert_close(format!("amplitude {amplitude}"), &[q[0], v[0]], &[amplitude, 0.0], 1e-10);
     }
 }
@@ -188,14 +189,14 @@ struct CartWithPole {
 #[test]
 fn cart_pole_trajectory() {
     let table = Record::load("problems/cart_pole.json");
-    let rows = table.rows::<5>("trajectory");
+    let rows = table.rows_with_key::<5>("trajectory");
     let [_, x, angle, speed, turning] = rows[0];
     let (mut q, mut v) = (Vector2::new(x, angle), Vector2::new(speed, turning));
     for pair in rows.windows(2) {
         let [t, expected @ ..] = pair[1];
-        (q, v) = advance(&CartWithPole {}, &q, &v, t - pair[0][0]);
+        (q, v) = state_after_duration(&CartWithPole {}, &q, &v, t - pair[0][0]);
         assert_close(format!("state at {t} s"), &[q[0], q[1], v[0], v[1]], &expected, 1e-9);
         let energy = CartWithPole {}.kinetic_energy(&q, &v) + CartWithPole {}.potential_energy(&q);
-        assert_close(format!("energy at {t} s"), &[energy], &[table.number("energy")], 1e-11);
+        assert_close(format!("energy at {t} s"), &[energy], &[table.number_with_key("energy")], 1e-11);
     }
 }

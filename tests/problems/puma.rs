@@ -46,10 +46,10 @@ struct Puma560 {
 fn puma560() {
     let robot = Puma560 { i1: 0.35, i3x: 0.066, i3y: 0.086, i3z: 0.0125, right: FRAC_PI_2 };
     let table = Record::load("problems/puma560.json");
-    let q = SVector::from(table.rows::<6>("configuration")[0]);
-    let links = Matrix6::from_fn(|i, j| table.rows::<6>("mass_matrix")[i][j]);
-    let gravity = SVector::from(table.rows::<6>("gravity")[0]);
-    let coriolis = SVector::from(table.rows::<6>("coriolis")[0]);
+    let q = SVector::from(table.rows_with_key::<6>("configuration")[0]);
+    let links = Matrix6::from_fn(|i, j| table.rows_with_key::<6>("mass_matrix")[i][j]);
+    let gravity = SVector::from(table.rows_with_key::<6>("gravity")[0]);
+    let coriolis = SVector::from(table.rows_with_key::<6>("coriolis")[0]);
 
     let mass_matrix = robot.mass_matrix(&q);
     assert_close("mass matrix", mass_matrix.as_slice(), links.as_slice(), 1e-12);

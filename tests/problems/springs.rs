@@ -3,7 +3,7 @@
 use linkwork::nalgebra::{Matrix2, SVector, Vector2, Vector3};
 use linkwork::{frame, mechanism};
 use support::compare::assert_close;
-use support::simulate::advance;
+use support::simulate::state_after_duration;
 
 /// Mass on a rail, and wheel on a pin, each with a spring and a dashpot.
 #[mechanism]
@@ -34,7 +34,7 @@ struct Oscillators {
 
 /// Returns position and velocity at time `t` of `m ẍ + c ẋ + k x = 0` from `x0`, `v0`, for subcritical
 /// damping.
-fn damped(m: f64, c: f64, k: f64, [x0, v0]: [f64; 2], t: f64) -> [f64; 2] {
+fn damped_oscillation(m: f64, c: f64, k: f64, [x0, v0]: [f64; 2], t: f64) -> [f64; 2] {
     let (decay, rate) = (c / (2.0 * m), (k / m - c * c / (4.0 * m * m)).sqrt());
     let (sin, cos) = (rate * t).sin_cos();
     let (a, b) = (x0, (v0 + decay * x0) / rate);
@@ -49,12 +49,12 @@ fn mass_spring_dashpot() {
     for (m, published) in [(2.5, Some(-0.223_423_268_884_342_75)), (2.0, None)] {
         let oscillators = Oscillators { m, j: 0.3, k: 50.0, c: 3.0, k_turn: 8.0, c_turn: 0.1 };
         let (q, v) = (Vector2::new(1.0, 0.5), Vector2::new(0.0, -2.0));
-        let (q, v) = advance(&oscillators, &q, &v, 1.0);
+        let (q, v) = state_after_duration(&oscillators, &q, &v, 1.0);
         if let Some(published) = published {
             assert_close("published", &[q[0]], &[published], 1e-13);
         }
-        assert_close("sliding", &[q[0], v[0]], &damped(m, 3.0, 50.0, [1.0, 0.0], 1.0), 1e-13);
-        assert_close("turning", &[q[1], v[1]], &damped(0.3, 0.1, 8.0, [0.5, -2.0], 1.0), 1e-13);
+        assert_close("sliding", &[q[0], v[0]], &damped_oscillation(m, 3.0, 50.0, [1.0, 0.0], 1.0), 1e-13);
+        assert_close("turning", &[q[1], v[1]], &damped_oscillation(0.3, 0.1, 8.0, [0.5, -2.0], 1.0), 1e-13);
     }
 }
 
@@ -62,7 +62,7 @@ fn mass_spring_dashpot() {
 #[test]
 fn dashpot_alone() {
     let oscillators = Oscillators { m: 2.0, j: 0.3, k: 0.0, c: 3.0, k_turn: 0.0, c_turn: 0.4 };
-    let (q, v) = advance(&oscillators, &Vector2::zeros(), &Vector2::new(4.0, 5.0), 2.0);
+    let (q, v) = state_after_duration(&oscillators, &Vector2::zeros(), &Vector2::new(4.0, 5.0), 2.0);
     let (slowed, turned) = ((-3.0_f64 * 2.0 / 2.0).exp(), (-0.4_f64 * 2.0 / 0.3).exp());
     assert_close("speeds", v.as_slice(), &[4.0 * slowed, 5.0 * turned], 1e-13);
     let distances = [2.0 * 4.0 / 3.0 * (1.0 - slowed), 0.3 * 5.0 / 0.4 * (1.0 - turned)];
@@ -167,7 +167,7 @@ struct Nut {
 fn nut_on_a_screw() {
     let nut = Nut { m: 0.8, j: 0.002, p: 0.01 };
     let acceleration = -nut.m * 9.81 * nut.p / (nut.j + nut.m * nut.p * nut.p);
-    let (q, v) = advance(&nut, &SVector::from([1.0]), &SVector::from([3.0]), 0.5);
+    let (q, v) = state_after_duration(&nut, &SVector::from([1.0]), &SVector::from([3.0]), 0.5);
     let expected = [1.0 + 3.0 * 0.5 + acceleration * 0.125, 3.0 + acceleration * 0.5];
     assert_close("turn", &[q[0], v[0]], &expected, 1e-13);
     let height = nut.frame_placement(frame!(Nut, "nut"), &q).translation.vector.z;

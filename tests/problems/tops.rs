@@ -3,7 +3,7 @@
 use linkwork::mechanism;
 use linkwork::nalgebra::{SVector, Vector3, Vector6};
 use support::compare::assert_close;
-use support::simulate::advance;
+use support::simulate::state_after_duration;
 use support::table::Record;
 
 /// Heavy top of the benchmark by Brüls, Cardona and Arnold.
@@ -28,7 +28,7 @@ fn assert_same_rotation(what: &str, actual: &[f64], [w, x, y, z]: [f64; 4], tole
 #[test]
 fn heavy_top() {
     let table = Record::load("problems/heavy_top.json");
-    let rows = table.rows::<11>("trajectory");
+    let rows = table.rows_with_key::<11>("trajectory");
     let start = rows[0];
     let (mut q, mut v) = (HeavyTop {}.neutral(), SVector::from([start[5], start[6], start[7]]));
 
@@ -41,13 +41,13 @@ fn heavy_top() {
 
     for pair in rows.windows(2) {
         let [t, qw, qx, qy, qz, wx, wy, wz, x, y, z] = pair[1];
-        (q, v) = advance(&HeavyTop {}, &q, &v, t - pair[0][0]);
+        (q, v) = state_after_duration(&HeavyTop {}, &q, &v, t - pair[0][0]);
         assert_same_rotation(&format!("orientation at {t} s"), q.as_slice(), [qw, qx, qy, qz], 1e-7);
         assert_close(format!("angular velocity at {t} s"), v.as_slice(), &[wx, wy, wz], 1e-6);
         let center = HeavyTop {}.center_of_mass(&q);
         assert_close(format!("centre of mass at {t} s"), center.as_slice(), &[x, y, z], 1e-7);
         let energy = HeavyTop {}.kinetic_energy(&q, &v) + HeavyTop {}.potential_energy(&q);
-        assert_close(format!("energy at {t} s"), &[energy], &[table.number("energy")], 1e-9);
+        assert_close(format!("energy at {t} s"), &[energy], &[table.number_with_key("energy")], 1e-9);
     }
 }
 
@@ -121,14 +121,15 @@ struct RigidBody {
 fn dzhanibekov() {
     let table = Record::load("problems/dzhanibekov.json");
     let (mut time, mut q, mut v) = (0.0, RigidBody {}.neutral(), Vector3::new(0.01, 3.0, 0.01));
-    for [t, qw, qx, qy, qz, wx, wy, wz] in table.rows("trajectory") {
-        (q, v) = advance(&RigidBody {}, &q, &v, t - time);
+    for [t, qw, qx, qy, qz, wx, wy, wz] in table.rows_with_key("trajectory") {
+        (q, v) = state_after_duration(&RigidBody {}, &q, &v, t - time);
         time = t;
         assert_same_rotation(&format!("orientation at {t} s"), q.as_slice(), [qw, qx, qy, qz], 1e-9);
         assert_close(format!("angular velocity at {t} s"), v.as_slice(), &[wx, wy, wz], 1e-9);
     }
     let start = Vector3::new(0.01, 3.0, 0.01);
-    let (_, v) = advance(&RigidBody {}, &RigidBody {}.neutral(), &start, table.number("period"));
+    let (_, v) =
+        state_after_duration(&RigidBody {}, &RigidBody {}.neutral(), &start, table.number_with_key("period"));
     assert_close("after one period", v.as_slice(), start.as_slice(), 1e-9);
 }
 
@@ -148,7 +149,7 @@ fn thrown_body_flies_on_a_parabola() {
     let (center, momentum) = (ThrownBody {}.center_of_mass(&q), ThrownBody {}.momentum(&q, &v));
     let weight = Vector3::new(0.0, 0.0, -9.81);
     for t in [0.1, 0.7, 2.0] {
-        let (q, v) = advance(&ThrownBody {}, &q, &v, t);
+        let (q, v) = state_after_duration(&ThrownBody {}, &q, &v, t);
         let velocity = momentum.fixed_rows::<3>(0) / 1.5;
         let expected = center + velocity * t + weight * t * t / 2.0;
         assert_close(

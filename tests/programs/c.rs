@@ -1,14 +1,14 @@
 //! Controller without the standard library in a C program: `models/examples/controller_for_c`.
 #![cfg(unix)]
 
-use linkwork_programs::cargo;
+use linkwork_programs::run_cargo;
 use std::path::Path;
 use std::process::Command;
 
 #[test]
 fn a_program_in_c_balances_two_poles() {
     let target = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    let output = cargo(&["build"], "../models/examples/controller_for_c", env!("CARGO_TARGET_TMPDIR"));
+    let output = run_cargo(&["build"], "../models/examples/controller_for_c", env!("CARGO_TARGET_TMPDIR"));
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/examples/controller_for_c/main.c");

@@ -6,7 +6,7 @@ use std::process::{Command, Output};
 /// Calls cargo with a command for a package in release mode. It builds in the folder `packages` of `target`,
 /// which is `env!("CARGO_TARGET_TMPDIR")`, so that all packages share the compiler. It uses the network only
 /// if a dependency is missing.
-pub fn cargo(command: &[&str], package: &str, target: &str) -> Output {
+pub fn run_cargo(command: &[&str], package: &str, target: &str) -> Output {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(package).join("Cargo.toml");
     let run_cargo = |network: &[&str]| {
         Command::new(env!("CARGO"))

@@ -2,12 +2,12 @@
 //! `tests/no_std` has a panic handler that cannot be linked.
 #![cfg(unix)]
 
-use linkwork_programs::cargo;
+use linkwork_programs::run_cargo;
 use std::path::Path;
 use std::process::{Command, Output};
 
 fn build(program: &str) -> Output {
-    cargo(&["build", "--bin", program], "no_std", env!("CARGO_TARGET_TMPDIR"))
+    run_cargo(&["build", "--bin", program], "no_std", env!("CARGO_TARGET_TMPDIR"))
 }
 
 #[test]

@@ -62,7 +62,7 @@ const TRUNKS: [&str; 4] = ["ground", "free body", "pinned body", "arm on a free 
 const KINDS: [&str; 4] = ["Pin", "Sleeve", "Screw", "Ball"];
 
 /// Returns creatures with two to five limbs of up to `joints` joints.
-pub fn creatures(joints: usize) -> impl Strategy<Value = Creature> {
+pub fn random_creatures(joints: usize) -> impl Strategy<Value = Creature> {
     let kinds = vec((0..KINDS.len(), 0..3_usize), 1..=joints);
     let random_end = || (0..7_usize, 0..4_usize);
     let interaction = (0..INTERACTIONS.len(), random_end(), random_end())
@@ -76,7 +76,7 @@ pub fn creatures(joints: usize) -> impl Strategy<Value = Creature> {
 
 impl Creature {
     /// Returns the generated source: the arguments of the attribute and the struct.
-    pub fn source(&self) -> (String, String) {
+    pub fn creature_source(&self) -> (String, String) {
         let mut fields = String::new();
         if self.symbolic {
             fields.push_str("common: f64,\n");
@@ -99,7 +99,7 @@ impl Creature {
     }
 
     /// Returns name and kind of joint `k` of a limb.
-    fn joint(&self, (limb, k): (usize, usize)) -> (String, &'static str) {
+    fn joint_name_and_kind(&self, (limb, k): (usize, usize)) -> (String, &'static str) {
         let k = k % self.joints.len();
         (format!("joint{}_{k}", limb % self.limbs), KINDS[self.joints[k].0])
     }
@@ -115,7 +115,7 @@ impl Creature {
             6 => carrier.to_string(),
             _ => body_name(second),
         };
-        let [(p, one), (q, other)] = [first, second].map(|end| self.joint(end));
+        let [(p, one), (q, other)] = [first, second].map(|end| self.joint_name_and_kind(end));
         let plain = one != "Ball" && other != "Ball" && p != q;
         let is_refused = if ON_COORDINATES.contains(&kind) { !plain } else { a == b };
         if is_refused {
@@ -150,14 +150,14 @@ impl Creature {
     }
 
     /// Returns a random number for joint `k` of a limb. Limbs that are mirror images share the number.
-    fn number(&self, limb: usize, k: usize, which: usize) -> f64 {
+    fn random_number_of_joint(&self, limb: usize, k: usize, which: usize) -> f64 {
         let own = if self.mirrored { 0 } else { 17 * limb };
         self.numbers[(own + 7 * k + which) % self.numbers.len()]
     }
 
     fn write_joint(&self, limb: usize, k: usize, parent: &str, out: &mut String) {
         let (kind, axis) = self.joints[k];
-        let indexed_number = |which: usize| self.number(limb, k, which);
+        let indexed_number = |which: usize| self.random_number_of_joint(limb, k, which);
         // Signs of mirrored limbs: left and right, front and back.
         let side = if limb.is_multiple_of(2) { 1.0 } else { -1.0 };
         let end = if limb / 2 == 0 { 1.0 } else { -1.0 };

@@ -29,7 +29,7 @@ struct Link {
 }
 
 /// Returns robots with up to `joints` joints. The noise in angles, axes and lengths is 0, or 1e-16 to 1e-3.
-pub fn robots(joints: usize) -> impl Strategy<Value = Robot> {
+pub fn random_robots(joints: usize) -> impl Strategy<Value = Robot> {
     let random_noise = || prop_oneof![1 => Just(0.0), 4 => (-16.0..-3.0_f64).prop_map(|e| 10.0_f64.powf(e))];
     let link =
         (0..3_usize, 0..6_usize, [0..5_usize, 0..5_usize, 0..5_usize], any::<[bool; 6]>(), -2.0..0.0_f64)
@@ -49,10 +49,10 @@ pub fn robots(joints: usize) -> impl Strategy<Value = Robot> {
 
 impl Robot {
     /// Returns the generated source: the arguments of the attribute and the struct.
-    pub fn source(&self) -> (String, String) {
+    pub fn robot_source(&self) -> (String, String) {
         let mut fields = String::new();
         for (k, link) in self.links.iter().enumerate() {
-            link.write(k, self.noise, &mut fields);
+            link.write_link(k, self.noise, &mut fields);
         }
         ("gravity = -9.81 * z".to_string(), format!("pub struct Robot {{\n{fields}}}"))
     }
@@ -60,7 +60,7 @@ impl Robot {
 
 impl Link {
     /// Returns three lengths, some of which consist only of noise.
-    fn vector(&self, first: usize, noise: f64) -> String {
+    fn noisy_vector_text(&self, first: usize, noise: f64) -> String {
         let noisy_component = |i: usize| {
             let there = self.present[first + i];
             let rest = if there { self.size * self.numbers[first + i] } else { 0.0 };
@@ -69,14 +69,14 @@ impl Link {
         format!("[{:?}, {:?}, {:?}]", noisy_component(0), noisy_component(1), noisy_component(2))
     }
 
-    fn write(&self, k: usize, [angles, axes, lengths]: [f64; 3], out: &mut String) {
+    fn write_link(&self, k: usize, [angles, axes, lengths]: [f64; 3], out: &mut String) {
         let indexed_number = |which: usize| self.numbers[which];
         let (mass, s) = ((1.5 + indexed_number(12)) * self.size, self.size);
         let _ = writeln!(
             out,
             "#[body(mass = {mass:?}, com = {}, inertia = cuboid({mass:?}, {s:?}, {:?}, \
              {:?}).rotated(x({:?})))] b{k}: Body,",
-            self.vector(3, lengths),
+            self.noisy_vector_text(3, lengths),
             0.7 * s,
             0.4 * s,
             if self.present[5] { indexed_number(13) } else { angles * indexed_number(13) },
@@ -95,7 +95,7 @@ impl Link {
             out,
             "#[joint({parent}.at({}).rotated(z({:?}), y({:?}), x({:?})) -> b{k}, {word} = {axis})] j{k}: \
              {kind},",
-            self.vector(0, lengths),
+            self.noisy_vector_text(0, lengths),
             angle_with_noise(2),
             angle_with_noise(1),
             angle_with_noise(0),

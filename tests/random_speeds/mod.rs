@@ -1,19 +1,19 @@
 //! Checks of random mechanisms with random generalized speeds. All functions equal those in joint velocities,
 //! transformed by Kane's definition `u = Y(q) v`, and derivatives equal finite differences.
 
-use super::random_tree::{Tree, trees};
+use super::random_tree::{Tree, random_trees};
 use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::eval::eval;
-use linkwork_compiler::expr::sample::sample;
+use linkwork_compiler::expr::sample::sample_of_symbol;
 use linkwork_compiler::expr::{Expr, Graph, Symbol};
 use linkwork_compiler::kinematics::{configuration_rate, random_configuration};
 use linkwork_compiler::mechanism::{Chart, Model, Quantity};
-use linkwork_compiler::{compile, read};
+use linkwork_compiler::{compile, read_source};
 use proptest::prelude::*;
 use std::fmt::Write;
 use std::path::Path;
-use support::random::{Random, config};
+use support::random::{Random, property_test_config};
 
 /// Options of the attribute whose generated functions are compared.
 const WORDS: &str = "derivatives, momentum_derivatives, centroidal, hamilton, regressor, sensitivities";
@@ -36,7 +36,7 @@ struct State {
 }
 
 impl State {
-    fn value(&self, s: Symbol) -> f64 {
+    fn value_of_symbol(&self, s: Symbol) -> f64 {
         match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => self.q[k],
             Quantity::Velocity(k) => self.v[k],
@@ -44,7 +44,7 @@ impl State {
             Quantity::Force(k) => self.tau[k],
             Quantity::Input(k) => self.u[k],
             Quantity::Given(_, k) | Quantity::Momentum(k) => self.given[k],
-            _ => sample(s, 3),
+            _ => sample_of_symbol(s, 3),
         }
     }
 }
@@ -59,7 +59,7 @@ impl<'g> Compiled<'g> {
     fn compile((arguments, item): &(String, String), graph: &'g Graph) -> Result<Compiled<'g>, Vec<String>> {
         let parse_tokens = |text: &str| text.parse().expect("the generated source is Rust");
         let mut cx = Diagnostics::new();
-        let source = read(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
+        let source = read_source(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
         let found = source.and_then(|source| compile(&source, graph, &mut cx));
         match found {
             Some((model, output)) => {
@@ -70,44 +70,46 @@ impl<'g> Compiled<'g> {
         }
     }
 
-    fn run(&self, name: &str, state: &State) -> Vector {
+    fn run_function(&self, name: &str, state: &State) -> Vector {
         let function = self.output.functions.iter().find(|f| f.name == name);
         let function = function.unwrap_or_else(|| panic!("there is a function `{name}`"));
-        function.program.run(&|s| state.value(s))
+        function.program.interpret_program(&|s| state.value_of_symbol(s))
     }
 
     /// Returns the rates of the configuration at the joint velocities `v`.
-    fn moving(&self, q: &[f64], v: &[f64]) -> Vector {
+    fn configuration_rates(&self, q: &[f64], v: &[f64]) -> Vector {
         let native = Model { speeds: None, ..self.model.clone() };
-        let rates: Vec<Expr<'_>> = (0..native.nq()).map(|k| configuration_rate(native.space(), k)).collect();
+        let rates: Vec<Expr<'_>> =
+            (0..native.nq()).map(|k| configuration_rate(native.configuration_space(), k)).collect();
         let state = State { q: q.to_vec(), v: v.to_vec(), ..State::default() };
-        eval(&rates, &|s| state.value(s))
+        eval(&rates, &|s| state.value_of_symbol(s))
     }
 }
 
 /// Returns the matrices `Y` and `Z` of the transformation at a configuration, as lists of rows.
-fn exchange(model: &Model<'_>, q: &[f64]) -> [Vec<Vector>; 2] {
+fn speed_transformation(model: &Model<'_>, q: &[f64]) -> [Vec<Vector>; 2] {
     let speeds = model.speeds.as_ref().expect("there are speeds");
     let state = State { q: q.to_vec(), ..State::default() };
-    [&speeds.of_rates, &speeds.rates].map(|m| m.iter().map(|row| eval(row, &|s| state.value(s))).collect())
+    [&speeds.of_rates, &speeds.rates]
+        .map(|m| m.iter().map(|row| eval(row, &|s| state.value_of_symbol(s))).collect())
 }
 
-fn times(m: &[Vector], v: &[f64]) -> Vector {
+fn matrix_vector_product(m: &[Vector], v: &[f64]) -> Vector {
     m.iter().map(|row| row.iter().zip(v).map(|(a, b)| a * b).sum()).collect()
 }
 
-fn transposed(m: &[Vector]) -> Vec<Vector> {
+fn transposed_rows(m: &[Vector]) -> Vec<Vector> {
     (0..m[0].len()).map(|j| m.iter().map(|row| row[j]).collect()).collect()
 }
 
 /// Returns the rows of a matrix with `rows` rows from its column-major entries.
-fn matrix(e: &[f64], rows: usize) -> Vec<Vector> {
+fn rows_of_matrix(e: &[f64], rows: usize) -> Vec<Vector> {
     (0..rows).map(|i| e.chunks(rows).map(|column| column[i]).collect()).collect()
 }
 
-fn product(a: &[Vector], b: &[Vector]) -> Vec<Vector> {
-    let b = transposed(b);
-    a.iter().map(|row| times(&b, row)).collect()
+fn matrix_product(a: &[Vector], b: &[Vector]) -> Vec<Vector> {
+    let b = transposed_rows(b);
+    a.iter().map(|row| matrix_vector_product(&b, row)).collect()
 }
 
 #[track_caller]
@@ -120,7 +122,7 @@ fn assert_close(what: &str, a: &[f64], b: &[f64], tolerance: f64) {
 }
 
 /// Returns the derivative of a vector function at zero by central differences of order six.
-fn slope(f: impl Fn(f64) -> Vector) -> Vector {
+fn derivative_at_zero(f: impl Fn(f64) -> Vector) -> Vector {
     let h = 4e-3;
     let mut sum = vec![0.0; f(0.0).len()];
     for (k, weight) in [(1.0, 0.75), (2.0, -0.15), (3.0, 1.0 / 60.0)] {
@@ -131,14 +133,14 @@ fn slope(f: impl Fn(f64) -> Vector) -> Vector {
     sum
 }
 
-fn displaced(x: &[f64], e: f64, d: &[f64]) -> Vector {
+fn displaced_vector(x: &[f64], e: f64, d: &[f64]) -> Vector {
     x.iter().zip(d).map(|(x, d)| x + e * d).collect()
 }
 
 /// Returns random declarations of generalized speeds: combinations of neighbouring velocities with
 /// coefficients that depend on coordinates, and angular velocities of bodies on ball joints in the axes of
 /// their parents.
-fn declared(plain: &Model<'_>, fields: &str, random: &mut Random) -> String {
+fn random_speed_declarations(plain: &Model<'_>, fields: &str, random: &mut Random) -> String {
     let names: Vec<&String> = plain
         .charts
         .iter()
@@ -150,7 +152,7 @@ fn declared(plain: &Model<'_>, fields: &str, random: &mut Random) -> String {
     let chosen: Vec<&&String> = names.iter().take(4).collect();
     for (k, name) in chosen.iter().enumerate() {
         let (next, other) = (chosen[(k + 1) % chosen.len()], chosen[(k + 2) % chosen.len()]);
-        let [a, b, c] = std::array::from_fn(|_| random.uniform(0.4));
+        let [a, b, c] = std::array::from_fn(|_| random.uniform_number(0.4));
         let _ = writeln!(
             text,
             "#[speed((1.5 + {a:?} * sin({next})) * rate({name}) + {b:?} * cos({name}) * rate({next}) + {c:?} \
@@ -177,15 +179,15 @@ fn declared(plain: &Model<'_>, fields: &str, random: &mut Random) -> String {
 
 /// Checks a random tree with random generalized speeds. Returns `false`, without a check, for trees without
 /// plain coordinates or ball joints, and for trees that do not compile.
-fn check(tree: &Tree, seed: u64) -> bool {
-    let (arguments, item) = tree.source();
+fn check_tree(tree: &Tree, seed: u64) -> bool {
+    let (arguments, item) = tree.tree_source();
     let arguments = format!("{arguments}, {WORDS}");
     let graph = Graph::new();
     let plain = Compiled::compile(&(arguments.clone(), item.clone()), &graph);
     // Other tests cover trees that the compiler rejects.
     let Ok(plain) = plain else { return false };
     let mut random = Random::new(seed);
-    let speeds = declared(&plain.model, &item, &mut random);
+    let speeds = random_speed_declarations(&plain.model, &item, &mut random);
     if speeds.is_empty() {
         return false;
     }
@@ -198,12 +200,12 @@ fn check(tree: &Tree, seed: u64) -> bool {
 
 fn check_functions(plain: &Compiled<'_>, with: &Compiled<'_>, random: &mut Random, seed: u64) {
     let n = plain.model.nv();
-    let mut some = |count: usize| -> Vector { (0..count).map(|_| random.uniform(1.0)).collect() };
+    let mut some = |count: usize| -> Vector { (0..count).map(|_| random.uniform_number(1.0)).collect() };
     let q = random_configuration(&plain.model, seed);
-    let [y, z] = exchange(&with.model, &q);
+    let [y, z] = speed_transformation(&with.model, &q);
     let identity: Vec<Vector> =
         (0..n).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect()).collect();
-    assert_close("inverse", &product(&y, &z).concat(), &identity.concat(), TOLERANCE);
+    assert_close("inverse", &matrix_product(&y, &z).concat(), &identity.concat(), TOLERANCE);
     let ours = State {
         q: q.clone(),
         v: some(n),
@@ -212,49 +214,72 @@ fn check_functions(plain: &Compiled<'_>, with: &Compiled<'_>, random: &mut Rando
         u: some(plain.model.nu()),
         given: some(n),
     };
-    let (to_rates, to_forces) = (transposed(&z), transposed(&y));
+    let (to_rates, to_forces) = (transposed_rows(&z), transposed_rows(&y));
     let theirs = State {
-        v: times(&z, &ours.v),
-        a: with.run("__rate_accelerations", &ours),
-        tau: times(&to_forces, &ours.tau),
-        given: times(&to_forces, &ours.given),
+        v: matrix_vector_product(&z, &ours.v),
+        a: with.run_function("__rate_accelerations", &ours),
+        tau: matrix_vector_product(&to_forces, &ours.tau),
+        given: matrix_vector_product(&to_forces, &ours.given),
         ..ours.clone()
     };
     let rates_after = |e: f64| {
-        let moved = displaced(&q, e, &plain.moving(&q, &theirs.v));
-        with.run("rates_of_speeds", &State { q: moved, v: displaced(&ours.v, e, &ours.a), ..ours.clone() })
+        let moved = displaced_vector(&q, e, &plain.configuration_rates(&q, &theirs.v));
+        with.run_function(
+            "rates_of_speeds",
+            &State { q: moved, v: displaced_vector(&ours.v, e, &ours.a), ..ours.clone() },
+        )
     };
-    assert_close("accelerations of the joints", &theirs.a, &slope(rates_after), DIFFERENCES);
-    let assert_same_function =
-        |name: &str| assert_close(name, &with.run(name, &ours), &plain.run(name, &theirs), TOLERANCE);
+    assert_close("accelerations of the joints", &theirs.a, &derivative_at_zero(rates_after), DIFFERENCES);
+    let assert_same_function = |name: &str| {
+        assert_close(name, &with.run_function(name, &ours), &plain.run_function(name, &theirs), TOLERANCE)
+    };
     for name in
         ["kinetic_energy", "potential_energy", "momentum", "dissipated_power", "control_power", "hamiltonian"]
     {
         assert_same_function(name);
     }
     for name in ["inverse_dynamics", "generalized_forces", "generalized_momentum"] {
-        assert_close(name, &with.run(name, &ours), &times(&to_rates, &plain.run(name, &theirs)), TOLERANCE);
+        assert_close(
+            name,
+            &with.run_function(name, &ours),
+            &matrix_vector_product(&to_rates, &plain.run_function(name, &theirs)),
+            TOLERANCE,
+        );
     }
-    let mass = product(&to_rates, &product(&matrix(&plain.run("mass_matrix", &theirs), n), &z));
-    assert_close("mass matrix", &with.run("mass_matrix", &ours), &transposed(&mass).concat(), TOLERANCE);
+    let mass = matrix_product(
+        &to_rates,
+        &matrix_product(&rows_of_matrix(&plain.run_function("mass_matrix", &theirs), n), &z),
+    );
+    assert_close(
+        "mass matrix",
+        &with.run_function("mass_matrix", &ours),
+        &transposed_rows(&mass).concat(),
+        TOLERANCE,
+    );
     let still = State { a: vec![0.0; n], ..ours.clone() };
-    assert_close("bias", &with.run("bias_forces", &ours), &with.run("inverse_dynamics", &still), TOLERANCE);
-    let forward = with.run("forward_dynamics", &ours);
+    assert_close(
+        "bias",
+        &with.run_function("bias_forces", &ours),
+        &with.run_function("inverse_dynamics", &still),
+        TOLERANCE,
+    );
+    let forward = with.run_function("forward_dynamics", &ours);
     let moving = State { a: forward.clone(), ..ours.clone() };
     assert_close(
         "forward dynamics",
-        &with.run("__rate_accelerations", &moving),
-        &plain.run("forward_dynamics", &theirs),
+        &with.run_function("__rate_accelerations", &moving),
+        &plain.run_function("forward_dynamics", &theirs),
         1e-8,
     );
-    assert_close("forward dynamics", &with.run("inverse_dynamics", &moving), &ours.tau, 1e-8);
-    let velocity = times(&y, &plain.run("canonical_velocity", &theirs));
-    assert_close("canonical velocity", &with.run("canonical_velocity", &ours), &velocity, 1e-8);
-    let centroidal = product(&matrix(&plain.run("centroidal_momentum_matrix", &theirs), 6), &z);
+    assert_close("forward dynamics", &with.run_function("inverse_dynamics", &moving), &ours.tau, 1e-8);
+    let velocity = matrix_vector_product(&y, &plain.run_function("canonical_velocity", &theirs));
+    assert_close("canonical velocity", &with.run_function("canonical_velocity", &ours), &velocity, 1e-8);
+    let centroidal =
+        matrix_product(&rows_of_matrix(&plain.run_function("centroidal_momentum_matrix", &theirs), 6), &z);
     assert_close(
         "centroidal",
-        &with.run("centroidal_momentum_matrix", &ours),
-        &transposed(&centroidal).concat(),
+        &with.run_function("centroidal_momentum_matrix", &ours),
+        &transposed_rows(&centroidal).concat(),
         TOLERANCE,
     );
     check_rates(plain, with, &ours, &theirs);
@@ -264,21 +289,35 @@ fn check_functions(plain: &Compiled<'_>, with: &Compiled<'_>, random: &mut Rando
 /// Checks the functions that are rates along the motion.
 fn check_rates(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, theirs: &State) {
     let n = plain.model.nv();
-    let way = plain.moving(&ours.q, &theirs.v);
-    let state_after =
-        |e: f64| State { q: displaced(&ours.q, e, &way), v: displaced(&ours.v, e, &ours.a), ..ours.clone() };
-    let rate = slope(|e| with.run("generalized_momentum", &state_after(e)));
+    let way = plain.configuration_rates(&ours.q, &theirs.v);
+    let state_after = |e: f64| State {
+        q: displaced_vector(&ours.q, e, &way),
+        v: displaced_vector(&ours.v, e, &ours.a),
+        ..ours.clone()
+    };
+    let rate = derivative_at_zero(|e| with.run_function("generalized_momentum", &state_after(e)));
     let lacking: Vector =
-        with.run("inverse_dynamics", ours).iter().zip(&rate).map(|(tau, rate)| rate - tau).collect();
-    assert_close("momentum rate", &with.run("momentum_rate", ours), &lacking, DIFFERENCES);
-    let matrix_of = |name: &str, state: &State, rows: usize| matrix(&with.run(name, state), rows);
+        with.run_function("inverse_dynamics", ours).iter().zip(&rate).map(|(tau, rate)| rate - tau).collect();
+    assert_close("momentum rate", &with.run_function("momentum_rate", ours), &lacking, DIFFERENCES);
+    let matrix_of =
+        |name: &str, state: &State, rows: usize| rows_of_matrix(&with.run_function(name, state), rows);
     let still = State { a: vec![0.0; n], ..ours.clone() };
     let state_with_fixed_speeds = |e: f64| State { v: ours.v.clone(), ..state_after(e) };
-    let bias =
-        slope(|e| times(&matrix_of("centroidal_momentum_matrix", &state_with_fixed_speeds(e), 6), &ours.v));
-    assert_close("centroidal bias", &with.run("centroidal_momentum_bias", &still), &bias, DIFFERENCES);
+    let bias = derivative_at_zero(|e| {
+        matrix_vector_product(
+            &matrix_of("centroidal_momentum_matrix", &state_with_fixed_speeds(e), 6),
+            &ours.v,
+        )
+    });
+    assert_close(
+        "centroidal bias",
+        &with.run_function("centroidal_momentum_bias", &still),
+        &bias,
+        DIFFERENCES,
+    );
     // `Ṁ − 2 C` is skew-symmetric for the Coriolis matrix `C`.
-    let mass_rate = matrix(&slope(|e| with.run("mass_matrix", &state_after(e))), n);
+    let mass_rate =
+        rows_of_matrix(&derivative_at_zero(|e| with.run_function("mass_matrix", &state_after(e))), n);
     let coriolis = matrix_of("coriolis_matrix", ours, n);
     let skew_entry = |i: usize, j: usize| mass_rate[i][j] - 2.0 * coriolis[i][j];
     let sums: Vector = (0..n * n).map(|k| skew_entry(k / n, k % n) + skew_entry(k % n, k / n)).collect();
@@ -291,12 +330,19 @@ fn check_derivatives(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, z:
     let n = plain.model.nv();
     let column_of_rate_matrix = |i: usize| -> Vector { z.iter().map(|row| row[i]).collect() };
     let derivative_by_coordinate = |name: &str, i: usize| {
-        let way = plain.moving(&ours.q, &column_of_rate_matrix(i));
-        slope(|e| with.run(name, &State { q: displaced(&ours.q, e, &way), ..ours.clone() }))
+        let way = plain.configuration_rates(&ours.q, &column_of_rate_matrix(i));
+        derivative_at_zero(|e| {
+            with.run_function(name, &State { q: displaced_vector(&ours.q, e, &way), ..ours.clone() })
+        })
     };
     let unit_vector = |i: usize| -> Vector { (0..n).map(|j| f64::from(u8::from(i == j))).collect() };
     let derivative_by_speed = |name: &str, i: usize| {
-        slope(|e| with.run(name, &State { v: displaced(&ours.v, e, &unit_vector(i)), ..ours.clone() }))
+        derivative_at_zero(|e| {
+            with.run_function(
+                name,
+                &State { v: displaced_vector(&ours.v, e, &unit_vector(i)), ..ours.clone() },
+            )
+        })
     };
     let expected_derivatives = |name: &str| -> Vector {
         let q = (0..n).flat_map(|i| derivative_by_coordinate(name, i));
@@ -305,14 +351,14 @@ fn check_derivatives(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, z:
     for (function, name) in
         [("inverse_dynamics_derivatives", "inverse_dynamics"), ("momentum_rate_derivatives", "momentum_rate")]
     {
-        assert_close(function, &with.run(function, ours), &expected_derivatives(name), DIFFERENCES);
+        assert_close(function, &with.run_function(function, ours), &expected_derivatives(name), DIFFERENCES);
     }
     // `∂u̇/∂x = −M⁻¹ ∂τ/∂x` at fixed accelerations: the function returns the factors of this product.
-    let outputs = with.run("forward_dynamics_derivatives", ours);
-    let inverse = matrix(&outputs[2 * n * n..3 * n * n], n);
+    let outputs = with.run_function("forward_dynamics_derivatives", ours);
+    let inverse = rows_of_matrix(&outputs[2 * n * n..3 * n * n], n);
     let found: Vector = outputs[..2 * n * n]
         .chunks(n)
-        .flat_map(|forces| times(&inverse, forces).into_iter().map(|a| -a))
+        .flat_map(|forces| matrix_vector_product(&inverse, forces).into_iter().map(|a| -a))
         .collect();
     assert_close(
         "forward derivatives",
@@ -321,19 +367,19 @@ fn check_derivatives(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, z:
         DIFFERENCES * 100.0,
     );
     let changes: Vector = (0..n).flat_map(|i| derivative_by_coordinate("rates_of_speeds", i)).collect();
-    assert_close("changes of rates", &with.run("__rate_changes", ours), &changes, DIFFERENCES);
+    assert_close("changes of rates", &with.run_function("__rate_changes", ours), &changes, DIFFERENCES);
 }
 
 proptest! {
-    #![proptest_config(config(12))]
+    #![proptest_config(property_test_config(12))]
     #[test]
-    fn random_speeds_are_exchanged_in_all_functions(tree in trees(4), seed in 0..50_u64) {
-        prop_assume!(check(&tree, seed));
+    fn random_speeds_are_exchanged_in_all_functions(tree in random_trees(4), seed in 0..50_u64) {
+        prop_assume!(check_tree(&tree, seed));
     }
 }
 
 /// Returns the printed equations of a mechanism with these fields.
-fn printed(arguments: &str, fields: &str) -> String {
+fn printed_equations(arguments: &str, fields: &str) -> String {
     let graph = Graph::new();
     let source = (arguments.to_string(), format!("pub struct Printed {{ {fields} }}"));
     let found =
@@ -355,7 +401,7 @@ fn a_rigid_body_in_body_axes_prints_eulers_equations() {
     let speeds = "#[speed(rate(psi) * sin(theta) * sin(phi) + rate(theta) * cos(phi))] wx: Speed,
         #[speed(rate(psi) * sin(theta) * cos(phi) - rate(theta) * sin(phi))] wy: Speed,
         #[speed(dot(omega(rotor / ground), rotor.z))] wz: Speed,";
-    let text = printed("", &format!("{BODY} {speeds}"));
+    let text = printed_equations("", &format!("{BODY} {speeds}"));
     for line in [
         "theta' = cos(phi) wx - sin(phi) wy\n",
         "a wx' + (c - b) wy wz = 0\n",
@@ -382,7 +428,7 @@ fn a_rolling_disk_prints_kanes_equations() {
         #[speed(dot(omega(disk / ground), leaning.x))] u1: Speed,
         #[speed(dot(omega(disk / ground), leaning.y))] u2: Speed,
         #[speed(dot(omega(disk / ground), leaning.z))] u3: Speed,";
-    let text = printed("gravity = -g * z", fields);
+    let text = printed_equations("gravity = -g * z", fields);
     // About the lean axis only inertia acts: `I u3' + J u1 u2 − I u1 u3 tan(lean)` with `I = m r²/4`,
     // `J = m r²/2`.
     for line in [

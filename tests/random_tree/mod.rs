@@ -47,7 +47,7 @@ const TIES: [&str; 9] = [
 pub fn tied_trees(joints: usize) -> impl Strategy<Value = Tree> {
     let ties = vec((0..TIES.len(), 0..8_usize, 0..8_usize), 0..=3);
     let free = vec(0..3_usize, joints);
-    (trees(joints), ties, free).prop_map(|(mut tree, ties, free)| {
+    (random_trees(joints), ties, free).prop_map(|(mut tree, ties, free)| {
         for (limb, free) in tree.limbs.iter_mut().zip(free).filter(|(_, free)| *free == 0) {
             limb.kind = KINDS.iter().position(|kind| *kind == "Free").unwrap_or(free);
         }
@@ -56,7 +56,7 @@ pub fn tied_trees(joints: usize) -> impl Strategy<Value = Tree> {
 }
 
 /// Returns trees with up to `joints` joints of any kind.
-pub fn trees(joints: usize) -> impl Strategy<Value = Tree> {
+pub fn random_trees(joints: usize) -> impl Strategy<Value = Tree> {
     let limb = (0..KINDS.len(), 0_usize..8, vec(-1.0..1.0_f64, 24), any::<bool>(), any::<bool>()).prop_map(
         |(kind, parent, numbers, plain_axes, symbolic)| Limb { kind, parent, numbers, plain_axes, symbolic },
     );
@@ -68,7 +68,7 @@ const KINDS: [&str; 11] =
     ["Pin", "Sleeve", "Screw", "Collar", "Slot", "Universal", "Ball", "Planar", "Stage", "Free", "Weld"];
 
 /// Returns the suffixes of the coordinates on which a spring or an input can act, with `true` for an angle.
-fn coordinates(kind: &str) -> &'static [(&'static str, bool)] {
+fn coordinate_suffixes(kind: &str) -> &'static [(&'static str, bool)] {
     match kind {
         "Pin" | "Screw" => &[("", true)],
         "Sleeve" => &[("", false)],
@@ -82,16 +82,16 @@ fn coordinates(kind: &str) -> &'static [(&'static str, bool)] {
 
 impl Tree {
     /// Returns the generated source: the arguments of the attribute and the struct.
-    pub fn source(&self) -> (String, String) {
+    pub fn tree_source(&self) -> (String, String) {
         let mut fields = String::new();
         // The first joint must be movable, so that the mechanism has a degree of freedom.
         for (k, limb) in self.limbs.iter().enumerate() {
-            limb.write(k, &mut fields);
+            limb.write_joint(k, &mut fields);
         }
         for (k, (kind, first, second)) in self.ties.iter().enumerate() {
             let (first, second) = (first % self.limbs.len(), second % self.limbs.len());
             let other = if first == second { "ground".to_string() } else { format!("body{second}") };
-            let indexed_number = |which: usize| self.limbs[first].number(which + 3 * k);
+            let indexed_number = |which: usize| self.limbs[first].indexed_number(which + 3 * k);
             let a = format!("body{first}.at([{:?}, 0.8, {:?}])", indexed_number(0), indexed_number(1));
             let b = format!("{other}.at([{:?}, {:?}, 1.1])", indexed_number(2), indexed_number(3));
             let tie = TIES[*kind].replace("@a", &a).replace("@b", &b);
@@ -104,39 +104,44 @@ impl Tree {
 }
 
 impl Limb {
-    fn number(&self, k: usize) -> f64 {
+    fn indexed_number(&self, k: usize) -> f64 {
         self.numbers[k % self.numbers.len()]
     }
 
-    fn vector(&self, k: usize) -> String {
-        format!("[{:?}, {:?}, {:?}]", self.number(k), self.number(k + 1), self.number(k + 2))
+    fn vector_text(&self, k: usize) -> String {
+        format!(
+            "[{:?}, {:?}, {:?}]",
+            self.indexed_number(k),
+            self.indexed_number(k + 1),
+            self.indexed_number(k + 2)
+        )
     }
 
-    fn axis(&self, k: usize) -> String {
+    fn axis_text(&self, k: usize) -> String {
         if self.plain_axes {
-            let sign = if self.number(k) < 0.0 { "-" } else { "" };
-            format!("{sign}{}", ["x", "y", "z"][(self.number(k + 1).abs() * 3.0) as usize % 3])
+            let sign = if self.indexed_number(k) < 0.0 { "-" } else { "" };
+            format!("{sign}{}", ["x", "y", "z"][(self.indexed_number(k + 1).abs() * 3.0) as usize % 3])
         } else {
-            format!("unit([{:?}, {:?}, 1.5])", self.number(k), self.number(k + 1))
+            format!("unit([{:?}, {:?}, 1.5])", self.indexed_number(k), self.indexed_number(k + 1))
         }
     }
 
-    fn write(&self, k: usize, out: &mut String) {
+    fn write_joint(&self, k: usize, out: &mut String) {
         let kind = KINDS[self.kind];
         let mass = if self.symbolic {
             let _ = writeln!(out, "mass{k}: f64, length{k}: f64,");
             (format!("mass{k}"), format!("length{k}"))
         } else {
-            (format!("{:?}", 1.5 + self.number(0)), format!("{:?}", 1.2 + self.number(1)))
+            (format!("{:?}", 1.5 + self.indexed_number(0)), format!("{:?}", 1.2 + self.indexed_number(1)))
         };
         let (m, l) = mass;
         let _ = writeln!(
             out,
             "#[body(mass = {m}, com = {l} * {}, inertia = cuboid({m}, {l}, 0.7, 0.4).rotated(z({:?}), \
              x({:?})))] body{k}: Body,",
-            self.vector(2),
-            self.number(5),
-            self.number(6)
+            self.vector_text(2),
+            self.indexed_number(5),
+            self.indexed_number(6)
         );
         let parent = if k == 0 { "ground".to_string() } else { format!("body{}", self.parent % k) };
         // The joint is off its parent's centre, with rotations on both sides; with plain axes it has only an
@@ -145,25 +150,26 @@ impl Limb {
             true => format!("{parent}.at({l} * x)"),
             false => format!(
                 "{parent}.at({}).rotated(y({:?}), x({:?}))",
-                self.vector(7),
-                self.number(8),
-                self.number(9)
+                self.vector_text(7),
+                self.indexed_number(8),
+                self.indexed_number(9)
             ),
         };
         let child_end = match self.symbolic {
-            true => format!("body{k}.at(-{l} * z).rotated(z({:?}))", self.number(10)),
+            true => format!("body{k}.at(-{l} * z).rotated(z({:?}))", self.indexed_number(10)),
             false => format!("body{k}"),
         };
-        let _ = writeln!(out, "#[joint({parent_end} -> {child_end}{})] joint{k}: {kind},", self.axes(kind));
+        let _ =
+            writeln!(out, "#[joint({parent_end} -> {child_end}{})] joint{k}: {kind},", self.axes_text(kind));
         self.write_actions(k, kind, out);
     }
 
-    fn axes(&self, kind: &str) -> String {
-        let (a, b) = (self.axis(11), self.axis(14));
+    fn axes_text(&self, kind: &str) -> String {
+        let (a, b) = (self.axis_text(11), self.axis_text(14));
         match kind {
             "Pin" => format!(", about = {a}"),
             "Sleeve" => format!(", along = {a}"),
-            "Screw" => format!(", about = {a}, pitch = {:?}", self.number(13)),
+            "Screw" => format!(", about = {a}, pitch = {:?}", self.indexed_number(13)),
             "Collar" => format!(", about = {a}"),
             "Slot" => format!(", along = {a}, about = {b}"),
             "Universal" => ", about = (x, y)".to_string(),
@@ -174,7 +180,7 @@ impl Limb {
     }
 
     fn write_actions(&self, k: usize, kind: &str, out: &mut String) {
-        for (c, (coordinate, angle)) in coordinates(kind).iter().enumerate() {
+        for (c, (coordinate, angle)) in coordinate_suffixes(kind).iter().enumerate() {
             let on = format!("joint{k}{coordinate}");
             let free = if *angle { "free_angle" } else { "free_length" };
             let input = if *angle { "Torque" } else { "Force" };
@@ -183,9 +189,9 @@ impl Limb {
                 "#[acts(on = {on}, stiffness = {:?}, {free} = {:?})] spring{k}_{c}: Spring,
                  #[acts(on = {on}, damping = {:?})] dashpot{k}_{c}: Dashpot,
                  #[acts(on = {on})] drive{k}_{c}: {input},",
-                10.0 * self.number(16),
-                self.number(17),
-                self.number(18).abs()
+                10.0 * self.indexed_number(16),
+                self.indexed_number(17),
+                self.indexed_number(18).abs()
             );
         }
         // A body that only welds connect to the ground does not move, and the language rejects forces on it.
@@ -196,9 +202,9 @@ impl Limb {
             out,
             "#[acts(on = body{k}.at({}), along = {} + ground.z)] push{k}: Force,
              #[acts(on = body{k}, about = {} - 0.5 * ground.x)] twist{k}: Torque,",
-            self.vector(19),
-            self.vector(20),
-            self.vector(21)
+            self.vector_text(19),
+            self.vector_text(20),
+            self.vector_text(21)
         );
     }
 }

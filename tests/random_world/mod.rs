@@ -31,7 +31,7 @@ const ROOTS: [&str; 8] = [
 ];
 
 /// Returns a strategy that generates random mechanisms.
-pub fn worlds() -> impl Strategy<Value = World> {
+pub fn random_worlds() -> impl Strategy<Value = World> {
     (0..ROOTS.len(), vec(-1.0..1.0_f64, 24), vec(any::<bool>(), ACTIONS.len()), any::<bool>())
         .prop_map(|(root, numbers, chosen, time)| World { root, numbers, chosen, time })
 }
@@ -131,7 +131,7 @@ pub const OUTPUTS: [(&str, &str, &str); 18] = [
 
 impl World {
     /// Returns the generated source: the arguments of the attribute and the struct.
-    pub fn source(&self) -> (String, String) {
+    pub fn world_source(&self) -> (String, String) {
         let mut template = PLACES.to_string();
         for (action, _) in ACTIONS.iter().zip(&self.chosen).filter(|(_, chosen)| **chosen) {
             let _ = writeln!(template, "    {action}");

@@ -14,7 +14,7 @@ pub struct Hyper {
 
 impl Hyper {
     /// Returns a constant as a hyper-dual number with zero derivatives.
-    pub fn constant(value: f64) -> Hyper {
+    pub fn constant_hyper(value: f64) -> Hyper {
         Hyper { value, first: [0.0; 2], second: 0.0 }
     }
 
@@ -71,7 +71,7 @@ impl Div for Hyper {
 }
 
 /// Solves `A x = b` by Gaussian elimination with row interchanges.
-pub fn solve<const N: usize>(mut a: [[Hyper; N]; N], mut b: [Hyper; N]) -> [Hyper; N] {
+pub fn solve_linear_system<const N: usize>(mut a: [[Hyper; N]; N], mut b: [Hyper; N]) -> [Hyper; N] {
     for k in 0..N {
         let best = (k..N).max_by(|i, j| a[*i][k].value.abs().total_cmp(&a[*j][k].value.abs()));
         let best = best.unwrap_or(k);

@@ -12,7 +12,7 @@ use linkwork::prelude::*;
 use linkwork::{Derivatives, SecondDerivatives, discrete};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::{compile, read};
+use linkwork_compiler::{compile, read_source};
 use std::path::Path;
 use support::random::Random;
 
@@ -68,7 +68,7 @@ struct Solo;
 const TOLERANCE: f64 = 2e-9;
 
 /// Returns the derivatives of a matrix function along every direction by differences of sixth order.
-fn slopes<const N: usize, const R: usize, const C: usize>(
+fn derivatives_along_directions<const N: usize, const R: usize, const C: usize>(
     of: impl Fn(&SVector<f64, N>) -> SMatrix<f64, R, C>,
 ) -> Vec<SMatrix<f64, R, C>> {
     let derivative_along = |k: usize| {
@@ -84,11 +84,11 @@ fn slopes<const N: usize, const R: usize, const C: usize>(
 
 /// Returns the derivatives of `λᵀ A` by differences: entry `(i, j)` is the derivative along `j` of the
 /// derivative along `i`.
-fn contracted<const NV: usize, const N: usize, const C: usize>(
+fn contracted_derivatives<const NV: usize, const N: usize, const C: usize>(
     lambda: &SVector<f64, NV>,
     of: impl Fn(&SVector<f64, N>) -> SMatrix<f64, NV, C>,
 ) -> SMatrix<f64, C, N> {
-    let columns = slopes(|d: &SVector<f64, N>| of(d).tr_mul(lambda));
+    let columns = derivatives_along_directions(|d: &SVector<f64, N>| of(d).tr_mul(lambda));
     SMatrix::from_fn(|i, j| columns[j][i])
 }
 
@@ -102,16 +102,23 @@ fn assert_block<const R: usize, const C: usize>(
     assert!(off <= TOLERANCE * scale, "{what}: off by {off:e} of {scale:e}\n{found:.6}{expected:.6}");
 }
 
-fn check<M, const NQ: usize, const NV: usize, const NU: usize>(name: &str, m: &M, push: f64)
-where
+fn check_second_derivatives<M, const NQ: usize, const NV: usize, const NU: usize>(
+    name: &str,
+    m: &M,
+    push: f64,
+) where
     M: SecondDerivatives<NQ, NV, NU, Scalar = f64>,
 {
     for seed in 0..2 {
         let mut random = Random::new(seed);
-        let q = m.integrate(&m.neutral(), &random.vector(1.2));
-        let (v, a, tau, lambda) =
-            (random.vector(1.5), random.vector(2.0), random.vector(3.0), random.vector(1.0));
-        let (u, t) = (random.vector::<NU>(push), random.uniform(1.0));
+        let q = m.integrate(&m.neutral(), &random.random_vector(1.2));
+        let (v, a, tau, lambda) = (
+            random.random_vector(1.5),
+            random.random_vector(2.0),
+            random.random_vector(3.0),
+            random.random_vector(1.0),
+        );
+        let (u, t) = (random.random_vector::<NU>(push), random.uniform_number(1.0));
         let (v, a, tau, lambda): (SVector<f64, NV>, SVector<f64, NV>, _, _) = (v, a, tau, lambda);
         let displaced_configuration = |dq: &SVector<f64, NV>| m.integrate(&q, dq);
         // Maps changes of `dq` to changes of `q ⊕ dq`.
@@ -122,12 +129,12 @@ where
         let inverse_derivatives =
             |q: &_, v: &_, a: &_| Derivatives::inverse_dynamics_derivatives(m, t, q, v, a);
         let expected = [
-            contracted(&lambda, |d| {
+            contracted_derivatives(&lambda, |d| {
                 inverse_derivatives(&displaced_configuration(d), &v, &a).0 * displacement_map(d)
             }),
-            contracted(&lambda, |d: &SVector<f64, NV>| inverse_derivatives(&q, &(v + d), &a).0),
-            contracted(&lambda, |d: &SVector<f64, NV>| inverse_derivatives(&q, &(v + d), &a).1),
-            contracted(&lambda, |d: &SVector<f64, NV>| inverse_derivatives(&q, &v, &(a + d)).0),
+            contracted_derivatives(&lambda, |d: &SVector<f64, NV>| inverse_derivatives(&q, &(v + d), &a).0),
+            contracted_derivatives(&lambda, |d: &SVector<f64, NV>| inverse_derivatives(&q, &(v + d), &a).1),
+            contracted_derivatives(&lambda, |d: &SVector<f64, NV>| inverse_derivatives(&q, &v, &(a + d)).0),
         ];
         let size = largest_magnitude(&expected.concat_slices());
         for (what, (found, expected)) in
@@ -140,12 +147,12 @@ where
         let forward_derivatives =
             |q: &_, v: &_, tau: &_| Derivatives::forward_dynamics_derivatives(m, t, q, v, tau);
         let expected = [
-            contracted(&lambda, |d| {
+            contracted_derivatives(&lambda, |d| {
                 forward_derivatives(&displaced_configuration(d), &v, &tau).0 * displacement_map(d)
             }),
-            contracted(&lambda, |d: &SVector<f64, NV>| forward_derivatives(&q, &(v + d), &tau).0),
-            contracted(&lambda, |d: &SVector<f64, NV>| forward_derivatives(&q, &(v + d), &tau).1),
-            contracted(&lambda, |d: &SVector<f64, NV>| forward_derivatives(&q, &v, &(tau + d)).0),
+            contracted_derivatives(&lambda, |d: &SVector<f64, NV>| forward_derivatives(&q, &(v + d), &tau).0),
+            contracted_derivatives(&lambda, |d: &SVector<f64, NV>| forward_derivatives(&q, &(v + d), &tau).1),
+            contracted_derivatives(&lambda, |d: &SVector<f64, NV>| forward_derivatives(&q, &v, &(tau + d)).0),
         ];
         let size = largest_magnitude(&expected.concat_slices());
         for (what, (found, expected)) in
@@ -161,20 +168,30 @@ where
         let states = [
             (
                 qq,
-                contracted(&lambda, |d| {
+                contracted_derivatives(&lambda, |d| {
                     linear_motion_at(&displaced_configuration(d), &v, &u).by_q * displacement_map(d)
                 }),
             ),
-            (qv, contracted(&lambda, |d: &SVector<f64, NV>| linear_motion_at(&q, &(v + d), &u).by_q)),
-            (vv, contracted(&lambda, |d: &SVector<f64, NV>| linear_motion_at(&q, &(v + d), &u).by_v)),
+            (
+                qv,
+                contracted_derivatives(&lambda, |d: &SVector<f64, NV>| {
+                    linear_motion_at(&q, &(v + d), &u).by_q
+                }),
+            ),
+            (
+                vv,
+                contracted_derivatives(&lambda, |d: &SVector<f64, NV>| {
+                    linear_motion_at(&q, &(v + d), &u).by_v
+                }),
+            ),
         ];
         let size = states.iter().fold(1.0_f64, |s, (_, b)| s.max(b.amax()));
         for (k, (found, expected)) in states.iter().enumerate() {
             assert_block(&format!("{name}, {seed}: motion, block {k}"), found, expected, size);
         }
-        assert_block("qu", &qu, &contracted(&lambda, |d| motion_at_input_step(d).by_q), size);
-        assert_block("vu", &vu, &contracted(&lambda, |d| motion_at_input_step(d).by_v), size);
-        assert_block("uu", &uu, &contracted(&lambda, |d| motion_at_input_step(d).by_u), size);
+        assert_block("qu", &qu, &contracted_derivatives(&lambda, |d| motion_at_input_step(d).by_q), size);
+        assert_block("vu", &vu, &contracted_derivatives(&lambda, |d| motion_at_input_step(d).by_v), size);
+        assert_block("uu", &uu, &contracted_derivatives(&lambda, |d| motion_at_input_step(d).by_u), size);
     }
 }
 
@@ -191,10 +208,10 @@ impl<const N: usize, const NV: usize> ConcatSlices for [SMatrix<f64, NV, NV>; N]
 
 #[test]
 fn first_derivatives_change_as_second_ones_say() {
-    check("driven", &Driven { rate: 3.0 }, 1.0);
-    check("carrier", &Carrier {}, 3.0);
-    check("arm", &Panda, 5.0);
-    check("quadruped", &Solo, 5.0);
+    check_second_derivatives("driven", &Driven { rate: 3.0 }, 1.0);
+    check_second_derivatives("carrier", &Carrier {}, 3.0);
+    check_second_derivatives("arm", &Panda, 5.0);
+    check_second_derivatives("quadruped", &Solo, 5.0);
 }
 
 /// Checks second derivatives of steps against differences of their Jacobians.
@@ -204,7 +221,7 @@ where
     S: discrete::TwiceDifferentiableStep<f64>,
 {
     let mut random = Random::new(11);
-    let (q, v) = (random.vector::<NV>(1.0), random.vector::<NV>(1.0));
+    let (q, v) = (random.random_vector::<NV>(1.0), random.random_vector::<NV>(1.0));
     check_steps_from(name, m, method, push, q, v);
 }
 
@@ -221,8 +238,8 @@ fn check_steps_from<M, S, const NV: usize, const NU: usize>(
     S: discrete::TwiceDifferentiableStep<f64>,
 {
     let mut random = Random::new(12);
-    let (u, t) = (random.vector::<NU>(push), 0.3);
-    let factors = (random.vector::<NV>(1.0), random.vector::<NV>(1.0));
+    let (u, t) = (random.random_vector::<NU>(push), 0.3);
+    let factors = (random.random_vector::<NV>(1.0), random.random_vector::<NV>(1.0));
     let (qq, qv, vv, qu, vu, uu) =
         discrete::second_order(m, method, t, &q, &v, &u, (&factors.0, &factors.1)).expect("it moves");
     let gradient_of_step = |q: &_, v: &_, u: &_| {
@@ -230,28 +247,39 @@ fn check_steps_from<M, S, const NV: usize, const NU: usize>(
     };
     let transposed =
         |columns: Vec<SMatrix<f64, NV, 1>>| SMatrix::<f64, NV, NV>::from_fn(|i, j| columns[j][i]);
-    let by_q = transposed(slopes(|d: &SVector<f64, NV>| gradient_of_step(&(q + d), &v, &u).0));
+    let by_q =
+        transposed(derivatives_along_directions(|d: &SVector<f64, NV>| gradient_of_step(&(q + d), &v, &u).0));
     let size = by_q.amax().max(1.0);
     assert_block(&format!("{name}: qq"), &qq, &by_q, size);
     let gradient_at_velocity_step = |d: &SVector<f64, NV>| gradient_of_step(&q, &(v + d), &u);
-    assert_block(&format!("{name}: qv"), &qv, &transposed(slopes(|d| gradient_at_velocity_step(d).0)), size);
-    assert_block(&format!("{name}: vv"), &vv, &transposed(slopes(|d| gradient_at_velocity_step(d).1)), size);
+    assert_block(
+        &format!("{name}: qv"),
+        &qv,
+        &transposed(derivatives_along_directions(|d| gradient_at_velocity_step(d).0)),
+        size,
+    );
+    assert_block(
+        &format!("{name}: vv"),
+        &vv,
+        &transposed(derivatives_along_directions(|d| gradient_at_velocity_step(d).1)),
+        size,
+    );
     let gradient_at_input_step = |d: &SVector<f64, NU>| gradient_of_step(&q, &v, &(u + d));
     let matrix_of_columns =
         |columns: Vec<SMatrix<f64, NV, 1>>| SMatrix::<f64, NV, NU>::from_fn(|i, j| columns[j][i]);
     assert_block(
         &format!("{name}: qu"),
         &qu,
-        &matrix_of_columns(slopes(|d| gradient_at_input_step(d).0)),
+        &matrix_of_columns(derivatives_along_directions(|d| gradient_at_input_step(d).0)),
         size,
     );
     assert_block(
         &format!("{name}: vu"),
         &vu,
-        &matrix_of_columns(slopes(|d| gradient_at_input_step(d).1)),
+        &matrix_of_columns(derivatives_along_directions(|d| gradient_at_input_step(d).1)),
         size,
     );
-    let inputs = slopes(|d| gradient_at_input_step(d).2);
+    let inputs = derivatives_along_directions(|d| gradient_at_input_step(d).2);
     assert_block(&format!("{name}: uu"), &uu, &SMatrix::from_fn(|i, j| inputs[j][i]), size);
 }
 
@@ -264,17 +292,17 @@ fn jacobians_of_steps_change_as_second_derivatives_say() {
 }
 
 /// Returns the numbers of operations of first and second derivatives of inverse dynamics.
-fn operations(arguments: &str) -> [usize; 2] {
+fn derivative_operation_counts(arguments: &str) -> [usize; 2] {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let source = read(parse_tokens(arguments), parse_tokens("struct Robot;"), folder, &mut cx);
+    let source = read_source(parse_tokens(arguments), parse_tokens("struct Robot;"), folder, &mut cx);
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
     ["inverse_dynamics_derivatives", "inverse_dynamics_second_derivatives"].map(|name| {
         let f = output.functions.iter().find(|f| f.name == name).expect("the function is generated");
-        f.program.counts.total()
+        f.program.counts.total_operations()
     })
 }
 
@@ -289,8 +317,9 @@ fn second_derivatives_cost_about_twice_the_first() {
         ("solo12", "base = free", 6700),
         ("simple_humanoid", "base = free", 26_700),
     ] {
-        let [first, second] =
-            operations(&format!("urdf = \"../models/urdf/{robot}.urdf\", {options}, second_derivatives"));
+        let [first, second] = derivative_operation_counts(&format!(
+            "urdf = \"../models/urdf/{robot}.urdf\", {options}, second_derivatives"
+        ));
         println!("{robot}: {first} {second}");
         assert!(second <= most && second <= 2 * first, "{robot}: {first} and {second}");
     }

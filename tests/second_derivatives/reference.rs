@@ -19,12 +19,16 @@ const REFERENCE: f64 = 1e-9;
 macro_rules! robot {
     ($robot:ident, $file:literal) => {
         let table = Record::load(concat!("robots/second_order/", $file, ".json"));
-        for (i, case) in table.records("cases").iter().enumerate() {
-            let (q, v, a, lambda) =
-                (&case.vector("q"), &case.vector("v"), &case.vector("a"), &case.vector("lambda"));
+        for (i, case) in table.records_with_key("cases").iter().enumerate() {
+            let (q, v, a, lambda) = (
+                &case.vector_with_key("q"),
+                &case.vector_with_key("v"),
+                &case.vector_with_key("a"),
+                &case.vector_with_key("lambda"),
+            );
             let (qq, qv, vv, qa) = $robot.inverse_dynamics_second_derivatives(q, v, a, lambda);
             for (key, found) in [("qq", qq), ("qv", qv), ("vv", vv), ("qa", qa)] {
-                let expected: SMatrix<f64, { $robot::NV }, { $robot::NV }> = case.matrix(key);
+                let expected: SMatrix<f64, { $robot::NV }, { $robot::NV }> = case.matrix_with_key(key);
                 let what = format!("{}, case {i}: {key}", $file);
                 assert_similar(&what, found.as_slice(), expected.as_slice(), REFERENCE);
             }

@@ -24,8 +24,8 @@ fn check_along<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     S: discrete::TwiceDifferentiableStep<f64>,
 {
     let (mut random, t, (q, v)) = (Random::new(5), 0.3, state);
-    let u = random.vector::<NU>(2.0);
-    let (of_q, of_v) = (random.vector::<NV>(1.0), random.vector::<NV>(1.0));
+    let u = random.random_vector::<NU>(2.0);
+    let (of_q, of_v) = (random.random_vector::<NV>(1.0), random.random_vector::<NV>(1.0));
     let (qq, qv, vv, qu, vu, uu) =
         discrete::second_order(m, method, t, q, v, &u, (&of_q, &of_v)).expect("it moves");
     for symmetric in [&qq, &vv] {
@@ -39,9 +39,9 @@ fn check_along<M, S, const NQ: usize, const NV: usize, const NU: usize>(
         .take(30)
         .enumerate()
     {
-        let dq = random.vector::<NV>(weights[0]);
-        let dv = random.vector::<NV>(weights[1]);
-        let du = random.vector::<NU>(weights[2]);
+        let dq = random.random_vector::<NV>(weights[0]);
+        let dv = random.random_vector::<NV>(weights[1]);
+        let du = random.random_vector::<NU>(weights[2]);
         let scalar_value = |s: f64| {
             let (q, v) = (m.integrate(q, &(dq * s)), v + dv * s);
             let found = discrete::step(m, method, t, &q, &v, &(u + du * s)).expect("it moves");
@@ -64,14 +64,14 @@ fn check_along<M, S, const NQ: usize, const NV: usize, const NU: usize>(
 fn steps_of_turning_bodies_curve_as_second_derivatives_say() {
     let mut random = Random::new(3);
     let m = Carrier {};
-    let q = m.integrate(&m.neutral(), &random.vector(1.2));
+    let q = m.integrate(&m.neutral(), &random.random_vector(1.2));
     // Fast rotations, so that displacements rotate considerably within a step.
-    let v = random.vector(4.0);
+    let v = random.random_vector(4.0);
     check_along("carrier, Euler", &m, &SemiImplicitEuler::step(0.1), (&q, &v));
     check_along("carrier, Rk4", &m, &Rk4::step(0.1), (&q, &v));
     check_along("carrier from rest", &m, &Rk4::step(0.1), (&q, &SVector::zeros()));
-    let q = Solo.integrate(&Solo.neutral(), &random.vector(0.8));
-    check_along("quadruped, Euler", &Solo, &SemiImplicitEuler::step(0.02), (&q, &random.vector(2.0)));
+    let q = Solo.integrate(&Solo.neutral(), &random.random_vector(0.8));
+    check_along("quadruped, Euler", &Solo, &SemiImplicitEuler::step(0.02), (&q, &random.random_vector(2.0)));
 }
 
 #[test]

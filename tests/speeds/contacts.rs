@@ -1,7 +1,7 @@
 //! Contacts and limits of mechanisms with declared generalized speeds, against the same mechanisms in joint
 //! velocities.
 
-use super::{DIFFERENCE, slopes};
+use super::{DIFFERENCE, derivative_columns};
 use linkwork::contact::{self, Contacts, Touch};
 use linkwork::discrete;
 use linkwork::nalgebra::{SMatrix, SVector};
@@ -98,7 +98,7 @@ struct LegInSpeeds {
     across: Speed,
 }
 
-fn tripod() -> (SVector<f64, 7>, SVector<f64, 6>) {
+fn tripod_start() -> (SVector<f64, 7>, SVector<f64, 6>) {
     let m = Tripod {};
     let q = m.integrate(&m.neutral(), &[0.2, -0.1, 0.06, 0.1, 0.15, 0.9].into());
     (q, [0.6, -0.3, -0.8, 0.5, -1.2, 2.0].into())
@@ -114,7 +114,7 @@ fn rates_of(q: &SVector<f64, 7>) -> SMatrix<f64, 6, 6> {
 
 #[test]
 fn contacts_are_the_same_in_speeds() {
-    let (plain, m, (q, rates)) = (Tripod {}, TripodInSpeeds {}, tripod());
+    let (plain, m, (q, rates)) = (Tripod {}, TripodInSpeeds {}, tripod_start());
     let (u, z) = (m.speeds_of_rates(&q, &rates), rates_of(&q));
     assert_close("gaps", m.contact_gaps(&q).as_slice(), plain.contact_gaps(&q).as_slice(), 1e-14);
     assert_close(
@@ -126,7 +126,7 @@ fn contacts_are_the_same_in_speeds() {
     let jacobian = plain.contact_jacobian(&q);
     assert_close("Jacobian", m.contact_jacobian(&q).as_slice(), (jacobian * z).as_slice(), 1e-13);
     // Equivalent accelerations, and the accelerations of the contacts that they cause.
-    let tau: SVector<f64, 6> = Random::new(4).vector(5.0);
+    let tau: SVector<f64, 6> = Random::new(4).random_vector(5.0);
     let a = plain.forward_dynamics(&q, &rates, &tau);
     let du = m.forward_dynamics(&q, &u, &(z.transpose() * tau));
     let expected = jacobian * a + plain.contact_bias(&q, &rates);
@@ -163,7 +163,7 @@ fn contacts_are_the_same_in_speeds() {
 /// Motions with located events are equal; time stepping converges to the same motion as the step decreases.
 #[test]
 fn a_tripod_falls_and_slides_alike_in_speeds() {
-    let (plain, m, (q, rates)) = (Tripod {}, TripodInSpeeds {}, tripod());
+    let (plain, m, (q, rates)) = (Tripod {}, TripodInSpeeds {}, tripod_start());
     let u = m.speeds_of_rates(&q, &rates);
     let events = EventDriven::new().tolerance(1e-12, 1e-12);
     for duration in [0.1, 0.4] {
@@ -185,9 +185,9 @@ fn a_tripod_falls_and_slides_alike_in_speeds() {
 
 #[test]
 fn motions_with_contacts_have_derivatives_in_speeds() {
-    let (m, (q, rates)) = (TripodInSpeeds {}, tripod());
+    let (m, (q, rates)) = (TripodInSpeeds {}, tripod_start());
     let u = m.speeds_of_rates(&q, &rates);
-    let tau: SVector<f64, 6> = Random::new(6).vector(3.0);
+    let tau: SVector<f64, 6> = Random::new(6).random_vector(3.0);
     let touches = [Touch::Slips, Touch::Sticks, Touch::Open, Touch::Open];
     let found = contact::forward_dynamics_derivatives(&m, 0.0, &q, &u, &tau, &touches).unwrap();
     let motion_with_contacts = |q: &SVector<f64, 7>, u: &SVector<f64, 6>, tau: &SVector<f64, 6>| {
@@ -200,27 +200,28 @@ fn motions_with_contacts_have_derivatives_in_speeds() {
     assert_similar_entries(
         "∂u̇/∂q",
         found.by_q.as_slice(),
-        slopes(|e| motion_with_contacts(&displaced_configuration(&e), &u, &tau).a).as_slice(),
+        derivative_columns(|e| motion_with_contacts(&displaced_configuration(&e), &u, &tau).a).as_slice(),
     );
     assert_similar_entries(
         "∂u̇/∂u",
         found.by_v.as_slice(),
-        slopes(|e| motion_with_contacts(&q, &(u + e), &tau).a).as_slice(),
+        derivative_columns(|e| motion_with_contacts(&q, &(u + e), &tau).a).as_slice(),
     );
     assert_similar_entries(
         "∂u̇/∂τ",
         found.by_tau.as_slice(),
-        slopes(|e| motion_with_contacts(&q, &u, &(tau + e)).a).as_slice(),
+        derivative_columns(|e| motion_with_contacts(&q, &u, &(tau + e)).a).as_slice(),
     );
     assert_similar_entries(
         "∂f/∂q",
         found.forces_by_q.as_slice(),
-        slopes(|e| motion_with_contacts(&displaced_configuration(&e), &u, &tau).forces).as_slice(),
+        derivative_columns(|e| motion_with_contacts(&displaced_configuration(&e), &u, &tau).forces)
+            .as_slice(),
     );
     assert_similar_entries(
         "∂f/∂u",
         found.forces_by_v.as_slice(),
-        slopes(|e| motion_with_contacts(&q, &(u + e), &tau).forces).as_slice(),
+        derivative_columns(|e| motion_with_contacts(&q, &(u + e), &tau).forces).as_slice(),
     );
     let landed = contact::land_derivatives(&m, 0.0, &q, &u, &touches).unwrap();
     let velocity_after_touchdown =
@@ -228,19 +229,19 @@ fn motions_with_contacts_have_derivatives_in_speeds() {
     assert_similar_entries(
         "∂u⁺/∂q",
         landed.by_q.as_slice(),
-        slopes(|e| velocity_after_touchdown(&displaced_configuration(&e), &u)).as_slice(),
+        derivative_columns(|e| velocity_after_touchdown(&displaced_configuration(&e), &u)).as_slice(),
     );
     assert_similar_entries(
         "∂u⁺/∂u",
         landed.by_v.as_slice(),
-        slopes(|e| velocity_after_touchdown(&q, &(u + e))).as_slice(),
+        derivative_columns(|e| velocity_after_touchdown(&q, &(u + e))).as_slice(),
     );
     let push = [0.7].into();
     let motion = contact::linear_motion(&m, 0.0, &q, &u, &push, &touches).unwrap();
     assert_similar_entries("turning", motion.turning.as_slice(), m.turning(&q, &u).as_slice());
     // Steps with enforced contacts.
     let stance = contact::hold(&m, touches).stabilized(20.0);
-    fn steps<S: discrete::DifferentiableStep<f64>>(
+    fn check_step_derivatives<S: discrete::DifferentiableStep<f64>>(
         stance: &contact::Holding<'_, TripodInSpeeds, f64, 4, 8>,
         method: &S,
         (q, u): (&SVector<f64, 7>, &SVector<f64, 6>),
@@ -249,17 +250,17 @@ fn motions_with_contacts_have_derivatives_in_speeds() {
         let next = discrete::transition(stance, method, 0.0, q, u, &push).unwrap();
         let step_state = |q: &_, u: &_| discrete::step(stance, method, 0.0, q, u, &push).unwrap();
         let m = TripodInSpeeds {};
-        let by_q = slopes(|e| m.difference(&next.q, &step_state(&m.integrate(q, &e), u).0));
+        let by_q = derivative_columns(|e| m.difference(&next.q, &step_state(&m.integrate(q, &e), u).0));
         assert_similar("q by q", next.q_by_q.as_slice(), by_q.as_slice(), DIFFERENCE);
-        let by_v = slopes(|e| m.difference(&next.q, &step_state(q, &(u + e)).0));
+        let by_v = derivative_columns(|e| m.difference(&next.q, &step_state(q, &(u + e)).0));
         assert_similar("q by u", next.q_by_v.as_slice(), by_v.as_slice(), DIFFERENCE);
-        let by_q = slopes(|e| step_state(&m.integrate(q, &e), u).1);
+        let by_q = derivative_columns(|e| step_state(&m.integrate(q, &e), u).1);
         assert_similar("u by q", next.v_by_q.as_slice(), by_q.as_slice(), DIFFERENCE * 10.0);
-        let by_v = slopes(|e| step_state(q, &(u + e)).1);
+        let by_v = derivative_columns(|e| step_state(q, &(u + e)).1);
         assert_similar("u by u", next.v_by_v.as_slice(), by_v.as_slice(), DIFFERENCE * 10.0);
     }
-    steps(&stance, &Rk4::step(0.01), (&q, &u));
-    steps(&stance, &ImplicitMidpoint::step(0.01), (&q, &u));
+    check_step_derivatives(&stance, &Rk4::step(0.01), (&q, &u));
+    check_step_derivatives(&stance, &ImplicitMidpoint::step(0.01), (&q, &u));
 }
 
 /// Limits of a coordinate whose rate is not a generalized speed cause the same impacts.
@@ -303,7 +304,7 @@ fn limits_of_coordinates_stay_with_speeds() {
 /// A mechanism without its contacts moves in generalized speeds as in joint velocities.
 #[test]
 fn a_mechanism_without_its_contacts_keeps_its_speeds() {
-    let (plain, m, (q, rates)) = (Tripod {}, TripodInSpeeds {}, tripod());
+    let (plain, m, (q, rates)) = (Tripod {}, TripodInSpeeds {}, tripod_start());
     let u = m.speeds_of_rates(&q, &rates);
     let method = ImplicitMidpoint::step(1e-3);
     let expected = simulate(&contact::apart(&plain))

@@ -6,7 +6,7 @@ use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::*;
 use support::compare::{assert_close, assert_similar};
 use support::random::Random;
-use support::simulate::advance;
+use support::simulate::state_after_duration;
 
 mod contacts;
 mod singular;
@@ -149,20 +149,20 @@ struct DiskInSpeeds {
     u3: Speed,
 }
 
-fn unit<const N: usize>(i: usize) -> SVector<f64, N> {
+fn unit_vector<const N: usize>(i: usize) -> SVector<f64, N> {
     SVector::from_fn(|j, _| if i == j { 1.0 } else { 0.0 })
 }
 
 /// Returns the derivatives of `f` along unit vectors, a column for each, by central differences of order
 /// four.
-fn slopes<const R: usize, const C: usize>(
+fn derivative_columns<const R: usize, const C: usize>(
     f: impl Fn(SVector<f64, C>) -> SVector<f64, R>,
 ) -> SMatrix<f64, R, C> {
     let h = 1e-3;
     let derivative_column = |e: SVector<f64, C>| {
         ((f(e * h) - f(e * -h)) * 8.0 - (f(e * (2.0 * h)) - f(e * (-2.0 * h)))) / (12.0 * h)
     };
-    SMatrix::from_columns(&std::array::from_fn::<_, C, _>(|i| derivative_column(unit(i))))
+    SMatrix::from_columns(&std::array::from_fn::<_, C, _>(|i| derivative_column(unit_vector(i))))
 }
 
 /// Checks the operations of the configuration space in generalized speeds: inverses, rates, and all
@@ -173,12 +173,14 @@ where
 {
     let mut random = Random::new(3);
     for _ in 0..3 {
-        let (dv, v): (SVector<f64, NV>, SVector<f64, NV>) = (random.vector(0.3), random.vector(1.0));
+        let (dv, v): (SVector<f64, NV>, SVector<f64, NV>) =
+            (random.random_vector(0.3), random.random_vector(1.0));
         let there = m.integrate(q, &dv);
         assert_close("difference", m.difference(q, &there).as_slice(), dv.as_slice(), 1e-12);
         // A displacement that changes at this rate has an end that moves with `v`.
         let rate = m.displacement_rate(q, &dv, &v);
-        let back = slopes::<NV, 1>(|e| m.difference(&there, &m.integrate(q, &(dv + rate * e[0]))));
+        let back =
+            derivative_columns::<NV, 1>(|e| m.difference(&there, &m.integrate(q, &(dv + rate * e[0]))));
         assert_close("displacement rate", back.as_slice(), v.as_slice(), DIFFERENCE);
         let (by_q, by_dv) = m.integrate_derivatives_at(q, &dv);
         let displacement =
@@ -186,22 +188,37 @@ where
         assert_similar(
             "∂(q ⊕ dv)/∂q",
             by_q.as_slice(),
-            slopes(|e| displacement(&m.integrate(q, &e), &dv)).as_slice(),
+            derivative_columns(|e| displacement(&m.integrate(q, &e), &dv)).as_slice(),
             DIFFERENCE,
         );
         assert_similar(
             "∂(q ⊕ dv)/∂dv",
             by_dv.as_slice(),
-            slopes(|e| displacement(q, &(dv + e))).as_slice(),
+            derivative_columns(|e| displacement(q, &(dv + e))).as_slice(),
             DIFFERENCE,
         );
         let (by_q, by_dv, by_v) = m.displacement_rate_derivatives(q, &dv, &v);
         let rate =
             |e: [SVector<f64, NV>; 3]| m.displacement_rate(&m.integrate(q, &e[0]), &(dv + e[1]), &(v + e[2]));
         let o = SVector::zeros();
-        assert_similar("∂/∂q", by_q.as_slice(), slopes(|e| rate([e, o, o])).as_slice(), DIFFERENCE);
-        assert_similar("∂/∂dv", by_dv.as_slice(), slopes(|e| rate([o, e, o])).as_slice(), DIFFERENCE);
-        assert_similar("∂/∂v", by_v.as_slice(), slopes(|e| rate([o, o, e])).as_slice(), DIFFERENCE);
+        assert_similar(
+            "∂/∂q",
+            by_q.as_slice(),
+            derivative_columns(|e| rate([e, o, o])).as_slice(),
+            DIFFERENCE,
+        );
+        assert_similar(
+            "∂/∂dv",
+            by_dv.as_slice(),
+            derivative_columns(|e| rate([o, e, o])).as_slice(),
+            DIFFERENCE,
+        );
+        assert_similar(
+            "∂/∂v",
+            by_v.as_slice(),
+            derivative_columns(|e| rate([o, o, e])).as_slice(),
+            DIFFERENCE,
+        );
     }
 }
 
@@ -217,12 +234,12 @@ fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
 ) where
     M: Derivatives<NQ, NV, NU, Scalar = f64> + linkwork::Scleronomic,
 {
-    let u: SVector<f64, NU> = Random::new(9).vector(1.0);
+    let u: SVector<f64, NU> = Random::new(9).random_vector(1.0);
     let step_derivatives = |method: Step<'_, NQ, NV>| {
         let there = method(q, v);
-        let by_q = slopes(|e| m.difference(&there.0, &method(&m.integrate(q, &e), v).0));
-        let by_v = slopes(|e| m.difference(&there.0, &method(q, &(v + e)).0));
-        let faster = slopes(|e| method(&m.integrate(q, &e), v).1);
+        let by_q = derivative_columns(|e| m.difference(&there.0, &method(&m.integrate(q, &e), v).0));
+        let by_v = derivative_columns(|e| m.difference(&there.0, &method(q, &(v + e)).0));
+        let faster = derivative_columns(|e| method(&m.integrate(q, &e), v).1);
         [by_q, by_v, faster]
     };
     let (rk4, euler) = (Rk4::step(0.05), SemiImplicitEuler::step(0.05));
@@ -246,12 +263,14 @@ fn check_steps<M, const NQ: usize, const NV: usize, const NU: usize>(
     let (h, turning) = (1e-5, m.linear_motion(q, v, &u).turning);
     let configuration_after =
         |q: &SVector<f64, NQ>| discrete::step(m, &Rk4::step(h), 0.0, q, v, &u).unwrap().0;
-    let grown = slopes(|e| m.difference(&configuration_after(q), &configuration_after(&m.integrate(q, &e))));
+    let grown = derivative_columns(|e| {
+        m.difference(&configuration_after(q), &configuration_after(&m.integrate(q, &e)))
+    });
     let rate = (grown - SMatrix::<f64, NV, NV>::identity()) / h;
     assert_similar("turning", turning.as_slice(), rate.as_slice(), 1e-4);
 }
 
-fn speeds() -> Speeds {
+fn mechanism_with_speeds() -> Speeds {
     Speeds { axial: 0.45 }
 }
 
@@ -262,11 +281,11 @@ fn euler_start() -> (SVector<f64, 3>, SVector<f64, 3>) {
 #[test]
 fn the_configuration_space_is_one_in_speeds() {
     let (q, v) = euler_start();
-    check_space(&speeds(), &q);
-    check_steps(&speeds(), &q, &(v * 0.3));
-    let q = Random::new(5).configuration(&Satellite {});
+    check_space(&mechanism_with_speeds(), &q);
+    check_steps(&mechanism_with_speeds(), &q, &(v * 0.3));
+    let q = Random::new(5).random_configuration(&Satellite {});
     check_space(&Satellite {}, &q);
-    check_steps(&Satellite {}, &q, &Random::new(6).vector(0.8));
+    check_steps(&Satellite {}, &q, &Random::new(6).random_vector(0.8));
 }
 
 #[test]
@@ -275,7 +294,7 @@ fn names_and_conversions() {
     assert_eq!(Satellite::VELOCITIES, ["ux", "uy", "uz", "wx", "wy", "wz", "hinge"]);
     assert_eq!(Speeds::CONFIGURATION, ["psi", "theta", "phi"]);
     let (q, rates) = euler_start();
-    let m = speeds();
+    let m = mechanism_with_speeds();
     let u = m.speeds_of_rates(&q, &rates);
     assert_close("rates", m.rates_of_speeds(&q, &u).as_slice(), rates.as_slice(), 1e-14);
     // Mass matrix of the body about its fixed point, in body axes.
@@ -289,7 +308,7 @@ fn names_and_conversions() {
 #[test]
 fn frames_move_alike() {
     let (q, rates) = euler_start();
-    let (plain, m) = (Angles {}, speeds());
+    let (plain, m) = (Angles {}, mechanism_with_speeds());
     let u = m.speeds_of_rates(&q, &rates);
     let (twist, expected) = (
         m.frame_velocity(frame!(Speeds, "top"), &q, &u),
@@ -321,9 +340,11 @@ fn frames_move_alike() {
 }
 
 /// Returns the end of a run in generalized speeds, transformed to joint velocities.
-fn end<S: linkwork::integrate::Method<f64>>(method: S) -> (SVector<f64, 3>, SVector<f64, 3>) {
+fn end_in_joint_velocities<S: linkwork::integrate::Method<f64>>(
+    method: S,
+) -> (SVector<f64, 3>, SVector<f64, 3>) {
     let (q, rates) = euler_start();
-    let m = speeds();
+    let m = mechanism_with_speeds();
     let run = simulate(&m).from(q, m.speeds_of_rates(&q, &rates)).duration(0.5).method(method);
     let end = run.finish().expect("it arrives");
     (end.q, m.rates_of_speeds(&end.q, &end.v))
@@ -333,26 +354,32 @@ fn end<S: linkwork::integrate::Method<f64>>(method: S) -> (SVector<f64, 3>, SVec
 #[test]
 fn methods_keep_their_orders() {
     let (q, rates) = euler_start();
-    let exact = advance(&Angles {}, &q, &rates, 0.5);
+    let exact = state_after_duration(&Angles {}, &q, &rates, 0.5);
     let error_of_end =
         |(q, v): (SVector<f64, 3>, SVector<f64, 3>)| (q - exact.0).norm() + (v - exact.1).norm();
     let order_of_errors = |coarse: f64, fine: f64| (coarse / fine).log2();
-    let rk4 = order_of_errors(error_of_end(end(Rk4::step(0.01))), error_of_end(end(Rk4::step(0.005))));
+    let rk4 = order_of_errors(
+        error_of_end(end_in_joint_velocities(Rk4::step(0.01))),
+        error_of_end(end_in_joint_velocities(Rk4::step(0.005))),
+    );
     assert!((3.8..4.3).contains(&rk4), "{rk4}");
     let midpoint = order_of_errors(
-        error_of_end(end(ImplicitMidpoint::step(0.01))),
-        error_of_end(end(ImplicitMidpoint::step(0.005))),
+        error_of_end(end_in_joint_velocities(ImplicitMidpoint::step(0.01))),
+        error_of_end(end_in_joint_velocities(ImplicitMidpoint::step(0.005))),
     );
     assert!((1.9..2.1).contains(&midpoint), "{midpoint}");
     let rosenbrock = order_of_errors(
-        error_of_end(end(Rosenbrock::step(0.002))),
-        error_of_end(end(Rosenbrock::step(0.001))),
+        error_of_end(end_in_joint_velocities(Rosenbrock::step(0.002))),
+        error_of_end(end_in_joint_velocities(Rosenbrock::step(0.001))),
     );
     assert!((1.8..2.2).contains(&rosenbrock), "{rosenbrock}");
     for tolerance in [1e-6, 1e-9, 1e-12] {
-        let adaptive = error_of_end(end(DormandPrince::new().tolerance(tolerance, tolerance)));
+        let adaptive =
+            error_of_end(end_in_joint_velocities(DormandPrince::new().tolerance(tolerance, tolerance)));
         assert!(adaptive < 300.0 * tolerance, "{adaptive} with {tolerance}");
-        let stiff = error_of_end(end(Rodas::new().tolerance(tolerance.max(1e-9), tolerance.max(1e-9))));
+        let stiff = error_of_end(end_in_joint_velocities(
+            Rodas::new().tolerance(tolerance.max(1e-9), tolerance.max(1e-9)),
+        ));
         assert!(stiff < 1000.0 * tolerance.max(1e-9), "{stiff} with {tolerance}");
     }
 }
@@ -360,7 +387,7 @@ fn methods_keep_their_orders() {
 #[test]
 fn batches_are_single_states() {
     use linkwork::__private::{lane, lane_by_lane};
-    let m = speeds();
+    let m = mechanism_with_speeds();
     let (q, rates) = euler_start();
     let u = m.speeds_of_rates(&q, &rates);
     let scaled_speeds = |k: usize| u * (1.0 + k as f64);
@@ -392,9 +419,9 @@ fn a_rolling_disk_moves_alike_in_kanes_speeds() {
         &[0.0; DiskInSpeeds::NC],
         1e-13,
     );
-    let tau: SVector<f64, 6> = Random::new(2).vector(1.0);
+    let tau: SVector<f64, 6> = Random::new(2).random_vector(1.0);
     // Generalized forces in joint velocities with the same power: `Yᵀ τ`.
-    let forces = SVector::<f64, 6>::from_fn(|k, _| tau.dot(&m.speeds_of_rates(&q, &unit(k))));
+    let forces = SVector::<f64, 6>::from_fn(|k, _| tau.dot(&m.speeds_of_rates(&q, &unit_vector(k))));
     let expected = plain.forward_dynamics(&q, &rates, &forces);
     let du = m.forward_dynamics(&q, &u, &tau);
     let rates_later = |h: f64| {
@@ -404,7 +431,7 @@ fn a_rolling_disk_moves_alike_in_kanes_speeds() {
     let h = 1e-4;
     let found = (rates_later(h) - rates_later(-h)) / (2.0 * h);
     assert_close("accelerations", found.as_slice(), expected.as_slice(), 1e-5);
-    let exact = advance(&plain, &q, &rates, 1.0);
+    let exact = state_after_duration(&plain, &q, &rates, 1.0);
     let run = simulate(&m).from(q, u).duration(1.0).method(DormandPrince::new().tolerance(1e-13, 1e-13));
     let end = run.finish().expect("it rolls");
     assert_close("configuration", end.q.as_slice(), exact.0.as_slice(), 1e-9);
@@ -413,11 +440,11 @@ fn a_rolling_disk_moves_alike_in_kanes_speeds() {
     assert_close("energy", &[total_energy(&end.q, &end.v)], &[total_energy(&q, &u)], 1e-9);
     // Derivatives under constraints, along displacements in generalized speeds.
     let (by_q, by_v, by_tau) = m.forward_dynamics_derivatives(&q, &u, &tau);
-    let expected = slopes(|e| m.forward_dynamics(&q, &(u + e), &tau));
+    let expected = derivative_columns(|e| m.forward_dynamics(&q, &(u + e), &tau));
     assert_similar("∂u̇/∂u", by_v.as_slice(), expected.as_slice(), 1e-7);
-    let expected = slopes(|e| m.forward_dynamics(&m.integrate(&q, &e), &u, &tau));
+    let expected = derivative_columns(|e| m.forward_dynamics(&m.integrate(&q, &e), &u, &tau));
     assert_similar("∂u̇/∂q", by_q.as_slice(), expected.as_slice(), 1e-7);
-    let expected = slopes(|e| m.forward_dynamics(&q, &u, &(tau + e)));
+    let expected = derivative_columns(|e| m.forward_dynamics(&q, &u, &(tau + e)));
     assert_similar("∂u̇/∂τ", by_tau.as_slice(), expected.as_slice(), 1e-7);
 }
 
@@ -428,7 +455,7 @@ fn constrained_methods_keep_their_orders() {
     let q: SVector<f64, 6> = [0.1, -0.2, 0.4 * 0.3_f64.cos(), 0.5, 0.3, 0.2].into();
     let rates = plain.project_velocity(&q, &[0.3, -0.4, 0.5, 1.0, 0.6, 5.0].into()).expect("it is regular");
     let u = m.speeds_of_rates(&q, &rates);
-    let exact = advance(&plain, &q, &rates, 0.5);
+    let exact = state_after_duration(&plain, &q, &rates, 0.5);
     let error_of_end = |(q, v): (SVector<f64, 6>, SVector<f64, 6>)| {
         (q - exact.0).norm() + (m.rates_of_speeds(&q, &v) - exact.1).norm()
     };

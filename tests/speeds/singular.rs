@@ -1,20 +1,20 @@
 //! Isolated configurations in which generalized speeds do not determine the rates of coordinates: integration
 //! is impossible there and returns an error.
 
-use super::{DiskInSpeeds, Satellite, Speeds, speeds};
+use super::{DiskInSpeeds, Satellite, Speeds, mechanism_with_speeds};
 use linkwork::discrete;
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 
 /// Returns a gimbal-lock configuration, in which `ψ` and `φ` rotate about the same axis (`sin θ = 0`), and
 /// generalized speeds.
-fn lock() -> (SVector<f64, 3>, SVector<f64, 3>) {
+fn gimbal_lock_state() -> (SVector<f64, 3>, SVector<f64, 3>) {
     ([0.3, 0.0, -0.4].into(), [0.5, -0.7, 6.0].into())
 }
 
 #[test]
 fn rates_are_not_finite_where_speeds_do_not_determine_them() {
-    let (m, (q, u)) = (speeds(), lock());
+    let (m, (q, u)) = (mechanism_with_speeds(), gimbal_lock_state());
     assert!(m.rates_of_speeds(&q, &u).iter().any(|x| !x.is_finite()));
     assert!(m.forward_dynamics(&q, &u, &SVector::zeros()).iter().any(|x| !x.is_finite()));
     // Functions that do not need the rates are still correct: the inverse transformation, inertia and
@@ -29,8 +29,8 @@ fn rates_are_not_finite_where_speeds_do_not_determine_them() {
 
 #[test]
 fn motions_that_begin_there_are_errors() {
-    let (m, (q, u)) = (speeds(), lock());
-    fn begin<S: linkwork::integrate::Method<f64>>(
+    let (m, (q, u)) = (mechanism_with_speeds(), gimbal_lock_state());
+    fn start_error<S: linkwork::integrate::Method<f64>>(
         m: &Speeds,
         (q, u): (SVector<f64, 3>, SVector<f64, 3>),
         method: S,
@@ -39,11 +39,11 @@ fn motions_that_begin_there_are_errors() {
         run.map(|end| end.q).expect_err("it has no rates")
     }
     for error in [
-        begin(&m, (q, u), Rk4::step(1e-3)),
-        begin(&m, (q, u), SemiImplicitEuler::step(1e-3)),
-        begin(&m, (q, u), ImplicitMidpoint::step(1e-3)),
-        begin(&m, (q, u), DormandPrince::new()),
-        begin(&m, (q, u), Rodas::new()),
+        start_error(&m, (q, u), Rk4::step(1e-3)),
+        start_error(&m, (q, u), SemiImplicitEuler::step(1e-3)),
+        start_error(&m, (q, u), ImplicitMidpoint::step(1e-3)),
+        start_error(&m, (q, u), DormandPrince::new()),
+        start_error(&m, (q, u), Rodas::new()),
     ] {
         assert!(matches!(error, Error::NotFinite { t: 0.0 }), "{error}");
     }

@@ -44,9 +44,13 @@ pub fn assert_same_dynamics<A, B, const NQ: usize, const NV: usize, const NA: us
     assert_close("neutral", one.neutral().as_slice(), other.neutral().as_slice(), 0.0);
     let mut random = Random::new(1);
     for _ in 0..states {
-        let q = random.configuration(one);
-        let [v, a, tau, dv] =
-            [random.vector(2.0), random.vector(2.0), random.vector(5.0), random.vector(0.5)];
+        let q = random.random_configuration(one);
+        let [v, a, tau, dv] = [
+            random.random_vector(2.0),
+            random.random_vector(2.0),
+            random.random_vector(5.0),
+            random.random_vector(0.5),
+        ];
         let assert_close_entries = |what: &str, a: &[f64], b: &[f64]| assert_close(what, a, b, tolerance);
         let same = |what: &str, a: SVector<f64, NV>, b: SVector<f64, NV>| {
             assert_close_entries(what, a.as_slice(), b.as_slice())

@@ -1,11 +1,11 @@
 //! Models that are built from generated sources, and numbers for the symbols in their expressions.
 
 use linkwork_compiler::diag::Diagnostics;
-use linkwork_compiler::expr::sample::sample;
+use linkwork_compiler::expr::sample::sample_of_symbol;
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::kinematics::random_configuration;
 use linkwork_compiler::mechanism::{Model, Quantity};
-use linkwork_compiler::read;
+use linkwork_compiler::read_source;
 use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::syntax::Description;
 use std::path::Path;
@@ -21,7 +21,7 @@ pub fn try_model(
 ) -> Result<(), Vec<String>> {
     let parse_tokens = |text: &str| text.parse().expect("the generated source is Rust");
     let mut cx = Diagnostics::new();
-    let source = read(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
+    let source = read_source(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
     let graph = Graph::new();
     let description = source.map(|source| source.mechanism.description);
     let model = description.as_ref().and_then(|d| build_model(d, &graph, &mut cx));
@@ -41,11 +41,11 @@ pub fn with_model(source: &Source, check: impl FnOnce(&Description, &Model<'_>))
 
 /// Returns a function that assigns numbers to all symbols of a model at a random state: parameters near one,
 /// variables near zero.
-pub fn symbols(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 {
+pub fn random_symbol_values(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 {
     let q = random_configuration(model, seed);
     move |s| match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => q[k],
-        Quantity::Parameter(_) => sample(s, seed),
-        _ => 4.0 * (sample(s, seed) - 1.0),
+        Quantity::Parameter(_) => sample_of_symbol(s, seed),
+        _ => 4.0 * (sample_of_symbol(s, seed) - 1.0),
     }
 }

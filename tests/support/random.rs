@@ -5,7 +5,7 @@ use linkwork::nalgebra::SVector;
 use proptest::test_runner::{Config, RngSeed};
 
 /// Returns the settings of a property test: the number of cases, a fixed seed, and no file of failed cases.
-pub fn config(cases: u32) -> Config {
+pub fn property_test_config(cases: u32) -> Config {
     Config { cases, failure_persistence: None, rng_seed: RngSeed::Fixed(20_261_121), ..Default::default() }
 }
 
@@ -19,7 +19,7 @@ impl Random {
     }
 
     /// Returns a number that is uniform in `[-bound, bound)`.
-    pub fn uniform(&mut self, bound: f64) -> f64 {
+    pub fn uniform_number(&mut self, bound: f64) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -29,19 +29,19 @@ impl Random {
     }
 
     /// Returns a vector with entries uniform in `[-bound, bound)`.
-    pub fn vector<const N: usize>(&mut self, bound: f64) -> SVector<f64, N> {
-        SVector::from_fn(|_, _| self.uniform(bound))
+    pub fn random_vector<const N: usize>(&mut self, bound: f64) -> SVector<f64, N> {
+        SVector::from_fn(|_, _| self.uniform_number(bound))
     }
 
     /// Returns a random configuration: each coordinate is within 2 of zero, and orientations cover all
     /// rotations.
-    pub fn configuration<M, const NQ: usize, const NV: usize, const NU: usize>(
+    pub fn random_configuration<M, const NQ: usize, const NV: usize, const NU: usize>(
         &mut self,
         mechanism: &M,
     ) -> SVector<f64, NQ>
     where
         M: Mechanism<NQ, NV, NU, Scalar = f64>,
     {
-        mechanism.integrate(&mechanism.neutral(), &self.vector(2.0))
+        mechanism.integrate(&mechanism.neutral(), &self.random_vector(2.0))
     }
 }

@@ -5,7 +5,7 @@ use linkwork::nalgebra::SVector;
 use linkwork::{Mechanism, simulate};
 
 /// Returns the state after `duration` from t = 0, integrated to the precision of `f64`.
-pub fn advance<M, const NQ: usize, const NV: usize, const NU: usize>(
+pub fn state_after_duration<M, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     q: &SVector<f64, NQ>,
     v: &SVector<f64, NV>,

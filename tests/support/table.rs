@@ -14,60 +14,66 @@ impl Record {
         Record(serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}")))
     }
 
-    fn entry(&self, key: &str) -> &Value {
+    fn entry_with_key(&self, key: &str) -> &Value {
         self.0.get(key).unwrap_or_else(|| panic!("the table has no `{key}`"))
     }
 
     /// Whether the object has an entry with this key.
-    pub fn has(&self, key: &str) -> bool {
+    pub fn has_key(&self, key: &str) -> bool {
         self.0.get(key).is_some()
     }
 
     /// Returns the list of objects with this key.
-    pub fn records(&self, key: &str) -> Vec<Record> {
-        list(self.entry(key)).iter().cloned().map(Record).collect()
+    pub fn records_with_key(&self, key: &str) -> Vec<Record> {
+        list_of_value(self.entry_with_key(key)).iter().cloned().map(Record).collect()
     }
 
     /// Returns the list of strings with this key.
-    pub fn strings(&self, key: &str) -> Vec<String> {
-        list(self.entry(key)).iter().map(|item| item.as_str().expect("a string").to_string()).collect()
+    pub fn strings_with_key(&self, key: &str) -> Vec<String> {
+        list_of_value(self.entry_with_key(key))
+            .iter()
+            .map(|item| item.as_str().expect("a string").to_string())
+            .collect()
     }
 
     /// Returns the string with this key.
-    pub fn string(&self, key: &str) -> &str {
-        self.entry(key).as_str().unwrap_or_else(|| panic!("`{key}` is not a string"))
+    pub fn string_with_key(&self, key: &str) -> &str {
+        self.entry_with_key(key).as_str().unwrap_or_else(|| panic!("`{key}` is not a string"))
     }
 
     /// Returns the number with this key.
-    pub fn number(&self, key: &str) -> f64 {
-        number(self.entry(key))
+    pub fn number_with_key(&self, key: &str) -> f64 {
+        number_of_value(self.entry_with_key(key))
     }
 
     /// Returns the list of numbers with this key.
-    pub fn numbers(&self, key: &str) -> Vec<f64> {
-        numbers(self.entry(key))
+    pub fn numbers_with_key(&self, key: &str) -> Vec<f64> {
+        numbers_of_value(self.entry_with_key(key))
     }
 
     /// Returns a list of rows of `N` numbers.
-    pub fn rows<const N: usize>(&self, key: &str) -> Vec<[f64; N]> {
-        list(self.entry(key)).iter().map(|row| array(&numbers(row))).collect()
+    pub fn rows_with_key<const N: usize>(&self, key: &str) -> Vec<[f64; N]> {
+        list_of_value(self.entry_with_key(key))
+            .iter()
+            .map(|row| array_of_numbers(&numbers_of_value(row)))
+            .collect()
     }
 
     /// Returns a list of `N` numbers as a vector.
-    pub fn vector<const N: usize>(&self, key: &str) -> SVector<f64, N> {
-        SVector::from(array(&self.numbers(key)))
+    pub fn vector_with_key<const N: usize>(&self, key: &str) -> SVector<f64, N> {
+        SVector::from(array_of_numbers(&self.numbers_with_key(key)))
     }
 
     /// Returns the matrix with this key, which is stored as one list in row-major order.
-    pub fn matrix<const R: usize, const C: usize>(&self, key: &str) -> SMatrix<f64, R, C> {
-        let numbers = self.numbers(key);
+    pub fn matrix_with_key<const R: usize, const C: usize>(&self, key: &str) -> SMatrix<f64, R, C> {
+        let numbers = self.numbers_with_key(key);
         assert_eq!(numbers.len(), R * C, "`{key}`");
         SMatrix::from_row_slice(&numbers)
     }
 
     /// Returns a symmetric matrix that is stored as the rows of its lower triangle.
-    pub fn symmetric<const N: usize>(&self, key: &str) -> SMatrix<f64, N, N> {
-        let numbers = self.numbers(key);
+    pub fn symmetric_matrix_with_key<const N: usize>(&self, key: &str) -> SMatrix<f64, N, N> {
+        let numbers = self.numbers_with_key(key);
         assert_eq!(numbers.len(), N * (N + 1) / 2, "`{key}`");
         SMatrix::from_fn(|i, j| numbers[i.max(j) * (i.max(j) + 1) / 2 + i.min(j)])
     }
@@ -75,23 +81,24 @@ impl Record {
     /// Returns the entries of the object with this key, whose values are lists of numbers, together with
     /// their names.
     pub fn named_lists(&self, key: &str) -> Vec<(String, Vec<f64>)> {
-        let object = self.entry(key).as_object().unwrap_or_else(|| panic!("`{key}` is not an object"));
-        object.iter().map(|(name, value)| (name.clone(), numbers(value))).collect()
+        let object =
+            self.entry_with_key(key).as_object().unwrap_or_else(|| panic!("`{key}` is not an object"));
+        object.iter().map(|(name, value)| (name.clone(), numbers_of_value(value))).collect()
     }
 }
 
-fn list(value: &Value) -> &[Value] {
+fn list_of_value(value: &Value) -> &[Value] {
     value.as_array().expect("a list")
 }
 
-fn number(value: &Value) -> f64 {
+fn number_of_value(value: &Value) -> f64 {
     value.as_f64().expect("a number")
 }
 
-fn numbers(value: &Value) -> Vec<f64> {
-    list(value).iter().map(number).collect()
+fn numbers_of_value(value: &Value) -> Vec<f64> {
+    list_of_value(value).iter().map(number_of_value).collect()
 }
 
-fn array<const N: usize>(numbers: &[f64]) -> [f64; N] {
+fn array_of_numbers<const N: usize>(numbers: &[f64]) -> [f64; N] {
     numbers.try_into().unwrap_or_else(|_| panic!("{} numbers where {N} are expected", numbers.len()))
 }

@@ -4,7 +4,7 @@ use super::{EXACT, MOTION};
 use linkwork::mechanism;
 use linkwork::nalgebra::{Vector1, Vector2};
 use support::compare::assert_close;
-use support::simulate::advance;
+use support::simulate::state_after_duration;
 use support::table::Record;
 
 #[mechanism(gravity = -g * y)]
@@ -113,8 +113,8 @@ fn spherical_pendulum_in_two_charts() {
         &[sum_of_energies(other.kinetic_energy(&angles, &rates), other.potential_energy(&angles))],
         EXACT,
     );
-    let (end, _) = advance(&one, &q, &v, 5.0);
-    let (end_angles, _) = advance(&other, &angles, &rates, 5.0);
+    let (end, _) = state_after_duration(&one, &q, &v, 5.0);
+    let (end_angles, _) = state_after_duration(&other, &angles, &rates, 5.0);
     assert_close("place", one.place(&end).as_slice(), other.place(&end_angles).as_slice(), MOTION);
 }
 
@@ -159,14 +159,14 @@ fn double_pendulum_in_absolute_and_relative_angles() {
         &[relative.kinetic_energy(&p, &w), relative.potential_energy(&p)],
         EXACT,
     );
-    let (end, rates) = advance(&absolute, &q, &v, 3.0);
-    let (end_relative, rates_relative) = advance(&relative, &p, &w, 3.0);
+    let (end, rates) = state_after_duration(&absolute, &q, &v, 3.0);
+    let (end_relative, rates_relative) = state_after_duration(&relative, &p, &w, 3.0);
     assert_close("angles", to_relative(&end).as_slice(), end_relative.as_slice(), MOTION);
     assert_close("rates", to_relative(&rates).as_slice(), rates_relative.as_slice(), MOTION);
 
-    let rows = Record::load("problems/pendulums.json").rows::<5>("double");
+    let rows = Record::load("problems/pendulums.json").rows_with_key::<5>("double");
     let [_, a1, a2, r1, r2] = rows[0];
     let [t, expected @ ..] = rows[1];
-    let (q, v) = advance(&absolute, &Vector2::new(a1, a2), &Vector2::new(r1, r2), t);
+    let (q, v) = state_after_duration(&absolute, &Vector2::new(a1, a2), &Vector2::new(r1, r2), t);
     assert_close("reference", &[q[0], q[1], v[0], v[1]], &expected, 1e-11);
 }

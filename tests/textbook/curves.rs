@@ -38,7 +38,7 @@ fn a_helix_has_constant_curvature_and_torsion() {
     let sum = 0.5 * 0.5 + 0.2 * 0.2;
     for _ in 0..4 {
         let (q, v, a): (SVector<f64, 1>, _, _) =
-            (random.vector(3.0), random.vector::<1>(2.0), random.vector::<1>(2.0));
+            (random.random_vector(3.0), random.random_vector::<1>(2.0), random.random_vector::<1>(2.0));
         assert!((m.bend(&q) - 0.5 / sum).abs() < 1e-13);
         assert!((m.twist(&q) - 0.2 / sum).abs() < 1e-13);
         let speed = sum.sqrt() * v[0];
@@ -118,8 +118,9 @@ struct Radar {
 fn accelerations_in_spherical_and_cylindrical_frames() {
     let mut random = Random::new(9);
     for _ in 0..5 {
-        let q: SVector<f64, 3> = random.vector::<3>(1.0) + SVector::from([3.0, 0.0, 0.0]);
-        let (v, a): (SVector<f64, 3>, SVector<f64, 3>) = (random.vector(2.0), random.vector(2.0));
+        let q: SVector<f64, 3> = random.random_vector::<3>(1.0) + SVector::from([3.0, 0.0, 0.0]);
+        let (v, a): (SVector<f64, 3>, SVector<f64, 3>) =
+            (random.random_vector(2.0), random.random_vector(2.0));
         let ([r, _, e], [dr, daz, de], [ddr, ddaz, dde]): ([f64; 3], [f64; 3], [f64; 3]) =
             (q.into(), v.into(), a.into());
         let (s, c) = (f64::sin(e), f64::cos(e));
@@ -161,7 +162,7 @@ struct Field {
 fn a_force_is_the_gradient_of_its_field() {
     let (m, mut random) = (Field { mu: 3.0, k: 0.5 }, Random::new(2));
     for _ in 0..4 {
-        let q: SVector<f64, 3> = random.vector(2.0);
+        let q: SVector<f64, 3> = random.random_vector(2.0);
         let r = q.norm();
         let expected = q * (3.0 / (r * r * r)) + SVector::from([q[1], q[0], 0.0]) * 0.5;
         assert!((m.slope(&q) - expected).amax() < 1e-12);

@@ -6,7 +6,7 @@ use linkwork::{frame, mechanism, simulate};
 use linkwork_models::KapitzaPendulum;
 use std::f64::consts::PI;
 use support::compare::assert_close;
-use support::simulate::{advance, advance_from};
+use support::simulate::{advance_from, state_after_duration};
 
 /// Checks Kapitza's pendulum with a vibrating pivot: `m l² θ̈ + m l (g + ÿ) sin θ = 0`. The upper equilibrium
 /// is stable if `a² γ² > 2 g l` (Landau and Lifshitz, *Mechanics*, §§ 5 and 30).
@@ -127,7 +127,7 @@ fn foucault_pendulum_at_the_pole() {
     // Released at rest relative to the ground, the particle oscillates along one line of the ground frame.
     let (q0, v0) = (Vector2::new(0.5, 0.0), Vector2::new(0.0, -spin * 0.5));
     let end = 7.0;
-    let (q, _) = advance(&table, &q0, &v0, end);
+    let (q, _) = state_after_duration(&table, &q0, &v0, end);
     let swing = 0.5 * ((k / m).sqrt() * end).cos();
     let (sin, cos) = (spin * end).sin_cos();
     assert_close("plane", q.as_slice(), &[swing * cos, -swing * sin], MOTION);
@@ -154,7 +154,7 @@ fn forced_oscillator() {
     let (m, k, f, speed) = (2.0, 18.0, 3.0, 2.0);
     let cart = ForcedOscillator { m, k, f, speed };
     let amplitude = f / (k - m * speed * speed);
-    let (q, v) = advance(&cart, &Vector1::new(amplitude), &Vector1::zeros(), 4.0);
+    let (q, v) = state_after_duration(&cart, &Vector1::new(amplitude), &Vector1::zeros(), 4.0);
     let expected = [amplitude * (speed * 4.0).cos(), -amplitude * speed * (speed * 4.0).sin()];
     assert_close("steady state", &[q[0], v[0]], &expected, MOTION);
     // A run may start at any time.

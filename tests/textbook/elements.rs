@@ -7,7 +7,7 @@ use linkwork_models::TwoBodies;
 use std::f64::consts::PI;
 use support::compare::{assert_close, assert_same_dynamics};
 use support::random::Random;
-use support::simulate::advance;
+use support::simulate::state_after_duration;
 
 #[mechanism]
 struct MassInerter {
@@ -25,7 +25,7 @@ struct MassInerter {
 
 #[test]
 fn mass_with_inerter() {
-    let (q, _) = advance(&MassInerter {}, &Vector1::new(1.0), &Vector1::zeros(), 1.0);
+    let (q, _) = state_after_duration(&MassInerter {}, &Vector1::new(1.0), &Vector1::zeros(), 1.0);
     assert_close("displacement", q.as_slice(), &[-0.2234232688843427], 1e-12);
 }
 
@@ -182,7 +182,7 @@ fn stops() {
     }
     // One period: across the gap and back, with half an oscillation in each buffer.
     let period = 4.0 * gap / 2.0 + 2.0 * PI / k.sqrt();
-    let (q, v) = advance(&cart, &Vector1::zeros(), &Vector1::new(2.0), period);
+    let (q, v) = state_after_duration(&cart, &Vector1::zeros(), &Vector1::new(2.0), period);
     assert_close("after a period", &[q[0], v[0]], &[0.0, 2.0], 1e-9);
 }
 
@@ -212,7 +212,7 @@ struct StickingBlock {
 fn friction() {
     let (m, f) = (2.0, 3.0);
     let block = SlidingBlock { m, f };
-    let (q, v) = advance(&block, &Vector1::zeros(), &Vector1::new(4.0), 2.0);
+    let (q, v) = state_after_duration(&block, &Vector1::zeros(), &Vector1::new(4.0), 2.0);
     assert_close("sliding", &[q[0], v[0]], &[8.0 - f / m * 2.0, 4.0 - f / m * 2.0], MOTION);
     let end = simulate(&block).from([0.0], [4.0]).duration(4.0).finish().expect("the integrator arrives");
     assert_close("stopped", &[end.q[0]], &[16.0 * m / (2.0 * f)], 1e-6);
@@ -242,7 +242,7 @@ struct DraggedProjectile {
 fn projectile_with_linear_drag() {
     let (m, c, t) = (0.4, 0.3, 1.7);
     let ball = DraggedProjectile { m, c };
-    let (q, v) = advance(&ball, &Vector2::zeros(), &Vector2::new(7.0, 9.0), t);
+    let (q, v) = state_after_duration(&ball, &Vector2::zeros(), &Vector2::new(7.0, 9.0), t);
     let (time, terminal) = (m / c, 9.81 * m / c);
     let decay = (-t / time).exp();
     let expected = [
@@ -326,7 +326,7 @@ fn charged_particles() {
     // Without charge on the other particle, the motion is a circle with the cyclotron period 2 π m / (q B).
     let start = Vector6::new(0.0, 0.0, 0.0, 1e8, 0.0, 0.0);
     let turning = Vector6::new(1.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    let (q, v) = advance(&charges, &start, &turning, 2.0 * PI * 0.5 / 0.6);
+    let (q, v) = state_after_duration(&charges, &start, &turning, 2.0 * PI * 0.5 / 0.6);
     assert_close("circle", &[q[0], q[1], v[0], v[1]], &[0.0, 0.0, 1.0, 0.0], 1e-9);
 }
 
@@ -425,7 +425,7 @@ fn power_balance() {
     let mut random = Random::new(3);
     for _ in 0..20 {
         let (q, v, u): (Vector2<f64>, Vector2<f64>, Vector2<f64>) =
-            (random.vector(1.0), random.vector(2.0), random.vector(3.0));
+            (random.random_vector(1.0), random.random_vector(2.0), random.random_vector(3.0));
         let a = m.forward_dynamics(&q, &v, &m.generalized_forces(&q, &u));
         let total_energy_after = |h: f64| {
             let (q, v) = (q + v * h + a * (h * h / 2.0), v + a * h);

@@ -7,7 +7,7 @@ use linkwork_models::TwoBodies;
 use std::f64::consts::PI;
 use support::compare::assert_close;
 use support::random::Random;
-use support::simulate::advance;
+use support::simulate::state_after_duration;
 use support::table::Record;
 
 #[mechanism]
@@ -34,12 +34,13 @@ struct KeplerPolar {
 
 #[test]
 fn kepler_orbit() {
-    let rows = Record::load("problems/kepler.json").rows::<5>("trajectory");
+    let rows = Record::load("problems/kepler.json").rows_with_key::<5>("trajectory");
     let [_, x, y, vx, vy] = rows[0];
     for [t, x1, y1, vx1, vy1] in &rows[1..] {
-        let (q, v) = advance(&Kepler {}, &Vector2::new(x, y), &Vector2::new(vx, vy), *t);
+        let (q, v) = state_after_duration(&Kepler {}, &Vector2::new(x, y), &Vector2::new(vx, vy), *t);
         assert_close(format!("at {t}"), &[q[0], q[1], v[0], v[1]], &[*x1, *y1, *vx1, *vy1], 1e-9);
-        let (q, v) = advance(&KeplerPolar {}, &Vector2::new(x, 0.0), &Vector2::new(0.0, vy / x), *t);
+        let (q, v) =
+            state_after_duration(&KeplerPolar {}, &Vector2::new(x, 0.0), &Vector2::new(0.0, vy / x), *t);
         let (sin, cos) = q[1].sin_cos();
         let polar = [q[0] * cos, q[0] * sin, v[0] * cos - q[0] * v[1] * sin, v[0] * sin + q[0] * v[1] * cos];
         assert_close(format!("polar at {t}"), &polar, &[*x1, *y1, *vx1, *vy1], 1e-9);
@@ -60,7 +61,7 @@ fn two_bodies() {
     let q = Vector6::from_iterator([0.0; 3].into_iter().chain(apart.iter().copied()));
     let second = drift + speed;
     let v = Vector6::from_iterator(drift.iter().chain(second.iter()).copied());
-    let (q, v) = advance(&bodies, &q, &v, period);
+    let (q, v) = state_after_duration(&bodies, &q, &v, period);
     assert_close(
         "distance",
         (q.fixed_rows::<3>(3) - q.fixed_rows::<3>(0)).as_slice(),
@@ -95,11 +96,11 @@ attracting! {
 
 #[test]
 fn pleiades() {
-    let rows = Record::load("problems/pleiades.json").rows::<29>("trajectory");
+    let rows = Record::load("problems/pleiades.json").rows_with_key::<29>("trajectory");
     let (mut q, mut v) =
         (SVector::<f64, 14>::from_row_slice(&rows[0][1..15]), SVector::from_row_slice(&rows[0][15..]));
     for pair in rows.windows(2) {
-        (q, v) = advance(&Pleiades {}, &q, &v, pair[1][0] - pair[0][0]);
+        (q, v) = state_after_duration(&Pleiades {}, &q, &v, pair[1][0] - pair[0][0]);
         assert_close(format!("places at {}", pair[1][0]), q.as_slice(), &pair[1][1..15], 1e-8);
         assert_close(format!("rates at {}", pair[1][0]), v.as_slice(), &pair[1][15..], 1e-8);
     }
@@ -141,7 +142,7 @@ fn gravity_gradient_libration() {
     let small = 1e-5;
     let libration = (3.0 * n * n * (b - a) / c).sqrt();
     let end = 2.3;
-    let (q, _) = advance(&satellite, &Vector1::new(small), &Vector1::new(n), end);
+    let (q, _) = state_after_duration(&satellite, &Vector1::new(small), &Vector1::new(n), end);
     assert_close("libration", &[(q[0] - n * end) / small], &[(libration * end).cos()], 1e-6);
 }
 
@@ -177,7 +178,7 @@ struct PlanetAndSatellite {
 fn gravity_gradient_between_bodies() {
     let (both, alone) = (PlanetAndSatellite {}, FreeSatellite {});
     let mut random = Random::new(6);
-    let q = random.configuration(&both);
+    let q = random.random_configuration(&both);
     let mut seen = alone.neutral();
     seen.copy_from(&q.fixed_rows::<7>(3));
     for k in 0..3 {
@@ -193,7 +194,7 @@ fn gravity_gradient_between_bodies() {
 fn gravity_gradient_of_a_free_body() {
     let body = FreeSatellite {};
     let mut random = Random::new(5);
-    let q = random.configuration(&body);
+    let q = random.random_configuration(&body);
     let pose = body.frame_placement(frame!(FreeSatellite, "satellite"), &q);
     let r = pose.rotation.inverse() * pose.translation.vector;
     let (d, n) = (r.norm(), r.normalize());

@@ -7,7 +7,7 @@ use linkwork_models::{BeadOnSpinningHoop, DoublePendulum, Gyroscope, TunedSuspen
 use support::compare::assert_close;
 use support::random::Random;
 use support::robots::PandaMimic;
-use support::simulate::advance;
+use support::simulate::state_after_duration;
 
 #[test]
 fn double_pendulum() {
@@ -52,7 +52,7 @@ fn bead_on_spinning_hoop() {
         assert_close("place", bead.as_slice(), (turned * radius).as_slice(), EXACT);
     }
     let rest = Vector1::new((g / (radius * spin * spin)).acos());
-    let (q, v) = advance(&hoop, &rest, &Vector1::zeros(), 2.0);
+    let (q, v) = state_after_duration(&hoop, &rest, &Vector1::zeros(), 2.0);
     assert_close("relative equilibrium", &[q[0], v[0]], &[rest[0], 0.0], MOTION);
 }
 
@@ -189,7 +189,7 @@ fn panda_with_tool() {
     let (tool_mass, stiffness) = (0.7, 30.0);
     let (arm, held) = (PandaMimic, PandaWithTool { tool_mass, stiffness });
     let mut random = Random::new(7);
-    let (q, v) = (random.configuration(&arm), random.vector(1.0));
+    let (q, v) = (random.random_configuration(&arm), random.random_vector(1.0));
     let tool = frame!(PandaWithTool, "tool");
     let jacobian = held.frame_jacobian(tool, &q);
     let linear = jacobian.fixed_rows::<3>(0).into_owned();

@@ -67,7 +67,8 @@ struct Carrier {
 fn matrices_are_what_their_vectors_say() {
     let (m, mut random) = (Carrier { mass: 1.7 }, Random::new(31));
     for _ in 0..4 {
-        let (q, v): (SVector<f64, 8>, SVector<f64, 7>) = (random.configuration(&m), random.vector(2.0));
+        let (q, v): (SVector<f64, 8>, SVector<f64, 7>) =
+            (random.random_configuration(&m), random.random_vector(2.0));
         let hull = m.frame_placement(frame!(Carrier, "hull"), &q).rotation;
         let wheel = m.frame_placement(frame!(Carrier, "wheel"), &q).rotation;
         // A rotation has the same components in both of its frames.
@@ -137,7 +138,8 @@ fn outputs_have_components_in_oblique_frames() {
     let dual = reciprocal(&frame).unwrap();
     let (m, mut random) = (Oblique {}, Random::new(11));
     for _ in 0..5 {
-        let (q, v): (SVector<f64, 7>, SVector<f64, 6>) = (random.configuration(&m), random.vector(2.0));
+        let (q, v): (SVector<f64, 7>, SVector<f64, 6>) =
+            (random.random_configuration(&m), random.random_vector(2.0));
         let found = Vector3::new(m.along_first(&q, &v), m.along_second(&q, &v), m.along_third(&q, &v));
         // Velocities of free joints are in body axes.
         let linear = Vector3::new(v[0], v[1], v[2]);
@@ -152,14 +154,14 @@ fn outputs_have_components_in_oblique_frames() {
 fn components_in_oblique_frames() {
     let mut random = Random::new(6);
     for _ in 0..5 {
-        let f = [0, 1, 2].map(|_| random.vector::<3>(2.0));
+        let f = [0, 1, 2].map(|_| random.random_vector::<3>(2.0));
         let volume = f[0].dot(&f[1].cross(&f[2]));
         let g = reciprocal(&Matrix3::from_columns(&f)).unwrap();
         let scale = 1.0 + g.amax();
         for k in 0..3 {
             let (next, last) = (f[(k + 1) % 3], f[(k + 2) % 3]);
             assert!((g.column(k) - next.cross(&last) / volume).amax() < 1e-12 * scale);
-            let v: Vector3<f64> = random.vector(1.0);
+            let v: Vector3<f64> = random.random_vector(1.0);
             let cramer = v.dot(&next.cross(&last)) / volume;
             assert!((g.column(k).dot(&v) - cramer).abs() < 1e-12 * scale);
         }
@@ -171,7 +173,7 @@ fn components_in_oblique_frames() {
 #[test]
 fn kronecker_products_solve_sylvester_s_equation() {
     let mut random = Random::new(7);
-    let mut matrix = || Matrix3::from_columns(&[0, 1, 2].map(|_| random.vector::<3>(1.0)));
+    let mut matrix = || Matrix3::from_columns(&[0, 1, 2].map(|_| random.random_vector::<3>(1.0)));
     let (one, shift) = (Matrix3::<f64>::identity(), Matrix3::identity() * 4.0);
     for _ in 0..5 {
         let (a, b, c) = (matrix() + shift, matrix() + shift, matrix());

@@ -27,7 +27,8 @@ struct Ladder {
 fn a_ladder_turns_about_its_instantaneous_centre() {
     let (m, mut random) = (Ladder { l: 3.0 }, Random::new(8));
     for _ in 0..5 {
-        let (q, v, a): (SVector<f64, 1>, _, _) = (random.vector(1.0), random.vector(2.0), random.vector(3.0));
+        let (q, v, a): (SVector<f64, 1>, _, _) =
+            (random.random_vector(1.0), random.random_vector(2.0), random.random_vector(3.0));
         let corner = SVector::from([m.l * q[0].cos(), m.l * q[0].sin(), 0.0]);
         assert!((m.rests(&q, &v) - corner).amax() < 1e-12);
         assert!((m.axis(&q, &v) - corner).amax() < 1e-12);
@@ -200,8 +201,9 @@ struct Carrier {
 fn euler_s_laws_hold_for_a_set_of_bodies() {
     let (m, mut random) = (Carrier { mass: 1.7 }, Random::new(3));
     for _ in 0..5 {
-        let (q, v): (SVector<f64, 8>, SVector<f64, 7>) = (random.configuration(&m), random.vector(2.0));
-        let u = random.vector(1.0);
+        let (q, v): (SVector<f64, 8>, SVector<f64, 7>) =
+            (random.random_configuration(&m), random.random_vector(2.0));
+        let u = random.random_vector(1.0);
         let whole = m.momentum(&q, &v);
         let (linear, spin) = (whole.fixed_rows::<3>(0).into_owned(), whole.fixed_rows::<3>(3).into_owned());
         assert!((m.center(&q) - m.center_of_mass(&q)).amax() < 1e-14);
@@ -279,20 +281,20 @@ struct Written {
 fn a_wheel_rolls_on_a_point_in_the_axes_of_its_fork() {
     let (pair, written, mut random) = (Rolls { radius: 0.4 }, Written { radius: 0.4 }, Random::new(21));
     for _ in 0..4 {
-        let mut q: SVector<f64, 6> = random.vector(0.8);
+        let mut q: SVector<f64, 6> = random.random_vector(0.8);
         q[2] = 0.4 * q[4].cos();
-        let mut v: SVector<f64, 6> = random.vector(2.0);
+        let mut v: SVector<f64, 6> = random.random_vector(2.0);
         v.fixed_rows_mut::<3>(0).fill(0.0);
         let slides = written.slides(&q, &v);
         v.fixed_rows_mut::<3>(0).copy_from(&-slides);
         assert!(written.slides(&q, &v).amax() < 1e-14);
-        let tau = random.vector(1.0);
+        let tau = random.random_vector(1.0);
         // A force at a point at rest does no work and does not change the motion.
         let a = written.forward_dynamics(&q, &v, &tau);
         let expected = pair.forward_dynamics(&q, &v, &tau);
         assert!((a - expected).amax() < 1e-9 * (1.0 + expected.amax()), "{a} {expected}");
         // If the point slides, the generalized forces have the power of a force at that point of the wheel.
-        let any: SVector<f64, 6> = random.vector(2.0);
+        let any: SVector<f64, 6> = random.random_vector(2.0);
         let power = written.generalized_forces(&q, &[2.0].into()).dot(&any);
         assert!((power - 2.0 * written.forward(&q, &any)).abs() < 1e-13);
         assert!((written.disturbance_power(&q, &any) - 3.0 * written.forward(&q, &any)).abs() < 1e-13);

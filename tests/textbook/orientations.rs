@@ -5,7 +5,7 @@ use linkwork::mechanism;
 use linkwork::nalgebra::{Matrix3, SMatrix, SVector, Vector1, Vector3};
 use std::f64::consts::FRAC_PI_2;
 use support::compare::assert_close;
-use support::simulate::advance;
+use support::simulate::state_after_duration;
 use support::table::Record;
 
 /// Declares a body in a frame with three successive rotations about the named axes, and checks it against the
@@ -38,13 +38,14 @@ macro_rules! sequences {
         #[test]
         fn euler_angles() {
             let table = Record::load("problems/euler_sequences.json");
-            let (q, v): (Vector3<f64>, Vector3<f64>) = (table.vector("angles"), table.vector("rates"));
-            let records = table.records("sequences");
+            let q: Vector3<f64> = table.vector_with_key("angles");
+            let v: Vector3<f64> = table.vector_with_key("rates");
+            let records = table.records_with_key("sequences");
             $(
                 let body = $name {};
-                let record = records.iter().find(|r| r.string("name") == $label).expect("in the table");
-                let matrix: SMatrix<f64, 3, 3> = record.matrix("matrix");
-                let omega: Vector3<f64> = record.vector("omega");
+                let record = records.iter().find(|r| r.string_with_key("name") == $label).unwrap();
+                let matrix: SMatrix<f64, 3, 3> = record.matrix_with_key("matrix");
+                let omega: Vector3<f64> = record.vector_with_key("omega");
                 let axes = Matrix3::from_columns(&[body.x_axis(&q), body.y_axis(&q), body.z_axis(&q)]);
                 assert_close(concat!("axes ", $label), axes.as_slice(), matrix.as_slice(), 1e-14);
                 assert_close(concat!("rate ", $label), body.rate(&q, &v).as_slice(), omega.as_slice(), 1e-14);
@@ -117,8 +118,8 @@ fn heavy_top_in_two_charts() {
     let quaternion = SVector::from(pose.into_inner().coords);
     let expected = [other.kinetic_energy(&quaternion, &rate), other.potential_energy(&quaternion)];
     assert_close("energies", &energies, &expected, EXACT);
-    let (end, _) = advance(&one, &q, &v, 1.0);
-    let (end_of_other, _) = advance(&other, &quaternion, &rate, 1.0);
+    let (end, _) = state_after_duration(&one, &q, &v, 1.0);
+    let (end_of_other, _) = state_after_duration(&other, &quaternion, &rate, 1.0);
     assert_close("centre", one.center(&end).as_slice(), other.center(&end_of_other).as_slice(), MOTION);
 }
 

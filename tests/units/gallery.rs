@@ -1,7 +1,7 @@
 //! Units of the models and of the language reference: all mechanisms are accepted, and all are rejected after
 //! a factor is added or removed.
 
-use super::{Units, units};
+use super::{Units, units_of_mechanism};
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 use quote::ToTokens;
 use std::fs;
@@ -15,12 +15,12 @@ struct Source {
 }
 
 impl Source {
-    fn messages(&self) -> Vec<String> {
-        self.units().err().unwrap_or_default()
+    fn unit_messages(&self) -> Vec<String> {
+        self.units_of_source().err().unwrap_or_default()
     }
 
     /// Returns the parameters with the units at the end of their documentation, as in "Mass of the cart, kg."
-    fn documented(&self) -> Vec<(String, String)> {
+    fn documented_units(&self) -> Vec<(String, String)> {
         let documented_unit = |f: &syn::Field| {
             let doc = f.attrs.iter().filter_map(|a| match &a.meta {
                 Meta::NameValue(doc) if a.path().is_ident("doc") => {
@@ -38,23 +38,23 @@ impl Source {
 
     /// Returns a copy of the mechanism in which one occurrence of a parameter is replaced by another text.
     /// Returns `None` if there are fewer occurrences.
-    fn replaced(&self, parameter: &str, occurrence: usize, by: &str) -> Option<Source> {
+    fn with_replaced_parameter(&self, parameter: &str, occurrence: usize, by: &str) -> Option<Source> {
         let mut left = occurrence as isize;
         let by: TokenStream = by.parse().unwrap();
-        let arguments = replace(self.arguments.clone(), parameter, &by, &mut left);
+        let arguments = replace_occurrence(self.arguments.clone(), parameter, &by, &mut left);
         let mut item = self.item.clone();
         for attribute in item.fields.iter_mut().flat_map(|f| &mut f.attrs) {
             if let Meta::List(list) = &mut attribute.meta
                 && !list.path.is_ident("unit")
             {
-                list.tokens = replace(list.tokens.clone(), parameter, &by, &mut left);
+                list.tokens = replace_occurrence(list.tokens.clone(), parameter, &by, &mut left);
             }
         }
         (left < 0).then_some(Source { arguments, item })
     }
 
     /// Returns a copy of the mechanism that declares the unit of every parameter except one.
-    fn pinned(&self, units: &[String], except: &str) -> Source {
+    fn with_declared_units(&self, units: &[String], except: &str) -> Source {
         let mut item = self.item.clone();
         for (field, unit) in item.fields.iter_mut().filter(|field| is_parameter(field)).zip(units) {
             let is_free =
@@ -76,15 +76,16 @@ impl Source {
     }
 
     /// Returns the parameters of the mechanism with their inferred units.
-    fn parameters(&self) -> Vec<(String, String)> {
-        let units = self.units().unwrap_or_else(|messages| panic!("{}: {messages:?}", self.item.ident));
+    fn parameters_with_units(&self) -> Vec<(String, String)> {
+        let units =
+            self.units_of_source().unwrap_or_else(|messages| panic!("{}: {messages:?}", self.item.ident));
         let fields = self.item.fields.iter().filter(|field| is_parameter(field));
         let fields = fields.map(|field| field.ident.as_ref().unwrap().to_string());
         fields.zip(units.parameters).collect()
     }
 
-    fn units(&self) -> Result<Units, Vec<String>> {
-        units(&self.arguments.to_string(), &self.item.to_token_stream().to_string())
+    fn units_of_source(&self) -> Result<Units, Vec<String>> {
+        units_of_mechanism(&self.arguments.to_string(), &self.item.to_token_stream().to_string())
     }
 }
 
@@ -100,7 +101,12 @@ fn is_unit(text: &str) -> bool {
 }
 
 /// Replaces the occurrence of a parameter with the index `left`. Keys and members with its name do not count.
-fn replace(tokens: TokenStream, parameter: &str, by: &TokenStream, left: &mut isize) -> TokenStream {
+fn replace_occurrence(
+    tokens: TokenStream,
+    parameter: &str,
+    by: &TokenStream,
+    left: &mut isize,
+) -> TokenStream {
     let tokens: Vec<TokenTree> = tokens.into_iter().collect();
     let is_punctuation_at =
         |k: usize, c: char| matches!(tokens.get(k), Some(TokenTree::Punct(p)) if p.as_char() == c);
@@ -108,7 +114,7 @@ fn replace(tokens: TokenStream, parameter: &str, by: &TokenStream, left: &mut is
     for (k, token) in tokens.iter().enumerate() {
         match token {
             TokenTree::Group(group) => {
-                let inner = replace(group.stream(), parameter, by, left);
+                let inner = replace_occurrence(group.stream(), parameter, by, left);
                 new.extend([TokenTree::from(Group::new(group.delimiter(), inner))]);
             }
             TokenTree::Ident(i)
@@ -129,7 +135,7 @@ fn replace(tokens: TokenStream, parameter: &str, by: &TokenStream, left: &mut is
 }
 
 /// Returns all mechanisms that a source file contains.
-fn sources(text: &str) -> Vec<Source> {
+fn mechanisms_of_file(text: &str) -> Vec<Source> {
     let found = syn::parse_file(text).unwrap().items.into_iter().filter_map(|item| {
         let Item::Struct(mut item) = item else { return None };
         let at = item.attrs.iter().position(|a| a.path().is_ident("mechanism"))?;
@@ -144,26 +150,26 @@ fn sources(text: &str) -> Vec<Source> {
 }
 
 /// Returns the mechanisms of all models that have parameters.
-fn gallery() -> Vec<Source> {
+fn gallery_mechanisms() -> Vec<Source> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/src");
     let mut paths: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
     let all = paths
         .iter()
         .filter(|path| path.is_file())
-        .flat_map(|path| sources(&fs::read_to_string(path).unwrap()));
-    all.filter(|source| !source.documented().is_empty()).collect()
+        .flat_map(|path| mechanisms_of_file(&fs::read_to_string(path).unwrap()));
+    all.filter(|source| !source.documented_units().is_empty()).collect()
 }
 
 /// Checks that inferred units of parameters equal those in their documentation.
 #[test]
 fn units_are_those_of_the_documentation() {
     let mut compared = 0;
-    for source in gallery() {
-        let found = source.parameters();
-        for (parameter, written) in source.documented() {
+    for source in gallery_mechanisms() {
+        let found = source.parameters_with_units();
+        for (parameter, written) in source.documented_units() {
             let (_, inferred) = found.iter().find(|(p, _)| *p == parameter).unwrap();
-            let same = inferred == "any" || dimension(&written) == dimension(inferred);
+            let same = inferred == "any" || exponents_of_unit(&written) == exponents_of_unit(inferred);
             assert!(same, "{}.{parameter}: {written} and {inferred}", source.item.ident);
             compared += 1;
         }
@@ -172,7 +178,7 @@ fn units_are_those_of_the_documentation() {
 }
 
 /// Returns the exponents of m, kg and s.
-fn dimension(unit: &str) -> [i32; 3] {
+fn exponents_of_unit(unit: &str) -> [i32; 3] {
     let mut sum = [0; 3];
     let (mut sign, mut inside) = (1, 1);
     let mut word = String::new();
@@ -217,21 +223,23 @@ fn dimension(unit: &str) -> [i32; 3] {
 fn refuse_all(text: impl Fn(&str) -> String, itself: bool) -> usize {
     let mut refused = 0;
     // Tables accept any unit, and so do the factors of their values.
-    for source in gallery().into_iter().filter(|source| !source.has_tables()) {
-        let parameters = source.parameters();
+    for source in gallery_mechanisms().into_iter().filter(|source| !source.has_tables()) {
+        let parameters = source.parameters_with_units();
         let units: Vec<String> = parameters.iter().map(|(_, unit)| unit.clone()).collect();
         for (parameter, unit) in
-            parameters.iter().filter(|(_, unit)| unit != "any" && dimension(unit) != [0; 3])
+            parameters.iter().filter(|(_, unit)| unit != "any" && exponents_of_unit(unit) != [0; 3])
         {
-            let pinned = source.pinned(&units, if itself { "" } else { parameter });
-            assert_eq!(pinned.messages(), Vec::<String>::new(), "{}", source.item.ident);
+            let pinned = source.with_declared_units(&units, if itself { "" } else { parameter });
+            assert_eq!(pinned.unit_messages(), Vec::<String>::new(), "{}", source.item.ident);
             // The only use of a parameter determines its unit.
-            if !itself && source.replaced(parameter, 1, parameter).is_none() {
+            if !itself && source.with_replaced_parameter(parameter, 1, parameter).is_none() {
                 continue;
             }
             for k in 0.. {
-                let Some(changed) = pinned.replaced(parameter, k, &text(parameter)) else { break };
-                let messages = changed.messages();
+                let Some(changed) = pinned.with_replaced_parameter(parameter, k, &text(parameter)) else {
+                    break;
+                };
+                let messages = changed.unit_messages();
                 let what = format!("{}: `{}` at {k}", source.item.ident, text(parameter));
                 assert!(is_refused(&messages, parameter), "{what} ({unit}): {messages:?}");
                 refused += 1;
@@ -273,7 +281,7 @@ fn is_refused(messages: &[String], parameter: &str) -> bool {
 #[test]
 fn the_page_of_the_language_is_accepted() {
     for (name, arguments, fields, expected) in PAGE {
-        let found = units(arguments, &format!("struct {name} {{ {fields} }}"));
+        let found = units_of_mechanism(arguments, &format!("struct {name} {{ {fields} }}"));
         let found = found.unwrap_or_else(|messages| panic!("{name}: {messages:?}"));
         assert_eq!(found.parameters.join(" "), *expected, "{name}");
     }

@@ -2,7 +2,7 @@
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::{read, resolve::build_model};
+use linkwork_compiler::{read_source, resolve::build_model};
 use std::path::Path;
 use support::random::Random;
 
@@ -45,7 +45,7 @@ const INPUTS: [(&str, Dimension); 4] =
     [("push", FORCE), ("turn", ENERGY), ("pull", FORCE), ("lever", [0, 1, -2])];
 
 /// Returns the source of a machine with an additional element.
-fn machine(more: &str) -> String {
+fn machine_source(more: &str) -> String {
     format!(
         "struct Machine {{
         #[unit(m)] l: f64, #[unit(kg)] m: f64, #[unit(1 / s)] w: f64, #[unit(N / m)] k: f64,
@@ -64,32 +64,34 @@ fn machine(more: &str) -> String {
 }
 
 /// Returns the error messages for a machine with an additional element; each message is one string.
-fn messages(more: &str) -> Vec<String> {
+fn messages_for_element(more: &str) -> Vec<String> {
     let mut cx = Diagnostics::new();
-    let source = read("".parse().unwrap(), machine(more).parse().unwrap(), Path::new(""), &mut cx).unwrap();
+    let source =
+        read_source("".parse().unwrap(), machine_source(more).parse().unwrap(), Path::new(""), &mut cx)
+            .unwrap();
     build_model(&source.mechanism.description, &Graph::new(), &mut cx);
     cx.messages()
 }
 
 /// Returns a random integer from zero to `n − 1`.
 fn random_index(n: usize, random: &mut Random) -> usize {
-    ((random.uniform(0.5) + 0.5) * n as f64) as usize % n
+    ((random.uniform_number(0.5) + 0.5) * n as f64) as usize % n
 }
 
-fn times(a: Dimension, b: Dimension, power: i32) -> Dimension {
+fn multiply_dimension(a: Dimension, b: Dimension, power: i32) -> Dimension {
     std::array::from_fn(|k| a[k] + power * b[k])
 }
 
-fn pick<T: Copy>(from: &[T], random: &mut Random) -> T {
+fn pick_randomly<T: Copy>(from: &[T], random: &mut Random) -> T {
     from[random_index(from.len(), random)]
 }
 
 /// Returns a factor of this dimension: powers of the first three parameters.
-fn missing(mut by: Dimension) -> String {
+fn missing_factor(mut by: Dimension) -> String {
     let mut text = String::new();
     for (k, (name, unit)) in PARAMETERS.iter().take(3).enumerate() {
         let power = by[k] / unit[k];
-        by = times(by, *unit, -power);
+        by = multiply_dimension(by, *unit, -power);
         let sign = if power > 0 { '*' } else { '/' };
         (0..power.abs()).for_each(|_| text.push_str(&format!(" {sign} {name}")));
     }
@@ -98,64 +100,64 @@ fn missing(mut by: Dimension) -> String {
 }
 
 /// Returns a product of this dimension that contains a parameter, so that its numbers are dimensionless.
-fn anchored(dimension: Dimension, depth: usize, random: &mut Random) -> String {
+fn anchored_product(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     let (mut text, mut has) = (String::from("n"), PLAIN);
     for _ in 0..random_index(3, random) {
         let (name, unit) = match random_index(4, random) {
-            0 => pick(&INPUTS, random),
-            1 | 2 => pick(&MOTION, random),
-            _ => pick(&PARAMETERS, random),
+            0 => pick_randomly(&INPUTS, random),
+            1 | 2 => pick_randomly(&MOTION, random),
+            _ => pick_randomly(&PARAMETERS, random),
         };
         let below = random_index(3, random) == 0;
         text = format!("{text} {} {name}", if below { '/' } else { '*' });
-        has = times(has, unit, if below { -1 } else { 1 });
+        has = multiply_dimension(has, unit, if below { -1 } else { 1 });
     }
     if random_index(2, random) == 0 {
-        text = format!("{} * {text}", pick(&["0.6", "0.5", "9.81", "40", "2", "pi"], random));
+        text = format!("{} * {text}", pick_randomly(&["0.6", "0.5", "9.81", "40", "2", "pi"], random));
     }
-    text.push_str(&missing(times(dimension, has, -1)));
+    text.push_str(&missing_factor(multiply_dimension(dimension, has, -1)));
     match depth.checked_sub(1).map(|depth| (depth, random_index(6, random))) {
-        Some((depth, 0)) => format!("{text} * sin({})", expression(PLAIN, depth, random)),
+        Some((depth, 0)) => format!("{text} * sin({})", random_sum(PLAIN, depth, random)),
         Some((depth, 1)) => {
-            let square = times(dimension, dimension, 1);
-            format!("sqrt({})", expression(square, depth, random))
+            let square = multiply_dimension(dimension, dimension, 1);
+            format!("sqrt({})", random_sum(square, depth, random))
         }
-        Some((depth, 2)) => format!("max({text}, {})", expression(dimension, depth, random)),
-        Some((depth, 3)) => format!("{text} / ({})", expression(PLAIN, depth, random)),
+        Some((depth, 2)) => format!("max({text}, {})", random_sum(dimension, depth, random)),
+        Some((depth, 3)) => format!("{text} / ({})", random_sum(PLAIN, depth, random)),
         _ => text,
     }
 }
 
 /// Returns a term of this dimension: a product with a parameter, a number, or a quantity of the motion with a
 /// coefficient.
-fn term(dimension: Dimension, depth: usize, random: &mut Random) -> String {
+fn random_term(dimension: Dimension, depth: usize, random: &mut Random) -> String {
     let with_coefficient = [MOTION.as_slice(), INPUTS.as_slice()].concat();
     match random_index(8, random) {
         0 => "0.7".to_string(),
-        1 => format!("30 * {}", pick(&with_coefficient, random).0),
+        1 => format!("30 * {}", pick_randomly(&with_coefficient, random).0),
         2 => match with_coefficient.iter().find(|(_, unit)| *unit == dimension) {
             Some((name, _)) => name.to_string(),
-            None => anchored(dimension, depth, random),
+            None => anchored_product(dimension, depth, random),
         },
-        _ => anchored(dimension, depth, random),
+        _ => anchored_product(dimension, depth, random),
     }
 }
 
 /// Returns the text of a random sum of terms of the given dimension; one term contains a parameter.
-fn expression(dimension: Dimension, depth: usize, random: &mut Random) -> String {
-    let mut text = anchored(dimension, depth, random);
+fn random_sum(dimension: Dimension, depth: usize, random: &mut Random) -> String {
+    let mut text = anchored_product(dimension, depth, random);
     for _ in 0..random_index(3, random) {
         let sign = if random_index(2, random) == 0 { '+' } else { '-' };
         text = match random_index(2, random) {
-            0 => format!("{text} {sign} {}", term(dimension, depth, random)),
-            _ => format!("{} {sign} {text}", term(dimension, depth, random)),
+            0 => format!("{text} {sign} {}", random_term(dimension, depth, random)),
+            _ => format!("{} {sign} {text}", random_term(dimension, depth, random)),
         };
     }
     text
 }
 
 /// Returns a random dimension other than the given one.
-fn another(dimension: Dimension, random: &mut Random) -> Dimension {
+fn other_dimension(dimension: Dimension, random: &mut Random) -> Dimension {
     loop {
         let other = std::array::from_fn(|k| dimension[k] + random_index(5, random) as i32 - 2);
         if other != dimension {
@@ -165,18 +167,19 @@ fn another(dimension: Dimension, random: &mut Random) -> Dimension {
 }
 
 /// Returns the text of a random sum in which one term has an inconsistent dimension.
-fn wrong(dimension: Dimension, random: &mut Random) -> String {
-    let (good, bad) = (expression(dimension, 1, random), anchored(another(dimension, random), 1, random));
+fn sum_with_wrong_unit(dimension: Dimension, random: &mut Random) -> String {
+    let (good, bad) =
+        (random_sum(dimension, 1, random), anchored_product(other_dimension(dimension, random), 1, random));
     match random_index(6, random) {
         0 => format!("{bad} + {good}"),
         1 => format!("{good} - {bad}"),
-        2 => format!("({good}) * cos({})", anchored(another(PLAIN, random), 1, random)),
+        2 => format!("({good}) * cos({})", anchored_product(other_dimension(PLAIN, random), 1, random)),
         3 => format!("min({good}, {bad})"),
         4 => {
             // Sum without any parameter.
             let all = [MOTION.as_slice(), INPUTS.as_slice()].concat();
             let (a, b) = loop {
-                let (a, b) = (pick(&all, random), pick(&all, random));
+                let (a, b) = (pick_randomly(&all, random), pick_randomly(&all, random));
                 if a.1 != b.1 {
                     break (a.0, b.0);
                 }
@@ -188,7 +191,7 @@ fn wrong(dimension: Dimension, random: &mut Random) -> String {
 }
 
 /// Returns an element that uses an expression of this dimension, directly or through definitions.
-fn element(e: &str, dimension: Dimension, random: &mut Random) -> String {
+fn random_element(e: &str, dimension: Dimension, random: &mut Random) -> String {
     match random_index(if dimension == FORCE || dimension == ENERGY { 6 } else { 4 }, random) {
         0 => format!("#[output({e})] o: Scalar"),
         1 => format!("#[define({e})] d: Scalar, #[output(2 * d)] o: Scalar"),
@@ -203,7 +206,7 @@ fn element(e: &str, dimension: Dimension, random: &mut Random) -> String {
     }
 }
 
-fn dimension(random: &mut Random) -> Dimension {
+fn random_dimension(random: &mut Random) -> Dimension {
     match random_index(3, random) {
         0 => FORCE,
         1 => ENERGY,
@@ -215,10 +218,10 @@ fn dimension(random: &mut Random) -> Dimension {
 fn expressions_whose_units_fit_are_accepted() {
     let mut random = Random::new(41);
     for _ in 0..600 {
-        let dimension = dimension(&mut random);
-        let e = expression(dimension, 2, &mut random);
-        let more = element(&e, dimension, &mut random);
-        assert_eq!(messages(&more), Vec::<String>::new(), "{more}");
+        let dimension = random_dimension(&mut random);
+        let e = random_sum(dimension, 2, &mut random);
+        let more = random_element(&e, dimension, &mut random);
+        assert_eq!(messages_for_element(&more), Vec::<String>::new(), "{more}");
     }
 }
 
@@ -226,10 +229,10 @@ fn expressions_whose_units_fit_are_accepted() {
 fn expressions_whose_units_do_not_fit_are_refused() {
     let mut random = Random::new(42);
     for _ in 0..600 {
-        let dimension = dimension(&mut random);
-        let e = wrong(dimension, &mut random);
-        let more = element(&e, dimension, &mut random);
-        assert!(!messages(&more).is_empty(), "{more}");
+        let dimension = random_dimension(&mut random);
+        let e = sum_with_wrong_unit(dimension, &mut random);
+        let more = random_element(&e, dimension, &mut random);
+        assert!(!messages_for_element(&more).is_empty(), "{more}");
     }
 }
 
@@ -238,14 +241,14 @@ fn expressions_whose_units_do_not_fit_are_refused() {
 fn places_refuse_other_units() {
     let mut random = Random::new(43);
     for _ in 0..600 {
-        let (kind, place) = pick(&[("rail", FORCE), ("hinge", ENERGY)], &mut random);
-        let dimension = another(place, &mut random);
+        let (kind, place) = pick_randomly(&[("rail", FORCE), ("hinge", ENERGY)], &mut random);
+        let dimension = other_dimension(place, &mut random);
         let e = match INPUTS.iter().find(|(_, unit)| *unit != place && random_index(4, &mut random) == 0) {
             Some((name, _)) => name.to_string(),
-            None => anchored(dimension, 2, &mut random),
+            None => anchored_product(dimension, 2, &mut random),
         };
         let element = if kind == "rail" { "Force" } else { "Torque" };
         let more = format!("#[acts(on = {kind}, value = {e})] o: {element}");
-        assert!(!messages(&more).is_empty(), "{more}");
+        assert!(!messages_for_element(&more).is_empty(), "{more}");
     }
 }

@@ -204,16 +204,16 @@ impl Random {
         let x = x.wrapping_mul(0xff51afd7ed558ccd);
         (x >> 11) as f64 / (1_u64 << 53) as f64
     }
-    fn uniform(&mut self, a: f64, b: f64) -> f64 {
+    fn uniform_between(&mut self, a: f64, b: f64) -> f64 {
         a + (b - a) * self.next()
     }
-    fn choose<T: Copy>(&mut self, list: &[T]) -> T {
+    fn choose_element<T: Copy>(&mut self, list: &[T]) -> T {
         list[(self.next() * list.len() as f64) as usize % list.len()]
     }
 }
 
 /// Processor time of this thread, µs.
-fn now() -> f64 {
+fn thread_time() -> f64 {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     time.tv_sec as f64 * 1e6 + time.tv_nsec as f64 * 1e-3
 }
@@ -242,7 +242,7 @@ struct Scene<'a> {
 }
 
 /// Runs a scene, and adds it to a tally.
-fn run<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
+fn run_scene<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
     scene: &Scene<'_>,
     m: &M,
     (q, v): (SVector<f64, NQ>, SVector<f64, NV>),
@@ -257,9 +257,9 @@ fn run<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
     let mut samples = run.sample_every(scene.h).duration(scene.duration).into_iter();
     tally.runs += 1;
     loop {
-        let start = now();
+        let start = thread_time();
         let Some(sample) = samples.next() else { return };
-        let time = now() - start;
+        let time = thread_time() - start;
         let sample = match sample {
             Ok(sample) => sample,
             Err(error) => {
@@ -283,7 +283,7 @@ fn run<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
 }
 
 /// Prints the row of a family of scenes in the table.
-fn report(name: &str, mut tally: Tally) {
+fn print_tally_row(name: &str, mut tally: Tally) {
     let times = &mut tally.times;
     times.sort_by(f64::total_cmp);
     let quantile_of_times =
@@ -306,7 +306,7 @@ fn report(name: &str, mut tally: Tally) {
 }
 
 /// Sets the pose of body `k`: its position and its quaternion.
-fn place<const NQ: usize>(q: &mut SVector<f64, NQ>, k: usize, at: [f64; 3], turn: [f64; 4]) {
+fn set_body_pose<const NQ: usize>(q: &mut SVector<f64, NQ>, k: usize, at: [f64; 3], turn: [f64; 4]) {
     for i in 0..3 {
         q[7 * k + i] = at[i];
     }
@@ -317,13 +317,13 @@ fn place<const NQ: usize>(q: &mut SVector<f64, NQ>, k: usize, at: [f64; 3], turn
 }
 
 /// A start of bodies with these halves of their lengths: in the air, stacked, in a row, or leaning.
-fn start<const NQ: usize, const NV: usize>(
+fn random_initial_state<const NQ: usize, const NV: usize>(
     r: &mut Random,
     n: usize,
     half: impl Fn(usize) -> [f64; 3],
 ) -> (SVector<f64, NQ>, SVector<f64, NV>) {
     let (mut q, mut v) = (SVector::<f64, NQ>::zeros(), SVector::<f64, NV>::zeros());
-    let kind = r.choose(&[0, 1, 2, 3]);
+    let kind = r.choose_element(&[0, 1, 2, 3]);
     let mut z = 0.0;
     let mut x = 0.0;
     for k in 0..n {
@@ -333,22 +333,31 @@ fn start<const NQ: usize, const NV: usize>(
             0 => {
                 // in the air
                 z += far;
-                let turn =
-                    [r.uniform(-1.0, 1.0), r.uniform(-1.0, 1.0), r.uniform(-1.0, 1.0), r.uniform(-1.0, 1.0)];
-                place(&mut q, k, [r.uniform(-0.5, 0.5) * far, r.uniform(-0.5, 0.5) * far, z], turn);
+                let turn = [
+                    r.uniform_between(-1.0, 1.0),
+                    r.uniform_between(-1.0, 1.0),
+                    r.uniform_between(-1.0, 1.0),
+                    r.uniform_between(-1.0, 1.0),
+                ];
+                set_body_pose(
+                    &mut q,
+                    k,
+                    [r.uniform_between(-0.5, 0.5) * far, r.uniform_between(-0.5, 0.5) * far, z],
+                    turn,
+                );
                 z += far;
                 for i in 0..6 {
-                    v[6 * k + i] = r.uniform(-1.0, 1.0) * if i < 3 { 1.0 } else { 5.0 };
+                    v[6 * k + i] = r.uniform_between(-1.0, 1.0) * if i < 3 { 1.0 } else { 5.0 };
                 }
             }
             1 => {
                 // stacked
                 z += h[2];
-                let yaw = r.uniform(-0.5, 0.5) * r.choose(&[0.0, 1.0]);
-                place(
+                let yaw = r.uniform_between(-0.5, 0.5) * r.choose_element(&[0.0, 1.0]);
+                set_body_pose(
                     &mut q,
                     k,
-                    [r.uniform(-0.3, 0.3) * h[0], r.uniform(-0.3, 0.3) * h[1], z],
+                    [r.uniform_between(-0.3, 0.3) * h[0], r.uniform_between(-0.3, 0.3) * h[1], z],
                     [0.0, 0.0, yaw, 1.0],
                 );
                 z += h[2];
@@ -356,10 +365,10 @@ fn start<const NQ: usize, const NV: usize>(
             2 => {
                 // a row, the first falls
                 x += h[0] * 1.01;
-                place(&mut q, k, [x, 0.0, h[2]], [0.0, 0.0, 0.0, 1.0]);
-                x += h[0] + h[2] * r.uniform(0.1, 1.0);
+                set_body_pose(&mut q, k, [x, 0.0, h[2]], [0.0, 0.0, 0.0, 1.0]);
+                x += h[0] + h[2] * r.uniform_between(0.1, 1.0);
                 if k == 0 {
-                    let w = r.uniform(1.0, 5.0) * (0.05 / h[2]).sqrt();
+                    let w = r.uniform_between(1.0, 5.0) * (0.05 / h[2]).sqrt();
                     v[4] = w;
                     v[0] = w * h[2];
                 }
@@ -367,11 +376,16 @@ fn start<const NQ: usize, const NV: usize>(
             _ => {
                 // leaning, thrown
                 x += h[0] + h[2];
-                let lean = r.uniform(-0.3, 0.3);
-                place(&mut q, k, [x, r.uniform(-0.2, 0.2) * h[1], far * 1.01], [0.0, lean, 0.0, 1.0]);
+                let lean = r.uniform_between(-0.3, 0.3);
+                set_body_pose(
+                    &mut q,
+                    k,
+                    [x, r.uniform_between(-0.2, 0.2) * h[1], far * 1.01],
+                    [0.0, lean, 0.0, 1.0],
+                );
                 x += h[0] + h[2];
-                v[6 * k] = r.uniform(-2.0, 2.0);
-                v[6 * k + 4] = r.uniform(-10.0, 10.0);
+                v[6 * k] = r.uniform_between(-2.0, 2.0);
+                v[6 * k + 4] = r.uniform_between(-10.0, 10.0);
             }
         }
     }
@@ -379,9 +393,9 @@ fn start<const NQ: usize, const NV: usize>(
 }
 
 /// Starts of the fixed scenes, which `mujoco_scenes.py` has as well.
-fn row<const NQ: usize, const NV: usize>(n: usize) -> (SVector<f64, NQ>, SVector<f64, NV>) {
+fn fixed_scene_state<const NQ: usize, const NV: usize>(n: usize) -> (SVector<f64, NQ>, SVector<f64, NV>) {
     let (mut q, mut v) = (SVector::zeros(), SVector::zeros());
-    (0..n).for_each(|k| place(&mut q, k, [0.025 * k as f64, 0.0, 0.025], [0.0, 0.0, 0.0, 1.0]));
+    (0..n).for_each(|k| set_body_pose(&mut q, k, [0.025 * k as f64, 0.0, 0.025], [0.0, 0.0, 0.0, 1.0]));
     (v[4], v[0]) = (3.0, 3.0 * 0.025);
     (q, v)
 }
@@ -400,38 +414,38 @@ fn fixed_scenes() {
         let (mass, grade, taper, e) = (0.02, 0.0, 0.0, 0.0);
         let (a, b, c, mu) = (0.008, 0.025, 0.05, 0.3);
         let mut tally = Tally::default();
-        run(
+        run_scene(
             &build_fixed_scene("bricks", a, 1.0),
             &Boxes2 { mass, grade, a, b, c, taper, mu, e },
-            row(2),
+            fixed_scene_state(2),
             &mut tally,
         );
-        report("bricks", tally);
+        print_tally_row("bricks", tally);
         let mut tally = Tally::default();
-        run(
+        run_scene(
             &build_fixed_scene("dominoes", a, 1.0),
             &Dominoes { mass, grade, a, b, c, taper, mu, e },
-            row(5),
+            fixed_scene_state(5),
             &mut tally,
         );
-        report("dominoes", tally);
+        print_tally_row("dominoes", tally);
         let m = Boxes3 { mass: 1.0, grade, a: 0.3, b: 0.2, c: 0.1, taper, mu: 0.5, e };
         let (mut q, mut v) = (SVector::zeros(), SVector::zeros());
         for k in 0..3 {
             let s = k as f64;
-            place(&mut q, k, [0.05 * s, 0.03 * s, 0.3 + 0.35 * s], [0.3 + 0.1 * s, 0.2, 0.1, 1.0]);
+            set_body_pose(&mut q, k, [0.05 * s, 0.03 * s, 0.3 + 0.35 * s], [0.3 + 0.1 * s, 0.2, 0.1, 1.0]);
             v[6 * k + 3] = 1.0 + s;
         }
         let mut tally = Tally::default();
-        run(&build_fixed_scene("tumbling", 0.1, 1.5), &m, (q, v), &mut tally);
-        report("tumbling", tally);
+        run_scene(&build_fixed_scene("tumbling", 0.1, 1.5), &m, (q, v), &mut tally);
+        print_tally_row("tumbling", tally);
         let mut q = Tower {}.neutral();
         for k in 0..10 {
             (q[7 * k], q[7 * k + 2]) = (0.02 * ((k % 3) as f64 - 1.0), 0.05 + 0.1 * k as f64);
         }
         let mut tally = Tally::default();
-        run(&build_fixed_scene("tower", 0.1, 0.2), &Tower {}, (q, SVector::zeros()), &mut tally);
-        report("tower", tally);
+        run_scene(&build_fixed_scene("tower", 0.1, 0.2), &Tower {}, (q, SVector::zeros()), &mut tally);
+        print_tally_row("tower", tally);
     }
 }
 
@@ -445,30 +459,31 @@ fn random_scenes(count: u64, first: u64, which: &str) {
                     let mut random = Random(seed.wrapping_mul(7919).wrapping_add(13));
                     (0..5).for_each(|_| _ = random.next());
                     let $random = &mut random;
-                    let $mu = $random.choose(&[0.0, 0.1, 0.3, 0.5, 0.8, 1.0, 2.0]);
+                    let $mu = $random.choose_element(&[0.0, 0.1, 0.3, 0.5, 0.8, 1.0, 2.0]);
                     let $e = if $random.next() < 0.6 { 0.0 } else { $random.next() };
-                    let h = 10f64.powf($random.uniform(-4.0, -2.3));
+                    let h = 10f64.powf($random.uniform_between(-4.0, -2.3));
                     let step = TimeStepping::step(h);
-                    let method = $random.choose(&[step, step.midpoint(), step.leapfrog()]);
+                    let method = $random.choose_element(&[step, step.midpoint(), step.leapfrog()]);
                     // Masses up to 10⁴ times as large as others.
-                    let grade = $random.uniform(-1.0, 1.0) * 1e4_f64.ln() / ($n as f64 - 1.0);
-                    let $grade = $random.choose(&[0.0, grade]);
+                    let grade = $random.uniform_between(-1.0, 1.0) * 1e4_f64.ln() / ($n as f64 - 1.0);
+                    let $grade = $random.choose_element(&[0.0, grade]);
                     let (m, half, size): (_, Box<dyn Fn(usize) -> [f64; 3]>, f64) = $scene;
-                    let begin = start::<$nq, $nv>($random, $n, half);
+                    let begin = random_initial_state::<$nq, $nv>($random, $n, half);
                     let scene = Scene { name: stringify!($name), seed, size, method, h, duration: 150.0 * h };
-                    run(&scene, &m, begin, &mut tally);
+                    run_scene(&scene, &m, begin, &mut tally);
                 }
-                report(stringify!($name), tally);
+                print_tally_row(stringify!($name), tally);
             }
         };
     }
     macro_rules! blocks {
         ($name:ident, $random:ident, $mu:ident, $e:ident, $grade:ident) => {{
-            let mut length = || $random.uniform(0.02, 0.1);
+            let mut length = || $random.uniform_between(0.02, 0.1);
             let (a, b, c) = (length(), length(), length());
-            let taper = $random.uniform(-0.3, 0.3);
-            let taper = $random.choose(&[0.0, taper]);
-            let m = $name { mass: $random.uniform(0.05, 2.0), grade: $grade, a, b, c, taper, mu: $mu, e: $e };
+            let taper = $random.uniform_between(-0.3, 0.3);
+            let taper = $random.choose_element(&[0.0, taper]);
+            let mass = $random.uniform_between(0.05, 2.0);
+            let m = $name { mass, grade: $grade, a, b, c, taper, mu: $mu, e: $e };
             (m, Box::new(move |k: usize| [a, b, c].map(|x| x / 2.0 * (taper * k as f64).exp())), a.min(b).min(c))
         }};
     }
@@ -476,16 +491,16 @@ fn random_scenes(count: u64, first: u64, which: &str) {
     family!(Boxes3, 3, 21, 18, |random, mu, e, grade| blocks!(Boxes3, random, mu, e, grade));
     family!(Dominoes, 5, 35, 30, |random, mu, e, grade| blocks!(Dominoes, random, mu, e, grade));
     family!(Balls, 6, 42, 36, |random, mu, e, grade| {
-        let (r, taper) = (random.uniform(0.02, 0.1), random.uniform(-0.2, 0.2));
+        let (r, taper) = (random.uniform_between(0.02, 0.1), random.uniform_between(-0.2, 0.2));
         let m = Balls { mass: 0.3, grade, r, taper, mu, e };
         (m, Box::new(move |k: usize| [r * (taper * k as f64).exp(); 3]), r)
     });
     family!(Capsules4, 4, 28, 24, |random, mu, e, grade| {
-        let (r, l) = (random.uniform(0.02, 0.05), random.uniform(0.05, 0.2));
+        let (r, l) = (random.uniform_between(0.02, 0.05), random.uniform_between(0.05, 0.2));
         (Capsules4 { mass: 0.3, grade, r, l, mu, e }, Box::new(move |_: usize| [r + l / 2.0, r, r]), r)
     });
     family!(Mixed, 5, 35, 30, |random, mu, e, grade| {
-        let s = random.uniform(0.02, 0.1);
+        let s = random.uniform_between(0.02, 0.1);
         let half_lengths_of_body = move |k: usize| match k {
             0 => [s, 0.75 * s, 0.5 * s],
             1 => [1.5 * s, s / 2.0, s / 2.0],
@@ -498,7 +513,7 @@ fn random_scenes(count: u64, first: u64, which: &str) {
 }
 
 /// Runs the fixed or random scenes that the arguments of the command ask for.
-fn all() {
+fn run_requested_scenes() {
     let mut arguments = std::env::args().skip(1);
     let count = arguments.next().and_then(|x| x.parse().ok()).unwrap_or(20);
     let first = arguments.next().and_then(|x| x.parse().ok()).unwrap_or(0);
@@ -511,6 +526,7 @@ fn all() {
 
 fn main() {
     // The matrices of a step are on the stack.
-    let thread = std::thread::Builder::new().stack_size(256 << 20).spawn(all).expect("a thread");
+    let thread =
+        std::thread::Builder::new().stack_size(256 << 20).spawn(run_requested_scenes).expect("a thread");
     thread.join().expect("the scenes are run");
 }

@@ -4,7 +4,7 @@
 //! `cargo run --release -p linkwork-benches --bin assembly [native]`: for cargo's default target, or for this
 //! computer's processor. It compiles the package `benches/assembly`.
 
-use linkwork_benches::assembly::{Routine, name_in_source, routines};
+use linkwork_benches::assembly::{Routine, name_in_source, parse_routines};
 use object::{Object, ObjectSymbol};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -44,8 +44,8 @@ fn main() -> ExitCode {
     }
     let words: Vec<String> = env::args().skip(1).collect();
     let done = match words.iter().map(String::as_str).collect::<Vec<&str>>().as_slice() {
-        [] => show(""),
-        ["native"] => show("-C target-cpu=native"),
+        [] => print_tables(""),
+        ["native"] => print_tables("-C target-cpu=native"),
         _ => Err("expected nothing or `native`".to_string()),
     };
     match done {
@@ -58,11 +58,11 @@ fn main() -> ExitCode {
 }
 
 /// Prints the tables. Returns an error for an undocumented call.
-fn show(flags: &str) -> Result<(), String> {
+fn print_tables(flags: &str) -> Result<(), String> {
     let (text, object) = build(flags)?;
-    let (routines, bytes) = (routines(&text), sizes(&object)?);
+    let (routines, bytes) = (parse_routines(&text), function_sizes(&object)?);
     let (generated, others): (Vec<&String>, Vec<&String>) =
-        routines.keys().partition(|symbol| mechanism(symbol).is_some());
+        routines.keys().partition(|symbol| mechanism_and_function_names(symbol).is_some());
     if generated.is_empty() {
         return Err("there are no functions in the assembly".to_string());
     }
@@ -70,17 +70,20 @@ fn show(flags: &str) -> Result<(), String> {
     println!("| function | bytes | instructions | stack, bytes | calls |");
     println!("| --- | ---: | ---: | ---: | --- |");
     let mut generated: Vec<(String, &String)> =
-        generated.into_iter().map(|symbol| (name(symbol), symbol)).collect();
+        generated.into_iter().map(|symbol| (name_of_symbol(symbol), symbol)).collect();
     generated.sort();
     for (title, symbol) in generated {
-        let parts = parts(symbol, &routines);
+        let parts = reachable_functions(symbol, &routines);
         // A function that only calls the function of the same name is skipped.
-        let skipped = usize::from(parts.get(1).is_some_and(|next| last(next) == last(symbol)));
+        let skipped = usize::from(
+            parts.get(1).is_some_and(|next| last_path_segment(next) == last_path_segment(symbol)),
+        );
         for (k, part) in parts.iter().enumerate().skip(skipped) {
             if k == skipped {
-                println!("| {title} {}", row(part, &routines, &bytes));
-            } else if last(part) == "with_avx2" && routines[parts[skipped]].calls.contains(*part) {
-                println!("| – with AVX2 and FMA {}", row(part, &routines, &bytes));
+                println!("| {title} {}", format_table_row(part, &routines, &bytes));
+            } else if last_path_segment(part) == "with_avx2" && routines[parts[skipped]].calls.contains(*part)
+            {
+                println!("| – with AVX2 and FMA {}", format_table_row(part, &routines, &bytes));
             }
         }
         used.extend(parts);
@@ -88,16 +91,18 @@ fn show(flags: &str) -> Result<(), String> {
     println!("\n| called by these | how many | largest, bytes | instructions | stack, bytes | calls |");
     println!("| --- | ---: | ---: | ---: | ---: | --- |");
     let mut groups: BTreeMap<String, Vec<&str>> = BTreeMap::new();
-    for symbol in others.iter().filter(|symbol| used.contains(symbol.as_str()) && last(symbol) != "with_avx2")
+    for symbol in others
+        .iter()
+        .filter(|symbol| used.contains(symbol.as_str()) && last_path_segment(symbol) != "with_avx2")
     {
-        groups.entry(last(symbol)).or_default().push(symbol);
+        groups.entry(last_path_segment(symbol)).or_default().push(symbol);
     }
     for (title, symbols) in groups {
         if let Some(largest) = symbols.iter().max_by_key(|symbol| bytes.get(**symbol)) {
-            println!("| {title} | {} {}", symbols.len(), row(largest, &routines, &bytes));
+            println!("| {title} | {} {}", symbols.len(), format_table_row(largest, &routines, &bytes));
         }
     }
-    let wrong = undocumented(&used, &routines);
+    let wrong = undocumented_calls(&used, &routines);
     if wrong.is_empty() {
         Ok(())
     } else {
@@ -106,21 +111,26 @@ fn show(flags: &str) -> Result<(), String> {
 }
 
 /// Returns the names of the mechanism and of the function for a symbol of the package, otherwise `None`.
-fn mechanism(symbol: &str) -> Option<(String, String)> {
+fn mechanism_and_function_names(symbol: &str) -> Option<(String, String)> {
     let name = name_in_source(symbol);
     let (mechanism, function) = name.strip_prefix("linkwork_assembly::")?.split_once("::")?;
     let is_module = mechanism.starts_with(|c: char| c.is_ascii_lowercase());
     is_module.then(|| (mechanism.to_string(), function.to_string()))
 }
 
-fn name(symbol: &str) -> String {
-    mechanism(symbol).map_or_else(|| last(symbol), |(mechanism, function)| format!("{mechanism}, {function}"))
+fn name_of_symbol(symbol: &str) -> String {
+    mechanism_and_function_names(symbol)
+        .map_or_else(|| last_path_segment(symbol), |(mechanism, function)| format!("{mechanism}, {function}"))
 }
 
 /// Returns the values of a function as the remaining cells of a table row.
-fn row(symbol: &str, routines: &BTreeMap<String, Routine>, bytes: &BTreeMap<String, u64>) -> String {
+fn format_table_row(
+    symbol: &str,
+    routines: &BTreeMap<String, Routine>,
+    bytes: &BTreeMap<String, u64>,
+) -> String {
     let routine = &routines[symbol];
-    let calls = BTreeSet::from_iter(routine.calls.iter().map(|call| last(call)));
+    let calls = BTreeSet::from_iter(routine.calls.iter().map(|call| last_path_segment(call)));
     let calls = Vec::from_iter(calls).join(", ");
     let bytes = bytes.get(symbol).map_or("–".to_string(), u64::to_string);
     format!("| {bytes} | {} | {} | {calls} |", routine.instructions, routine.stack)
@@ -152,7 +162,7 @@ fn build(flags: &str) -> Result<(String, Vec<u8>), String> {
 }
 
 /// Returns the size of every function in an object file, bytes.
-fn sizes(object: &[u8]) -> Result<BTreeMap<String, u64>, String> {
+fn function_sizes(object: &[u8]) -> Result<BTreeMap<String, u64>, String> {
     let file = object::File::parse(object).map_err(|error| error.to_string())?;
     let symbols = file.symbols();
     Ok(symbols.filter_map(|symbol| Some((symbol.name().ok()?.to_string(), symbol.size()))).collect())
@@ -160,7 +170,7 @@ fn sizes(object: &[u8]) -> Result<BTreeMap<String, u64>, String> {
 
 /// Returns a function and all functions of the file that it calls directly or indirectly; the function itself
 /// comes first.
-fn parts<'a>(symbol: &'a str, routines: &'a BTreeMap<String, Routine>) -> Vec<&'a str> {
+fn reachable_functions<'a>(symbol: &'a str, routines: &'a BTreeMap<String, Routine>) -> Vec<&'a str> {
     let mut parts = vec![symbol];
     let mut next = 0;
     while let Some(routine) = parts.get(next).and_then(|part| routines.get(*part)) {
@@ -175,7 +185,7 @@ fn parts<'a>(symbol: &'a str, routines: &'a BTreeMap<String, Routine>) -> Vec<&'
 }
 
 /// Returns a message for each call of a function that is neither in the file nor on the documented list.
-fn undocumented(symbols: &BTreeSet<&str>, routines: &BTreeMap<String, Routine>) -> Vec<String> {
+fn undocumented_calls(symbols: &BTreeSet<&str>, routines: &BTreeMap<String, Routine>) -> Vec<String> {
     let mut wrong = Vec::new();
     for symbol in symbols {
         let routine = &routines[*symbol];
@@ -194,7 +204,7 @@ fn undocumented(symbols: &BTreeSet<&str>, routines: &BTreeMap<String, Routine>) 
 }
 
 /// Returns the last segment of a name's path.
-fn last(symbol: &str) -> String {
+fn last_path_segment(symbol: &str) -> String {
     let name = name_in_source(symbol);
     name.rsplit("::").next().unwrap_or(&name).to_string()
 }

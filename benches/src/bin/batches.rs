@@ -38,19 +38,21 @@ struct Humanoid;
 fn main() {
     println!("| robot | function | one state, ns | four lanes, ns per state | eight lanes, ns per state |");
     println!("| --- | --- | ---: | ---: | ---: |");
-    robot("UR5", &Ur5);
-    robot("Panda", &Panda);
-    robot("Solo 12", &Solo12);
-    robot("humanoid", &Humanoid);
+    measure_robot("UR5", &Ur5);
+    measure_robot("Panda", &Panda);
+    measure_robot("Solo 12", &Solo12);
+    measure_robot("humanoid", &Humanoid);
     println!();
     println!("| robot | function of {ARRAYS} states in arrays | eight lanes, ns per state |");
     println!("| --- | --- | ---: |");
-    arrays("UR5", &Ur5);
-    arrays("Panda", &Panda);
+    measure_state_arrays("UR5", &Ur5);
+    measure_state_arrays("Panda", &Panda);
 }
 
 /// Packs the states into lanes, `L` states each.
-fn wide<const L: usize, const N: usize>(states: &[SVector<f64, N>]) -> Vec<SVector<Lanes<f64, L>, N>> {
+fn pack_into_lanes<const L: usize, const N: usize>(
+    states: &[SVector<f64, N>],
+) -> Vec<SVector<Lanes<f64, L>, N>> {
     let pack_group_into_lanes =
         |group: &[SVector<f64, N>]| SVector::from_fn(|i, _| Lanes::from_fn(|k| group[k][i]));
     states.chunks_exact(L).map(pack_group_into_lanes).collect()
@@ -60,21 +62,21 @@ fn wide<const L: usize, const N: usize>(states: &[SVector<f64, N>]) -> Vec<SVect
 type States<const N: usize> =
     (Vec<SVector<f64, N>>, Vec<SVector<Lanes<f64, 4>, N>>, Vec<SVector<Lanes<f64, 8>, N>>);
 
-fn robot<M, const NQ: usize, const NV: usize, const NU: usize>(name: &str, m: &M)
+fn measure_robot<M, const NQ: usize, const NV: usize, const NU: usize>(name: &str, m: &M)
 where
     M: Batch<NQ, NV, NU, Scalar = f64>,
 {
     let mut random = Random::new(1);
-    let mut vector = |bound: f64| SVector::<f64, NV>::from_fn(|_, _| random.uniform(bound));
+    let mut vector = |bound: f64| SVector::<f64, NV>::from_fn(|_, _| random.uniform_within(bound));
     let q: Vec<_> = (0..STATES).map(|_| m.integrate(&m.neutral(), &vector(2.0))).collect();
     let v: Vec<_> = (0..STATES).map(|_| vector(2.0)).collect();
-    let q: States<NQ> = (q.clone(), wide(&q), wide(&q));
-    let v: States<NV> = (v.clone(), wide(&v), wide(&v));
+    let q: States<NQ> = (q.clone(), pack_into_lanes(&q), pack_into_lanes(&q));
+    let v: States<NV> = (v.clone(), pack_into_lanes(&v), pack_into_lanes(&v));
     let (m4, m8) = (m.lanes::<4>(), m.lanes::<8>());
     let (t4, t8) = (Lanes([0.0; 4]), Lanes([0.0; 8]));
     macro_rules! row {
         ($text:literal, $function:ident($($x:ident),*)) => {
-            let times = measure([
+            let times = nanoseconds_per_state([
                 &mut |k| { black_box(&Mechanism::$function(m, 0.0, $(black_box(&$x.0[k])),*)); },
                 &mut |k| { black_box(&m4.$function(t4, $(black_box(&$x.1[k])),*)); },
                 &mut |k| { black_box(&m8.$function(t8, $(black_box(&$x.2[k])),*)); },
@@ -94,7 +96,7 @@ where
 }
 
 /// Returns the nanoseconds per state for calls with one, four and eight states.
-fn measure(calls: [&mut dyn FnMut(usize); 3]) -> [f64; 3] {
+fn nanoseconds_per_state(calls: [&mut dyn FnMut(usize); 3]) -> [f64; 3] {
     let mut calls = calls.into_iter().zip([1, 4, 8]).collect::<Vec<_>>();
     let mut best = [Duration::MAX; 3];
     let start = Instant::now();
@@ -109,12 +111,12 @@ fn measure(calls: [&mut dyn FnMut(usize); 3]) -> [f64; 3] {
 }
 
 /// Measures arrays of states of a robot whose `q` and `v` have equal length.
-fn arrays<M, const N: usize, const NU: usize>(name: &str, m: &M)
+fn measure_state_arrays<M, const N: usize, const NU: usize>(name: &str, m: &M)
 where
     M: Batch<N, N, NU, Scalar = f64>,
 {
     let mut random = Random::new(2);
-    let mut numbers = || (0..N * ARRAYS).map(|_| random.uniform(2.0)).collect::<Vec<f64>>();
+    let mut numbers = || (0..N * ARRAYS).map(|_| random.uniform_within(2.0)).collect::<Vec<f64>>();
     let (q, v, a) = (numbers(), numbers(), numbers());
     let (mut matrices, mut vectors) = (vec![0.0; N * N * ARRAYS], vec![0.0; N * ARRAYS]);
     let m = m.lanes::<8>();

@@ -45,31 +45,36 @@ const POSTURE: [f64; 3] = [0.0, 0.8, -1.6];
 
 /// Returns the torques of springs and dampers at the joints, with the given stiffness, N·m/rad. With zero
 /// stiffness the robot collapses.
-fn drives(q: &SVector<f64, 19>, v: &SVector<f64, 18>, stiffness: f64) -> SVector<f64, 12> {
+fn joint_spring_torques(q: &SVector<f64, 19>, v: &SVector<f64, 18>, stiffness: f64) -> SVector<f64, 12> {
     SVector::from_fn(|k, _| stiffness * (POSTURE[k % 3] - q[7 + k] - 0.025 * v[6 + k]))
 }
 
 /// Returns the state of the quadruped after `duration` seconds.
-fn end(
+fn state_after_duration(
     m: &Solo,
     start: (SVector<f64, 19>, SVector<f64, 18>),
     stiffness: f64,
     method: Stepping,
     duration: f64,
 ) -> End {
-    let run = simulate(m).from(start.0, start.1).inputs(|_, q, v| drives(q, v, stiffness));
+    let run = simulate(m).from(start.0, start.1).inputs(|_, q, v| joint_spring_torques(q, v, stiffness));
     run.method(method).duration(duration).finish().expect("the robot moves")
 }
 
 /// Returns the processor time of a step of one millisecond of the quadruped, µs.
-fn time(m: &Solo, start: (SVector<f64, 19>, SVector<f64, 18>), stiffness: f64, method: Stepping) -> f64 {
-    least(500.0, || {
-        end(m, start, stiffness, method, 0.5);
+fn measure_quadruped_step(
+    m: &Solo,
+    start: (SVector<f64, 19>, SVector<f64, 18>),
+    stiffness: f64,
+    method: Stepping,
+) -> f64 {
+    minimum_step_time(500.0, || {
+        state_after_duration(m, start, stiffness, method, 0.5);
     })
 }
 
 /// Returns the processor time per step of a run of `steps` steps, µs: the minimum over several runs.
-fn least(steps: f64, run: impl Fn()) -> f64 {
+fn minimum_step_time(steps: f64, run: impl Fn()) -> f64 {
     let cpu_time_in_microseconds = || {
         let time = clock_gettime(ClockId::ProcessCPUTime);
         time.tv_sec as f64 * 1e6 + time.tv_nsec as f64 * 1e-3
@@ -84,7 +89,7 @@ fn least(steps: f64, run: impl Fn()) -> f64 {
 
 /// Returns the times of the humanoid while it stands, collapses and is in the air, µs, and its creep, m/s.
 /// Each link has at least 1 kg·m² about its own joint, so that the drives can be stiff.
-fn humanoid(method: Stepping) -> [f64; 4] {
+fn measure_humanoid(method: Stepping) -> [f64; 4] {
     let m = Humanoid {};
     let high = m.neutral();
     let mut low = high;
@@ -105,7 +110,7 @@ fn humanoid(method: Stepping) -> [f64; 4] {
     let mut up = low;
     up[2] += 100.0;
     let measure_simulation_time = |start, stiffness| {
-        least(500.0, || {
+        minimum_step_time(500.0, || {
             simulate_final_state(start, stiffness, 0.5);
         })
     };
@@ -118,7 +123,7 @@ fn humanoid(method: Stepping) -> [f64; 4] {
 }
 
 /// Returns the table values for one kind of step as JSON.
-fn measured(stepping: impl Fn(f64) -> Stepping) -> String {
+fn measured_values_as_json(stepping: impl Fn(f64) -> Stepping) -> String {
     let standing_state_at_height = |m: &Solo, height: f64| {
         let mut q = m.neutral();
         q[2] = height;
@@ -129,29 +134,31 @@ fn measured(stepping: impl Fn(f64) -> Stepping) -> String {
     let (level, inclined) = (Solo { slope: 0.0 }, Solo { slope: 10.0_f64.to_radians() });
     let drop = standing_state_at_height(&level, 0.26);
     let rest_state = |m: &Solo| {
-        let end = end(m, drop, 6.0, method, 8.0);
+        let end = state_after_duration(m, drop, 6.0, method, 8.0);
         (end.q, end.v)
     };
     // Velocity over the following second, m/s.
     let creep_distance = |m: &Solo| {
         let from = rest_state(m);
-        (end(m, from, 6.0, method, 1.0).q.fixed_rows::<3>(0) - from.0.fixed_rows::<3>(0)).norm()
+        (state_after_duration(m, from, 6.0, method, 1.0).q.fixed_rows::<3>(0) - from.0.fixed_rows::<3>(0))
+            .norm()
     };
     let stands = rest_state(&level);
     let depth = -level.contact_gaps(&stands.0).min();
     let error_of_step_size = |h: f64| {
-        let [coarse, fine] = [h, h / 10.0].map(|h| end(&level, drop, 6.0, stepping(h), 0.2).q);
+        let [coarse, fine] =
+            [h, h / 10.0].map(|h| state_after_duration(&level, drop, 6.0, stepping(h), 0.2).q);
         (coarse - fine).fixed_rows::<3>(0).norm()
     };
-    let [humanoid_standing, humanoid_collapsing, humanoid_free, humanoid_creep] = humanoid(method);
+    let [humanoid_standing, humanoid_collapsing, humanoid_free, humanoid_creep] = measure_humanoid(method);
     let all = [
         ("humanoid_standing", humanoid_standing),
         ("humanoid_collapsing", humanoid_collapsing),
         ("humanoid_free", humanoid_free),
         ("humanoid_creep", humanoid_creep),
-        ("standing", time(&level, stands, 6.0, method)),
-        ("collapsing", time(&level, drop, 0.0, method)),
-        ("free", time(&level, standing_state_at_height(&level, 100.0), 6.0, method)),
+        ("standing", measure_quadruped_step(&level, stands, 6.0, method)),
+        ("collapsing", measure_quadruped_step(&level, drop, 0.0, method)),
+        ("free", measure_quadruped_step(&level, standing_state_at_height(&level, 100.0), 6.0, method)),
         ("depth", depth),
         ("creep", creep_distance(&level)),
         ("inclined", creep_distance(&inclined)),
@@ -163,6 +170,6 @@ fn measured(stepping: impl Fn(f64) -> Stepping) -> String {
 }
 
 fn main() {
-    let midpoint = measured(|h| TimeStepping::step(h).midpoint());
-    println!("{{\"midpoint\": {midpoint}, \"classical\": {}}}", measured(TimeStepping::step));
+    let midpoint = measured_values_as_json(|h| TimeStepping::step(h).midpoint());
+    println!("{{\"midpoint\": {midpoint}, \"classical\": {}}}", measured_values_as_json(TimeStepping::step));
 }

@@ -5,8 +5,8 @@
 //! last columns measure rustc on the expanded code in cargo's dev profile, up to the metadata of a library:
 //! processor time, and peak memory. `expansion FIRST [LAST]` prints the lines of some mechanisms, by number.
 
-use linkwork_benches::chains::{Source, chain};
-use linkwork_benches::checked::{Library, check};
+use linkwork_benches::chains::{Source, chain_source};
+use linkwork_benches::checked::{Library, check_with_rustc};
 use linkwork_benches::elements::{placed_chain, sprung_arm};
 use linkwork_benches::operations::Operations;
 use linkwork_compiler::expand;
@@ -49,7 +49,7 @@ const PLACED: [usize; 5] = [4, 8, 16, 32, 64];
 const DIFFERENTIATED: [usize; 3] = [16, 32, 64];
 
 /// Returns name, target time and text of every mechanism.
-fn mechanisms() -> Vec<(String, &'static str, Source)> {
+fn mechanism_sources() -> Vec<(String, &'static str, Source)> {
     let named_mechanism_source = |name: &str, goal, item: &str| {
         let arguments = "gravity = -g * y".to_string();
         let item = item.to_string();
@@ -65,12 +65,14 @@ fn mechanisms() -> Vec<(String, &'static str, Source)> {
         list.push((name.to_string(), goal, Source { arguments, item }));
     }
     for (symbolic, what) in [(false, "numbers"), (true, "parameters")] {
-        list.extend(LENGTHS.map(|n| (format!("chain of {n}, {what}"), "", chain("Chain", n, symbolic))));
+        list.extend(
+            LENGTHS.map(|n| (format!("chain of {n}, {what}"), "", chain_source("Chain", n, symbolic))),
+        );
     }
     list.extend(SPRINGS.map(|n| (format!("arm with {n} springs"), "", sprung_arm(n))));
     list.extend(PLACED.map(|n| (format!("{n} particles, placed"), "", placed_chain(n))));
     for n in DIFFERENTIATED {
-        let mut source = chain("Chain", n, false);
+        let mut source = chain_source("Chain", n, false);
         source.arguments += ", derivatives";
         list.push((format!("chain of {n}, derivatives"), "", source));
     }
@@ -86,11 +88,11 @@ fn main() -> ExitCode {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let done = match words.as_slice() {
         [LINE, k, rlib] => k.parse().map_err(Into::into).and_then(|k| print_line(k, rlib)),
-        [] => table(0, usize::MAX),
-        [first] => first.parse().map_err(Into::into).and_then(|k| table(k, k)),
+        [] => print_mechanism_table(0, usize::MAX),
+        [first] => first.parse().map_err(Into::into).and_then(|k| print_mechanism_table(k, k)),
         [first, last, ..] => {
             let range = first.parse().and_then(|first| Ok((first, last.parse()?)));
-            range.map_err(Into::into).and_then(|(first, last)| table(first, last))
+            range.map_err(Into::into).and_then(|(first, last)| print_mechanism_table(first, last))
         }
     };
     if let Err(error) = done {
@@ -102,15 +104,15 @@ fn main() -> ExitCode {
 
 /// Prints the table line of mechanism `k`.
 fn print_line(k: usize, rlib: &str) -> Result<(), Box<dyn Error>> {
-    let mechanisms = mechanisms();
+    let mechanisms = mechanism_sources();
     let (name, goal, source) = mechanisms.get(k).ok_or("there is no such mechanism")?;
-    println!("{}", line(name, goal, source, &Library { rlib: rlib.into() })?);
+    println!("{}", format_mechanism_line(name, goal, source, &Library { rlib: rlib.into() })?);
     Ok(())
 }
 
 /// Prints the lines of the mechanisms from `first` to `last`.
-fn table(first: usize, last: usize) -> Result<(), Box<dyn Error>> {
-    let library = Library::built()?;
+fn print_mechanism_table(first: usize, last: usize) -> Result<(), Box<dyn Error>> {
+    let library = Library::build_runtime()?;
     let profile = if cfg!(debug_assertions) {
         "dev: as cargo builds procedural macros"
     } else {
@@ -123,7 +125,7 @@ fn table(first: usize, last: usize) -> Result<(), Box<dyn Error>> {
     );
     println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | --- |");
     let program = std::env::current_exe()?;
-    for k in first..=last.min(mechanisms().len() - 1) {
+    for k in first..=last.min(mechanism_sources().len() - 1) {
         let status = Command::new(&program).args([LINE, &k.to_string()]).arg(&library.rlib).status()?;
         if !status.success() {
             return Err(format!("mechanism {k} has no line").into());
@@ -133,27 +135,32 @@ fn table(first: usize, last: usize) -> Result<(), Box<dyn Error>> {
 }
 
 /// Returns the table line of a mechanism.
-fn line(name: &str, goal: &str, source: &Source, library: &Library) -> Result<String, Box<dyn Error>> {
+fn format_mechanism_line(
+    name: &str,
+    goal: &str,
+    source: &Source,
+    library: &Library,
+) -> Result<String, Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let arguments: TokenStream = source.arguments.parse()?;
     let item: TokenStream = source.item.parse()?;
     let emitted = expand(arguments.clone(), item.clone(), folder);
     let memory = peak_memory().map_or("–".to_string(), |kb| format!("{:.0}", kb / 1e3));
     let output = format!("{}\n{}", emitted.tokens, emitted.text);
-    let rustc = check(library, &output)?;
+    let rustc = check_with_rustc(library, &output)?;
 
     let (mut whole, mut derivation) = (Duration::MAX, Duration::MAX);
     let start = Instant::now();
     for _ in 0..REPEATS {
-        whole = whole.min(timed(|| expand(arguments.clone(), item.clone(), folder)));
-        derivation = derivation.min(timed(|| Operations::compile(&source.arguments, &source.item)));
+        whole = whole.min(elapsed_time_of(|| expand(arguments.clone(), item.clone(), folder)));
+        derivation = derivation.min(elapsed_time_of(|| Operations::compile(&source.arguments, &source.item)));
         if start.elapsed() > PATIENCE {
             break;
         }
     }
     let duration_in_milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
     let derived = Operations::compile(&source.arguments, &source.item);
-    let operations_of_function = |name: &str| derived.function(name).operations;
+    let operations_of_function = |name: &str| derived.size_of_function(name).operations;
     Ok(format!(
         "| {name} | {} | {:.1} | {:.1} | {memory} | {:.0} | {} | {} | {} | {} | {:.1} | {:.0} | {goal} |",
         derived.velocities,
@@ -169,7 +176,7 @@ fn line(name: &str, goal: &str, source: &Source, library: &Library) -> Result<St
     ))
 }
 
-fn timed<T>(f: impl FnOnce() -> T) -> Duration {
+fn elapsed_time_of<T>(f: impl FnOnce() -> T) -> Duration {
     let start = Instant::now();
     std::hint::black_box(f());
     start.elapsed()

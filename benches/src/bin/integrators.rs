@@ -3,7 +3,7 @@
 //! `peers/run integrators` compares it.
 
 use linkwork::integrate::{DormandPrince, DormandPrince8, Error, Rodas};
-use linkwork_benches::precision::{Found, PROBLEMS, solve};
+use linkwork_benches::precision::{Found, PROBLEMS, solve_problem};
 
 fn print(problem: usize, method: &str, tolerance: f64, found: Result<Found, Error>) {
     match found {
@@ -25,10 +25,10 @@ fn main() {
             let rodas = Rodas::new().tolerance(tolerance, tolerance);
             let explicit = DormandPrince::new().tolerance(tolerance, tolerance);
             let high = DormandPrince8::new().tolerance(tolerance, tolerance);
-            print(problem, "DormandPrince", tolerance, solve(problem, explicit));
-            print(problem, "DormandPrince8", tolerance, solve(problem, high));
+            print(problem, "DormandPrince", tolerance, solve_problem(problem, explicit));
+            print(problem, "DormandPrince8", tolerance, solve_problem(problem, high));
             if power <= 9 {
-                print(problem, "Rodas", tolerance, solve(problem, rodas));
+                print(problem, "Rodas", tolerance, solve_problem(problem, rodas));
             }
         }
     }

@@ -9,7 +9,7 @@
 
 use linkwork::Derivatives;
 use linkwork::nalgebra::{SMatrix, SVector};
-use linkwork_benches::peers::clock::seconds;
+use linkwork_benches::peers::clock::thread_seconds;
 use linkwork_benches::random::Random;
 use linkwork_benches::robots::{G1, Gen3, Kinova, Panda};
 use linkwork_jit::{Error, Function, Loader, Robot};
@@ -27,22 +27,22 @@ fn main() -> Result<(), Error> {
     println!("| robot | function | loaded, ns | compiled in, ns | loaded : compiled in |");
     println!("| --- | --- | ---: | ---: | ---: |");
     const LOCKED: &str = r#"lock = ["panda_finger_joint1", "panda_finger_joint2"]"#;
-    compare("ur5", "ur5", "", &Ur5)?;
-    compare("panda_arm", "panda", LOCKED, &PandaArm)?;
-    compare("panda", "panda", "mimic = independent", &Panda)?;
-    compare("kinova", "kinova", "", &Kinova)?;
-    compare("gen3", "gen3", "", &Gen3)?;
-    compare("solo12", "solo12", "base = free", &Solo12)?;
-    compare("anymal_b", "anymal_b", "base = free, inertia = trust", &AnymalB)?;
-    compare("simple_humanoid", "simple_humanoid", "base = free", &SimpleHumanoid)?;
-    compare("g1", "g1", "base = free", &G1)
+    print_robot_rows("ur5", "ur5", "", &Ur5)?;
+    print_robot_rows("panda_arm", "panda", LOCKED, &PandaArm)?;
+    print_robot_rows("panda", "panda", "mimic = independent", &Panda)?;
+    print_robot_rows("kinova", "kinova", "", &Kinova)?;
+    print_robot_rows("gen3", "gen3", "", &Gen3)?;
+    print_robot_rows("solo12", "solo12", "base = free", &Solo12)?;
+    print_robot_rows("anymal_b", "anymal_b", "base = free, inertia = trust", &AnymalB)?;
+    print_robot_rows("simple_humanoid", "simple_humanoid", "base = free", &SimpleHumanoid)?;
+    print_robot_rows("g1", "g1", "base = free", &G1)
 }
 
 /// A state: configuration, velocity, and acceleration or force.
 type Sample<const NQ: usize, const NV: usize> = (SVector<f64, NQ>, SVector<f64, NV>, SVector<f64, NV>);
 
 /// Prints the rows of a robot: each function loaded at run time and compiled in.
-fn compare<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn print_robot_rows<M, const NQ: usize, const NV: usize, const NU: usize>(
     name: &str,
     file: &str,
     options: &str,
@@ -57,28 +57,32 @@ where
     let path = format!("{}/../models/urdf/{file}.urdf", env!("CARGO_MANIFEST_DIR"));
     let robot = Loader::file(path).options(options).options("derivatives").load()?;
     let mut random = Random::new(1);
-    let mut vector = |bound: f64| SVector::<f64, NV>::from_fn(|_, _| random.uniform(bound));
+    let mut vector = |bound: f64| SVector::<f64, NV>::from_fn(|_, _| random.uniform_within(bound));
     let mut state = || (own.integrate(&own.neutral(), &vector(1.0)), vector(2.0), vector(2.0));
     let states: Vec<Sample<NQ, NV>> = (0..STATES).map(|_| state()).collect();
     let comparison = Comparison { name, robot: &robot, states: &states };
-    comparison.measure(
+    comparison.print_function_row(
         "inverse_dynamics",
         |(q, v, a)| own.inverse_dynamics(0.0, q, v, a),
         |x| vec![x.as_slice()],
     )?;
-    comparison.measure("mass_matrix", |(q, ..)| own.mass_matrix(0.0, q), |x| vec![x.as_slice()])?;
-    comparison.measure(
+    comparison.print_function_row(
+        "mass_matrix",
+        |(q, ..)| own.mass_matrix(0.0, q),
+        |x| vec![x.as_slice()],
+    )?;
+    comparison.print_function_row(
         "forward_dynamics",
         |(q, v, tau)| own.forward_dynamics(0.0, q, v, tau),
         |x| vec![x.as_slice()],
     )?;
-    comparison.measure(
+    comparison.print_function_row(
         "inverse_dynamics_derivatives",
         |(q, v, a)| own.inverse_dynamics_derivatives(0.0, q, v, a),
         |(by_q, by_v)| vec![by_q.as_slice(), by_v.as_slice()],
     )?;
     type Three<const N: usize> = (SMatrix<f64, N, N>, SMatrix<f64, N, N>, SMatrix<f64, N, N>);
-    comparison.measure(
+    comparison.print_function_row(
         "forward_dynamics_derivatives",
         |(q, v, tau)| own.forward_dynamics_derivatives(0.0, q, v, tau),
         |(by_q, by_v, by_tau): &Three<NV>| vec![by_q.as_slice(), by_v.as_slice(), by_tau.as_slice()],
@@ -94,7 +98,7 @@ struct Comparison<'a, const NQ: usize, const NV: usize> {
 
 impl<const NQ: usize, const NV: usize> Comparison<'_, NQ, NV> {
     /// Measures one function loaded and compiled in, and prints its row.
-    fn measure<T>(
+    fn print_function_row<T>(
         &self,
         function: &str,
         own: impl Fn(&Sample<NQ, NV>) -> T,
@@ -103,22 +107,22 @@ impl<const NQ: usize, const NV: usize> Comparison<'_, NQ, NV> {
         let f = self.robot.function(function)?;
         let (count, mut out) = (f.arguments().len(), vec![0.0; f.length()]);
         for state in self.states {
-            self.call((&f, count), state, &mut out)?;
-            self.agree(function, &out, &lists(&own(state)).concat());
+            self.call_loaded_function((&f, count), state, &mut out)?;
+            self.assert_results_agree(function, &out, &lists(&own(state)).concat());
         }
         let (mut loaded, mut compiled) = (f64::INFINITY, f64::INFINITY);
-        let start = seconds();
-        while seconds() - start < BUDGET {
-            let begin = seconds();
+        let start = thread_seconds();
+        while thread_seconds() - start < BUDGET {
+            let begin = thread_seconds();
             for state in self.states {
-                self.call((&f, count), black_box(state), &mut out)?;
+                self.call_loaded_function((&f, count), black_box(state), &mut out)?;
             }
-            let between = seconds();
+            let between = thread_seconds();
             for state in self.states {
                 black_box(own(black_box(state)));
             }
             loaded = loaded.min(between - begin);
-            compiled = compiled.min(seconds() - between);
+            compiled = compiled.min(thread_seconds() - between);
         }
         let [loaded, compiled] = [loaded, compiled].map(|time| time * 1e9 / STATES as f64);
         let ratio = loaded / compiled;
@@ -126,7 +130,7 @@ impl<const NQ: usize, const NV: usize> Comparison<'_, NQ, NV> {
         Ok(())
     }
 
-    fn call(
+    fn call_loaded_function(
         &self,
         (f, count): (&Function, usize),
         (q, v, a): &Sample<NQ, NV>,
@@ -137,7 +141,7 @@ impl<const NQ: usize, const NV: usize> Comparison<'_, NQ, NV> {
     }
 
     /// Panics if the results of the loaded and the compiled function differ.
-    fn agree(&self, function: &str, loaded: &[f64], compiled: &[f64]) {
+    fn assert_results_agree(&self, function: &str, loaded: &[f64], compiled: &[f64]) {
         let scale = compiled.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
         let difference = loaded.iter().zip(compiled).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
         assert!(

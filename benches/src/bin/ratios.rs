@@ -4,7 +4,7 @@
 //! flag for the default target. The values are nanoseconds per call: the minimum over many batches, in which
 //! both take turns.
 
-use linkwork_benches::pairs::{Pair, robots};
+use linkwork_benches::pairs::{Pair, benchmark_robots};
 use linkwork_benches::states::STATES;
 use std::time::{Duration, Instant};
 
@@ -22,9 +22,9 @@ fn main() {
     );
     println!("| robot | function | generated, ns | generic, ns | ratio | operations |");
     println!("| --- | --- | ---: | ---: | ---: | ---: |");
-    for robot in robots() {
+    for robot in benchmark_robots() {
         for mut pair in robot.pairs {
-            let (generated, generic) = measure(&mut pair);
+            let (generated, generic) = measure_pair(&mut pair);
             let size = pair.size;
             println!(
                 "| {} | {} | {generated:.1} | {generic:.0} | {:.1} | {} ({}) + {} |",
@@ -40,18 +40,18 @@ fn main() {
 }
 
 /// Returns the nanoseconds per call of both implementations.
-fn measure(pair: &mut Pair) -> (f64, f64) {
+fn measure_pair(pair: &mut Pair) -> (f64, f64) {
     let (mut generated, mut generic) = (Duration::MAX, Duration::MAX);
     let start = Instant::now();
     while start.elapsed() < BUDGET {
-        generated = generated.min(batch(&mut pair.generated));
-        generic = generic.min(batch(&mut pair.generic));
+        generated = generated.min(time_batch(&mut pair.generated));
+        generic = generic.min(time_batch(&mut pair.generic));
     }
     let nanoseconds_per_state = |time: Duration| time.as_secs_f64() * 1e9 / STATES as f64;
     (nanoseconds_per_state(generated), nanoseconds_per_state(generic))
 }
 
-fn batch(f: &mut dyn FnMut(usize)) -> Duration {
+fn time_batch(f: &mut dyn FnMut(usize)) -> Duration {
     let start = Instant::now();
     for k in 0..STATES {
         f(k);

@@ -36,11 +36,15 @@ impl<const N: usize> Evaluate<0, &[f64; N]> for Sines {
 }
 
 /// Returns the implementations of Linkwork, of the standard library, and of `libm`.
-fn ways<const N: usize>() -> [fn(&[f64; N]) -> Both<N>; 3] {
-    [|x| dispatch::<0, f64, _, _>(&Sines, x), |x| each(x, f64::sin_cos), |x| each(x, libm::sincos)]
+fn sine_implementations<const N: usize>() -> [fn(&[f64; N]) -> Both<N>; 3] {
+    [
+        |x| dispatch::<0, f64, _, _>(&Sines, x),
+        |x| sines_and_cosines_by(x, f64::sin_cos),
+        |x| sines_and_cosines_by(x, libm::sincos),
+    ]
 }
 
-fn each<const N: usize>(x: &[f64; N], sin_cos: impl Fn(f64) -> (f64, f64)) -> Both<N> {
+fn sines_and_cosines_by<const N: usize>(x: &[f64; N], sin_cos: impl Fn(f64) -> (f64, f64)) -> Both<N> {
     let (mut s, mut c) = ([0.0; N], [0.0; N]);
     for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
         (*s, *c) = sin_cos(*x);
@@ -51,21 +55,21 @@ fn each<const N: usize>(x: &[f64; N], sin_cos: impl Fn(f64) -> (f64, f64)) -> Bo
 fn main() {
     println!("| angles | Linkwork, ns | std, ns | libm, ns | std : Linkwork | libm : Linkwork |");
     println!("| ---: | ---: | ---: | ---: | ---: | ---: |");
-    measure::<1>();
-    measure::<6>();
-    measure::<8>();
-    measure::<12>();
-    measure::<16>();
-    measure::<32>();
+    measure_sines::<1>();
+    measure_sines::<6>();
+    measure_sines::<8>();
+    measure_sines::<12>();
+    measure_sines::<16>();
+    measure_sines::<32>();
 }
 
-fn measure<const N: usize>() {
+fn measure_sines<const N: usize>() {
     let mut random = Random::new(1);
-    let states: Vec<[f64; N]> = (0..STATES).map(|_| from_fn(|_| random.uniform(BOUND))).collect();
+    let states: Vec<[f64; N]> = (0..STATES).map(|_| from_fn(|_| random.uniform_within(BOUND))).collect();
     let mut least = [f64::INFINITY; 3];
     let start = Instant::now();
     while start.elapsed() < BUDGET {
-        for (least, way) in least.iter_mut().zip(ways::<N>()) {
+        for (least, way) in least.iter_mut().zip(sine_implementations::<N>()) {
             let begin = Instant::now();
             for _ in 0..16 {
                 for x in &states {

@@ -36,21 +36,21 @@ struct Solo12;
 struct Humanoid;
 
 fn main() {
-    let thread = thread::Builder::new().stack_size(STACK).spawn(table).expect("a thread");
+    let thread = thread::Builder::new().stack_size(STACK).spawn(print_stack_table).expect("a thread");
     thread.join().expect("the table is written");
 }
 
-fn table() {
+fn print_stack_table() {
     println!("| robot | function | one state, KiB | eight states, KiB |");
     println!("| --- | --- | ---: | ---: |");
     macro_rules! robot {
         ($name:literal, $m:expr) => {
-            dynamics($name, &$m);
-            let (q, v) = state(&$m);
-            derivatives($name, "derivatives of inverse dynamics", || {
+            print_dynamics_stack($name, &$m);
+            let (q, v) = random_state(&$m);
+            print_derivatives_stack($name, "derivatives of inverse dynamics", || {
                 black_box($m.inverse_dynamics_derivatives(&q, &v, &v));
             });
-            derivatives($name, "derivatives of forward dynamics", || {
+            print_derivatives_stack($name, "derivatives of forward dynamics", || {
                 black_box($m.forward_dynamics_derivatives(&q, &v, &v));
             });
         };
@@ -62,28 +62,30 @@ fn table() {
 }
 
 /// Returns a random state.
-fn state<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M) -> (SVector<f64, NQ>, SVector<f64, NV>)
+fn random_state<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+) -> (SVector<f64, NQ>, SVector<f64, NV>)
 where
     M: Batch<NQ, NV, NU, Scalar = f64>,
 {
     let mut random = Random::new(1);
-    let mut vector = || SVector::<f64, NV>::from_fn(|_, _| random.uniform(2.0));
+    let mut vector = || SVector::<f64, NV>::from_fn(|_, _| random.uniform_within(2.0));
     (m.integrate(&m.neutral(), &vector()), vector())
 }
 
-fn dynamics<M, const NQ: usize, const NV: usize, const NU: usize>(name: &str, m: &M)
+fn print_dynamics_stack<M, const NQ: usize, const NV: usize, const NU: usize>(name: &str, m: &M)
 where
     M: Batch<NQ, NV, NU, Scalar = f64>,
 {
-    let (q, v) = state(m);
+    let (q, v) = random_state(m);
     let (q8, v8): (SVector<Lanes<f64, 8>, NQ>, SVector<Lanes<f64, 8>, NV>) =
         (q.map(Lanes::splat), v.map(Lanes::splat));
     let t8 = Lanes([0.0; 8]);
     macro_rules! row {
         ($text:literal, $one:ident, $eight:ident, $($x:ident $x8:ident),*) => {
-            let one = stack(&mut || { black_box(Mechanism::$one(m, 0.0, $(&$x),*)); });
-            let eight = stack(&mut || { black_box(m.$eight(t8, $(&$x8),*)); });
-            println!("| {name} | {} | {} | {} |", $text, kib(one), kib(eight));
+            let one = stack_usage_of_call(&mut || { black_box(Mechanism::$one(m, 0.0, $(&$x),*)); });
+            let eight = stack_usage_of_call(&mut || { black_box(m.$eight(t8, $(&$x8),*)); });
+            println!("| {name} | {} | {} | {} |", $text, bytes_to_kib(one), bytes_to_kib(eight));
         };
     }
     row!("mass matrix", mass_matrix, mass_matrix_lanes, q q8);
@@ -92,31 +94,31 @@ where
     row!("forward dynamics", forward_dynamics, forward_dynamics_lanes, q q8, v v8, v v8);
 }
 
-fn derivatives(name: &str, text: &str, mut call: impl FnMut()) {
-    println!("| {name} | {text} | {} | |", kib(stack(&mut call)));
+fn print_derivatives_stack(name: &str, text: &str, mut call: impl FnMut()) {
+    println!("| {name} | {text} | {} | |", bytes_to_kib(stack_usage_of_call(&mut call)));
 }
 
 /// Converts bytes to KiB, rounded up.
-fn kib(bytes: usize) -> usize {
+fn bytes_to_kib(bytes: usize) -> usize {
     bytes.div_ceil(1 << 10)
 }
 
 /// Returns the stack that a call needs below this function, bytes.
 #[inline(never)]
-fn stack(call: &mut dyn FnMut()) -> usize {
+fn stack_usage_of_call(call: &mut dyn FnMut()) -> usize {
     // The first call is not measured, since it can load or detect something.
     call();
     let here = black_box(0_u8);
     let top = std::ptr::from_ref(&here) as usize - MARGIN;
-    paint(top);
+    paint_stack(top);
     call();
-    top - lowest(top)
+    top - lowest_overwritten_address(top)
 }
 
 /// Fills the stack below an address with the pattern.
 #[inline(never)]
 #[expect(unsafe_code, reason = "the stack below this function belongs to the thread, and nobody uses it")]
-fn paint(top: usize) {
+fn paint_stack(top: usize) {
     let own = black_box(0_u8);
     // The function's own frame is not overwritten.
     let top = top.min(std::ptr::from_ref(&own) as usize - MARGIN);
@@ -129,7 +131,7 @@ fn paint(top: usize) {
 /// Returns the lowest address below `top` that no longer has the pattern.
 #[inline(never)]
 #[expect(unsafe_code, reason = "the stack below this function belongs to the thread")]
-fn lowest(top: usize) -> usize {
+fn lowest_overwritten_address(top: usize) -> usize {
     // SAFETY: as in `paint`.
     let is_painted = |address: &usize| unsafe {
         std::ptr::with_exposed_provenance::<u8>(*address).read_volatile() == PAINT

@@ -8,8 +8,8 @@ use linkwork_benches::generic::{Model, Options};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
 use linkwork_benches::peers::library::{self, Rows};
 use linkwork_benches::peers::own::{Call, Flat, Own};
-use linkwork_benches::peers::turns::{TOLERANCE, agree, time};
-use linkwork_benches::states::{STATES, State, states};
+use linkwork_benches::peers::turns::{TOLERANCE, measure_in_turns, remove_disagreeing};
+use linkwork_benches::states::{STATES, State, random_states};
 use std::path::Path;
 use std::rc::Rc;
 
@@ -56,7 +56,7 @@ fn linkwork_contender<M: Copy + 'static, R: Flat + 'static, const N: usize>(
     states: &Rc<Vec<State<N, N>>>,
     call: Call<M, R, N, N>,
 ) -> Box<dyn Contender> {
-    let (owner, name, states) = (Owner::Linkwork, Function::Step.name(), states.clone());
+    let (owner, name, states) = (Owner::Linkwork, Function::Step.function_name(), states.clone());
     Box::new(Own { owner, mechanism, states, name, call })
 }
 
@@ -70,29 +70,34 @@ impl<R> Flat for Unread<R> {
 }
 
 /// Returns the nanoseconds per call of each function, measured in turns.
-fn nanoseconds(mut of: Vec<Box<dyn Contender>>) -> Vec<f64> {
-    time(&mut of, STATES, BUDGET).iter().map(|measured| measured.time).collect()
+fn nanoseconds_per_call(mut of: Vec<Box<dyn Contender>>) -> Vec<f64> {
+    measure_in_turns(&mut of, STATES, BUDGET).iter().map(|measured| measured.time).collect()
 }
 
-fn measure<M, const N: usize>(name: &str, m: M, model: &Model, folder: Option<&Path>) -> Result<(), String>
+fn measure_robot_steps<M, const N: usize>(
+    name: &str,
+    m: M,
+    model: &Model,
+    folder: Option<&Path>,
+) -> Result<(), String>
 where
     M: Copy + SecondDerivatives<N, N, N, Scalar = f64> + 'static,
 {
-    let states: Rc<Vec<State<N, N>>> = Rc::new(states(model));
+    let states: Rc<Vec<State<N, N>>> = Rc::new(random_states(model));
     if let Some(folder) = folder {
-        let numbers: Vec<f64> = states.iter().flat_map(State::numbers).collect();
+        let numbers: Vec<f64> = states.iter().flat_map(State::all_numbers).collect();
         let rows = Rows { nq: N, nv: N, numbers: numbers.leak() };
         let mut all = Vec::new();
         for file in ["plain.exact", "plain.fast", "shared.exact", "shared.fast"] {
             let path = folder.join(name).join(format!("step_{file}.so"));
-            all.extend(library::casadi(&path, Function::Step, rows));
+            all.extend(library::casadi_function(&path, Function::Step, rows));
         }
         all.push(linkwork_contender(m, &states, |m, s| Stacked(step(m, s))));
-        let wrong = agree(&mut all, name, (2 * N, STATES), TOLERANCE);
+        let wrong = remove_disagreeing(&mut all, name, (2 * N, STATES), TOLERANCE);
         if !wrong.is_empty() {
             return Err(wrong.join("\n"));
         }
-        let measured = time(&mut all, STATES, BUDGET);
+        let measured = measure_in_turns(&mut all, STATES, BUDGET);
         let shortest_time_of_owner = |owner| {
             measured.iter().filter(|m| m.owner == owner).map(|m| m.time).fold(f64::INFINITY, f64::min)
         };
@@ -102,7 +107,7 @@ where
             theirs / ours
         );
     }
-    let found = nanoseconds(vec![
+    let found = nanoseconds_per_call(vec![
         linkwork_contender(m, &states, |m, s| Unread(m.inverse_dynamics_derivatives(0.0, &s.q, &s.v, &s.a))),
         linkwork_contender(m, &states, |m, s| {
             Unread(m.inverse_dynamics_second_derivatives(0.0, &s.q, &s.v, &s.a, &s.tau))
@@ -135,8 +140,13 @@ fn main() -> Result<(), String> {
     println!("| robot | function | ns | next to | ns | ratio |");
     println!("| --- | --- | ---: | --- | ---: | ---: |");
     let read_fixed_base_urdf = |text: &str, lock| Model::from_urdf(text, &Options { free: false, lock });
-    measure("ur5", Ur5, &read_fixed_base_urdf(include_str!("../../../models/urdf/ur5.urdf"), &[])?, folder)?;
+    measure_robot_steps(
+        "ur5",
+        Ur5,
+        &read_fixed_base_urdf(include_str!("../../../models/urdf/ur5.urdf"), &[])?,
+        folder,
+    )?;
     let locked = &["panda_finger_joint1", "panda_finger_joint2"];
     let panda = read_fixed_base_urdf(include_str!("../../../models/urdf/panda.urdf"), locked)?;
-    measure("panda_arm", PandaArm, &panda, folder)
+    measure_robot_steps("panda_arm", PandaArm, &panda, folder)
 }

@@ -24,7 +24,7 @@ impl Spatial {
     }
 
     /// Returns the spatial unit vector whose entry `k` is one.
-    pub fn unit(k: usize) -> Spatial {
+    pub fn unit_vector(k: usize) -> Spatial {
         let mut s = Spatial::zero();
         let part = if k < 3 { &mut s.linear } else { &mut s.angular };
         part[k % 3] = 1.0;
@@ -37,7 +37,7 @@ impl Spatial {
     }
 
     /// Returns the six entries, linear before angular, as one vector.
-    pub fn vector(&self) -> Vector6<f64> {
+    pub fn as_six_vector(&self) -> Vector6<f64> {
         let (l, a) = (self.linear, self.angular);
         Vector6::new(l.x, l.y, l.z, a.x, a.y, a.z)
     }
@@ -117,7 +117,7 @@ impl Placement {
     }
 
     /// Composes this placement with another one in the child frame.
-    pub fn then(&self, next: &Placement) -> Placement {
+    pub fn compose_with(&self, next: &Placement) -> Placement {
         Placement::new(self.rotation * next.rotation, self.translation + self.rotation * next.translation)
     }
 
@@ -175,7 +175,7 @@ impl Inertia {
     }
 
     /// Returns the spatial momentum of a body with this inertia and twist.
-    pub fn times(&self, t: &Spatial) -> Spatial {
+    pub fn momentum_of_twist(&self, t: &Spatial) -> Spatial {
         Spatial::new(
             t.linear * self.mass + t.angular.cross(&self.moment),
             self.tensor * t.angular + self.moment.cross(&t.linear),
@@ -216,7 +216,7 @@ pub struct Articulated {
 
 impl Articulated {
     /// Returns the articulated inertia of a rigid body.
-    pub fn rigid(inertia: &Inertia) -> Articulated {
+    pub fn from_rigid_inertia(inertia: &Inertia) -> Articulated {
         Articulated {
             m: Matrix3::from_diagonal_element(inertia.mass),
             h: inertia.moment.cross_matrix(),
@@ -225,7 +225,7 @@ impl Articulated {
     }
 
     /// Returns the wrench that gives a body of this articulated inertia an acceleration.
-    pub fn times(&self, a: &Spatial) -> Spatial {
+    pub fn wrench_of_acceleration(&self, a: &Spatial) -> Spatial {
         Spatial::new(self.m * a.linear + self.h.tr_mul(&a.angular), self.h * a.linear + self.i * a.angular)
     }
 
@@ -251,14 +251,14 @@ impl Articulated {
     }
 
     /// Returns the acceleration that a wrench causes by this articulated inertia.
-    pub fn solve(&self, wrench: &Spatial) -> Spatial {
+    pub fn acceleration_from_wrench(&self, wrench: &Spatial) -> Spatial {
         let mut full = Matrix6::zeros();
         full.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.m);
         full.fixed_view_mut::<3, 3>(0, 3).copy_from(&self.h.transpose());
         full.fixed_view_mut::<3, 3>(3, 0).copy_from(&self.h);
         full.fixed_view_mut::<3, 3>(3, 3).copy_from(&self.i);
         let nothing = Vector6::from_element(f64::NAN);
-        let solved = full.cholesky().map_or(nothing, |factors| factors.solve(&wrench.vector()));
+        let solved = full.cholesky().map_or(nothing, |factors| factors.solve(&wrench.as_six_vector()));
         Spatial::from_slice(solved.as_slice())
     }
 }

@@ -15,14 +15,15 @@ pub struct Options<'a> {
 }
 
 /// Reads the text of a URDF file.
-pub fn read(text: &str, options: &Options<'_>) -> Result<Model, String> {
+pub fn read_urdf(text: &str, options: &Options<'_>) -> Result<Model, String> {
     let document = Document::parse(text).map_err(|e| e.to_string())?;
     let robot = document.root_element();
     let children_with_tag = |kind: &'static str| robot.children().filter(move |n| n.has_tag_name(kind));
     let mut joints: Vec<Node<'_, '_>> = children_with_tag("joint").collect();
     joints.sort_by_key(|joint| joint.attribute("name"));
     let links: Vec<Node<'_, '_>> = children_with_tag("link").collect();
-    let is_child = |link: &Node<'_, '_>| joints.iter().any(|j| end(j, "child") == link.attribute("name"));
+    let is_child =
+        |link: &Node<'_, '_>| joints.iter().any(|j| link_at_joint_end(j, "child") == link.attribute("name"));
     let root = links.iter().find(|link| !is_child(link)).ok_or("no root link")?;
     let mut reader = Reader {
         joints: &joints,
@@ -37,12 +38,12 @@ pub fn read(text: &str, options: &Options<'_>) -> Result<Model, String> {
         },
     };
     let at = options.free.then(|| reader.add(None, Placement::identity(), Motion::Free));
-    reader.link(root.attribute("name").unwrap_or_default(), at, Placement::identity())?;
+    reader.read_link_tree(root.attribute("name").unwrap_or_default(), at, Placement::identity())?;
     Ok(reader.model)
 }
 
 /// Returns the name of the parent or child link of a joint.
-fn end<'a>(joint: &Node<'a, '_>, which: &str) -> Option<&'a str> {
+fn link_at_joint_end<'a>(joint: &Node<'a, '_>, which: &str) -> Option<&'a str> {
     let node = joint.children().find(|n| n.has_tag_name(which))?;
     node.attribute("link")
 }
@@ -57,7 +58,7 @@ struct Reader<'a, 'd, 'i> {
 impl Reader<'_, '_, '_> {
     /// Adds a moving link of zero mass, and returns its index.
     fn add(&mut self, parent: Option<usize>, placement: Placement, motion: Motion) -> usize {
-        let (nq, nv) = motion.sizes();
+        let (nq, nv) = motion.coordinate_counts();
         let (q, v) = (self.model.nq, self.model.nv);
         self.model.nq += nq;
         self.model.nv += nv;
@@ -66,21 +67,21 @@ impl Reader<'_, '_, '_> {
     }
 
     /// Reads a link that is fixed at `placement` in the moving link `at`, and all its descendants.
-    fn link(&mut self, name: &str, at: Option<usize>, placement: Placement) -> Result<(), String> {
+    fn read_link_tree(&mut self, name: &str, at: Option<usize>, placement: Placement) -> Result<(), String> {
         self.model.frames.push(Frame { name: name.to_string(), link: at, placement });
         let node = self.links.iter().find(|n| n.attribute("name") == Some(name));
         let node = node.ok_or_else(|| format!("no link `{name}`"))?;
         if let (Some(at), Some(inertial)) = (at, node.children().find(|n| n.has_tag_name("inertial"))) {
-            self.model.links[at].inertia += inertia(&inertial)?.to_parent(&placement);
+            self.model.links[at].inertia += read_inertia(&inertial)?.to_parent(&placement);
         }
-        for joint in self.joints.iter().filter(|j| end(j, "parent") == Some(name)) {
-            let child = end(joint, "child").ok_or("a joint without child")?;
-            let origin = placement.then(&origin(joint)?);
-            match self.motion(joint)? {
-                None => self.link(child, at, origin)?,
+        for joint in self.joints.iter().filter(|j| link_at_joint_end(j, "parent") == Some(name)) {
+            let child = link_at_joint_end(joint, "child").ok_or("a joint without child")?;
+            let origin = placement.compose_with(&read_origin(joint)?);
+            match self.motion_of_joint(joint)? {
+                None => self.read_link_tree(child, at, origin)?,
                 Some(motion) => {
                     let link = self.add(at, origin, motion);
-                    self.link(child, Some(link), Placement::identity())?;
+                    self.read_link_tree(child, Some(link), Placement::identity())?;
                 }
             }
         }
@@ -88,7 +89,7 @@ impl Reader<'_, '_, '_> {
     }
 
     /// Returns the motion of a joint, or `None` if it is fixed or locked.
-    fn motion(&self, joint: &Node<'_, '_>) -> Result<Option<Motion>, String> {
+    fn motion_of_joint(&self, joint: &Node<'_, '_>) -> Result<Option<Motion>, String> {
         let name = joint.attribute("name").unwrap_or_default();
         if self.lock.contains(&name) {
             return Ok(None);
@@ -97,7 +98,7 @@ impl Reader<'_, '_, '_> {
             return Err(format!("joint `{name}`: damping and friction are not supported"));
         }
         let axis = joint.children().find(|n| n.has_tag_name("axis"));
-        let axis = axis.map_or(Ok(Vector3::x()), |n| vector(&n, "xyz"))?;
+        let axis = axis.map_or(Ok(Vector3::x()), |n| read_vector_attribute(&n, "xyz"))?;
         let axis = Unit::try_new(axis, 1e-9).ok_or_else(|| format!("joint `{name}`: the axis is zero"))?;
         match joint.attribute("type").unwrap_or_default() {
             "fixed" => Ok(None),
@@ -110,38 +111,38 @@ impl Reader<'_, '_, '_> {
 }
 
 /// Reads an `<origin>` element as a placement.
-fn origin(parent: &Node<'_, '_>) -> Result<Placement, String> {
+fn read_origin(parent: &Node<'_, '_>) -> Result<Placement, String> {
     let Some(node) = parent.children().find(|n| n.has_tag_name("origin")) else {
         return Ok(Placement::identity());
     };
-    let angles = vector(&node, "rpy")?;
+    let angles = read_vector_attribute(&node, "rpy")?;
     let rotation = Rotation3::from_euler_angles(angles.x, angles.y, angles.z);
-    Ok(Placement::new(rotation.into_inner(), vector(&node, "xyz")?))
+    Ok(Placement::new(rotation.into_inner(), read_vector_attribute(&node, "xyz")?))
 }
 
 /// Reads an `<inertial>` element about the link's origin.
-fn inertia(inertial: &Node<'_, '_>) -> Result<Inertia, String> {
+fn read_inertia(inertial: &Node<'_, '_>) -> Result<Inertia, String> {
     let find_child_by_tag = |tag: &str| inertial.children().find(|n| n.has_tag_name(tag));
-    let mass = find_child_by_tag("mass").map_or(Ok(0.0), |n| number(&n, "value"))?;
+    let mass = find_child_by_tag("mass").map_or(Ok(0.0), |n| read_number_attribute(&n, "value"))?;
     let mut entries = [0.0; 6];
     if let Some(node) = find_child_by_tag("inertia") {
         for (entry, key) in entries.iter_mut().zip(["ixx", "ixy", "ixz", "iyy", "iyz", "izz"]) {
-            *entry = number(&node, key)?;
+            *entry = read_number_attribute(&node, key)?;
         }
     }
     let [xx, xy, xz, yy, yz, zz] = entries;
     let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
     let central = Inertia::of_body(mass, Vector3::zeros(), tensor);
-    Ok(central.to_parent(&origin(inertial)?))
+    Ok(central.to_parent(&read_origin(inertial)?))
 }
 
-fn number(node: &Node<'_, '_>, key: &str) -> Result<f64, String> {
+fn read_number_attribute(node: &Node<'_, '_>, key: &str) -> Result<f64, String> {
     let text = node.attribute(key).unwrap_or("0");
     text.trim().parse().map_err(|_| format!("`{text}` is not a number"))
 }
 
 /// Reads three numbers, which are zero if the attribute is absent.
-fn vector(node: &Node<'_, '_>, key: &str) -> Result<Vector3<f64>, String> {
+fn read_vector_attribute(node: &Node<'_, '_>, key: &str) -> Result<Vector3<f64>, String> {
     let Some(text) = node.attribute(key) else {
         return Ok(Vector3::zeros());
     };

@@ -11,9 +11,9 @@ const SMALLEST: u64 = 500;
 /// Returns the bytes of machine code of the function `name` of the mechanism `M`, plus those of its caller at
 /// an address, into which it may have been inlined. Returns `None` if it only calls other functions, or if
 /// the system does not report the sizes.
-pub fn bytes<M>(caller: *const (), name: &str) -> Option<u64> {
+pub fn machine_code_bytes<M>(caller: *const (), name: &str) -> Option<u64> {
     static SIZES: OnceLock<Option<Sizes>> = OnceLock::new();
-    let sizes = SIZES.get_or_init(Sizes::read).as_ref()?;
+    let sizes = SIZES.get_or_init(Sizes::read_symbol_sizes).as_ref()?;
     let mechanism = type_name::<M>().rsplit("::").next()?;
     // Mangled names contain each identifier after its length.
     let end = format!("{}{mechanism}{}{name}", mechanism.len(), name.len());
@@ -28,7 +28,7 @@ struct Sizes {
 }
 
 impl Sizes {
-    fn read() -> Option<Sizes> {
+    fn read_symbol_sizes() -> Option<Sizes> {
         let path = std::env::current_exe().ok()?;
         // The first line of the map is the start address of this program in memory.
         let maps = std::fs::read_to_string("/proc/self/maps").ok()?;

@@ -32,7 +32,7 @@ impl Function {
     ];
 
     /// Returns the name of the function in the table.
-    pub fn title(self) -> &'static str {
+    pub fn table_title(self) -> &'static str {
         match self {
             Function::Inverse => "inverse dynamics",
             Function::Mass => "mass matrix",
@@ -46,7 +46,7 @@ impl Function {
     }
 
     /// Returns the name of Linkwork's generated function.
-    pub fn name(self) -> &'static str {
+    pub fn function_name(self) -> &'static str {
         match self {
             Function::Inverse => "inverse_dynamics",
             Function::Mass => "mass_matrix",
@@ -60,7 +60,7 @@ impl Function {
     }
 
     /// Returns the name of the function in file names.
-    pub fn file(self) -> &'static str {
+    pub fn file_name(self) -> &'static str {
         match self {
             Function::Inverse => "inverse",
             Function::Mass => "mass",
@@ -74,7 +74,7 @@ impl Function {
     }
 
     /// Returns the number of columns of the result for `nv` velocities; each has `nv` numbers.
-    pub fn columns(self, nv: usize) -> usize {
+    pub fn column_count(self, nv: usize) -> usize {
         match self {
             Function::Inverse | Function::Forward | Function::Constrained | Function::Motion => 1,
             Function::Mass => nv,

@@ -39,7 +39,7 @@ impl Rows<'_> {
         self.nq + 3 * self.nv
     }
 
-    fn count(&self) -> usize {
+    fn row_count(&self) -> usize {
         self.numbers.len() / self.length()
     }
 }
@@ -57,7 +57,7 @@ struct Peer {
 }
 
 /// Returns all implementations that a library offers for a function. Libraries are never unloaded.
-pub fn peers(
+pub fn peers_of_library(
     path: &Path,
     owner: Owner,
     folder: &Path,
@@ -72,8 +72,8 @@ pub fn peers(
             let open: Open = *library.get(b"peer_open\0").ok()?;
             let find: FindStep = *library.get(b"peer_step\0").ok()?;
             let take: TakeResult = *library.get(b"peer_result\0").ok()?;
-            let robot = open(folder.as_ptr(), rows.numbers.as_ptr(), rows.numbers.len(), rows.count());
-            let (states, size) = (rows.count(), function.columns(rows.nv) * rows.nv);
+            let robot = open(folder.as_ptr(), rows.numbers.as_ptr(), rows.numbers.len(), rows.row_count());
+            let (states, size) = (rows.row_count(), function.column_count(rows.nv) * rows.nv);
             let number = function as usize;
             let steps = (0..).map_while(|variant| find(robot, number, variant)).enumerate();
             let peer =
@@ -132,7 +132,7 @@ struct Casadi {
 
 /// Returns the function of a library that was compiled from C by CasADi. The states must live as long as the
 /// library.
-pub fn casadi(path: &Path, function: Function, rows: Rows<'static>) -> Option<Box<dyn Contender>> {
+pub fn casadi_function(path: &Path, function: Function, rows: Rows<'static>) -> Option<Box<dyn Contender>> {
     let library = load(path)?;
     // SAFETY: CasADi documents these types for the functions that it generates.
     let (call, [arguments, results, integers, numbers]) = unsafe {
@@ -153,7 +153,7 @@ pub fn casadi(path: &Path, function: Function, rows: Rows<'static>) -> Option<Bo
         call,
         arguments: rows.numbers.chunks_exact(rows.length()).map(argument_pointers).collect(),
         given: vec![std::ptr::null(); arguments],
-        out: vec![0.0; function.columns(rows.nv) * rows.nv],
+        out: vec![0.0; function.column_count(rows.nv) * rows.nv],
         results: vec![std::ptr::null_mut(); results],
         integers: vec![0; integers],
         numbers: vec![0.0; numbers],
@@ -161,7 +161,7 @@ pub fn casadi(path: &Path, function: Function, rows: Rows<'static>) -> Option<Bo
 }
 
 impl Casadi {
-    fn evaluate(&mut self, state: usize) {
+    fn evaluate_state(&mut self, state: usize) {
         self.given[..3].copy_from_slice(&self.arguments[state]);
         self.results[0] = self.out.as_mut_ptr();
         let (given, results) = (self.given.as_mut_ptr(), self.results.as_mut_ptr());
@@ -183,12 +183,12 @@ impl Contender for Casadi {
 
     fn pass(&mut self) {
         for state in 0..self.arguments.len() {
-            self.evaluate(state);
+            self.evaluate_state(state);
         }
     }
 
     fn result(&mut self, state: usize) -> Vec<f64> {
-        self.evaluate(state);
+        self.evaluate_state(state);
         self.out.clone()
     }
 }

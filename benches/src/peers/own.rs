@@ -45,7 +45,7 @@ impl<M, R: Flat, const NQ: usize, const NV: usize> Contender for Own<M, R, NQ, N
     }
 
     fn bytes(&self) -> Option<u64> {
-        code::bytes::<M>(self.call as *const (), self.name)
+        code::machine_code_bytes::<M>(self.call as *const (), self.name)
     }
 }
 
@@ -85,7 +85,7 @@ impl<M, const NQ: usize, const NV: usize, const K: usize> Contender for Keeping<
     }
 
     fn bytes(&self) -> Option<u64> {
-        code::bytes::<M>(self.call as *const (), self.name)
+        code::machine_code_bytes::<M>(self.call as *const (), self.name)
     }
 }
 

@@ -22,7 +22,7 @@ pub struct Measured {
 
 /// Removes contenders that differ from the first one (Pinocchio if present). Returns a message for each of
 /// Linkwork's own.
-pub fn agree(
+pub fn remove_disagreeing(
     contenders: &mut Vec<Box<dyn Contender>>,
     what: &str,
     (nv, states): (usize, usize),
@@ -34,7 +34,7 @@ pub fn agree(
     contenders.retain_mut(|contender| {
         let errors = expected.iter().enumerate();
         let errors = errors.map(|(state, expected)| difference(&contender.result(state), expected, nv));
-        let error = largest(errors);
+        let error = largest_or_nan(errors);
         let good = error <= tolerance;
         if !good {
             let message =
@@ -56,25 +56,25 @@ pub fn agree(
 pub fn difference(found: &[f64], expected: &[f64], nv: usize) -> f64 {
     assert_eq!(found.len(), expected.len(), "size of a result");
     let columns = found.chunks_exact(nv).zip(expected.chunks_exact(nv));
-    largest(columns.map(|(found, expected)| {
-        let error = largest(found.iter().zip(expected).map(|(x, y)| (x - y).abs()));
-        error / (1.0 + largest(expected.iter().map(|y| y.abs())))
+    largest_or_nan(columns.map(|(found, expected)| {
+        let error = largest_or_nan(found.iter().zip(expected).map(|(x, y)| (x - y).abs()));
+        error / (1.0 + largest_or_nan(expected.iter().map(|y| y.abs())))
     }))
 }
 
 /// Returns the largest number, or NaN if one of the numbers is NaN.
-pub fn largest(numbers: impl Iterator<Item = f64>) -> f64 {
+pub fn largest_or_nan(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
 }
 
 /// Measures the contenders in turns, each for `budget` seconds. The result is the minimum time.
-pub fn time(contenders: &mut [Box<dyn Contender>], states: usize, budget: f64) -> Vec<Measured> {
+pub fn measure_in_turns(contenders: &mut [Box<dyn Contender>], states: usize, budget: f64) -> Vec<Measured> {
     let seconds_per_pass = |contender: &mut Box<dyn Contender>, passes: usize| {
-        let start = clock::seconds();
+        let start = clock::thread_seconds();
         for _ in 0..passes {
             contender.pass();
         }
-        (clock::seconds() - start) / passes as f64
+        (clock::thread_seconds() - start) / passes as f64
     };
     let seconds_after_warmup = |contender: &mut Box<dyn Contender>| {
         (seconds_per_pass(contender, 1), seconds_per_pass(contender, 1)).1
@@ -82,8 +82,8 @@ pub fn time(contenders: &mut [Box<dyn Contender>], states: usize, budget: f64) -
     let passes: Vec<usize> =
         contenders.iter_mut().map(|c| (BATCH / seconds_after_warmup(c)).ceil().max(1.0) as usize).collect();
     let mut least = vec![f64::INFINITY; contenders.len()];
-    let end = clock::seconds() + budget * contenders.len() as f64;
-    while clock::seconds() < end {
+    let end = clock::thread_seconds() + budget * contenders.len() as f64;
+    while clock::thread_seconds() < end {
         for (k, contender) in contenders.iter_mut().enumerate() {
             least[k] = least[k].min(seconds_per_pass(contender, passes[k]));
         }

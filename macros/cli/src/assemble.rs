@@ -22,7 +22,7 @@ pub struct Assembly<'a, 'g> {
 }
 
 /// Returns the indices of the entries that are true.
-fn indices(marks: &[bool]) -> Vec<usize> {
+fn marked_indices(marks: &[bool]) -> Vec<usize> {
     (0..marks.len()).filter(|k| marks[*k]).collect()
 }
 
@@ -51,7 +51,7 @@ impl Assembly<'_, '_> {
 
     /// Returns which velocities of joints change marked entries of a configuration, or entries that change
     /// together with them.
-    pub fn moving(&self, marks: &[bool]) -> Vec<bool> {
+    pub fn velocities_moving_entries(&self, marks: &[bool]) -> Vec<bool> {
         let mut moving = vec![false; self.model.nv()];
         for (entries, velocities) in self.coupled_ranges() {
             moving[velocities].fill(marks[entries].contains(&true));
@@ -60,7 +60,7 @@ impl Assembly<'_, '_> {
     }
 
     /// Returns which entries of a configuration are changed by marked velocities of joints only.
-    fn entries(&self, marks: &[bool]) -> Vec<bool> {
+    fn entries_moved_only_by(&self, marks: &[bool]) -> Vec<bool> {
         let mut found = vec![false; self.model.nq()];
         for (entries, velocities) in self.coupled_ranges() {
             found[entries].fill(!marks[velocities].contains(&false));
@@ -68,7 +68,7 @@ impl Assembly<'_, '_> {
         found
     }
 
-    fn evaluated(&self, name: &str, arguments: &[(&str, &[f64])]) -> Option<Vec<f64>> {
+    fn evaluate_function(&self, name: &str, arguments: &[(&str, &[f64])]) -> Option<Vec<f64>> {
         let f = self.robot.function(name).ok()?;
         let time = [0.0];
         let find_argument_values = |(name, _): &(&str, usize)| match *name {
@@ -82,21 +82,24 @@ impl Assembly<'_, '_> {
     /// Returns which velocities affect no constraint, at this configuration and near it. The first list has
     /// the velocities of the joints, the second the entries of `v`, which differ if generalized speeds are
     /// declared.
-    pub fn unreached(&self, q: &[f64]) -> [Vec<bool>; 2] {
+    pub fn unconstrained_velocities(&self, q: &[f64]) -> [Vec<bool>; 2] {
         let n = self.model.nv();
         let mut unreached = [vec![true; n], vec![true; n]];
         for size in [0.0, 0.1] {
             let dv: Vec<f64> = (0..n).map(|k| size * perturbation(1, k)).collect();
             let Ok(near) = self.robot.integrate(q, &dv) else { continue };
             let near = near.as_slice();
-            let Some(jacobian) = self.evaluated("constraint_jacobian", &[("q", near)]) else { continue };
+            let Some(jacobian) = self.evaluate_function("constraint_jacobian", &[("q", near)]) else {
+                continue;
+            };
             let rows = self.model.constraints.len();
             let jacobian_column = |k: usize| &jacobian[k * rows..(k + 1) * rows];
             for k in 0..n {
                 unreached[1][k] &= jacobian_column(k).iter().all(|entry| *entry == 0.0);
                 let unit: Vec<f64> = (0..n).map(|j| f64::from(u8::from(j == k))).collect();
                 let speeds = match self.model.speeds.is_some() {
-                    true => self.evaluated("speeds_of_rates", &[("q", near), ("v", &unit), ("rates", &unit)]),
+                    true => self
+                        .evaluate_function("speeds_of_rates", &[("q", near), ("v", &unit), ("rates", &unit)]),
                     false => Some(unit),
                 };
                 let speeds = speeds.unwrap_or_else(|| vec![1.0; n]);
@@ -111,20 +114,26 @@ impl Assembly<'_, '_> {
     /// Returns a configuration with the given entries, reached in small steps from the configuration on the
     /// constraints that is nearest to zero, so that a loop stays in the assembly mode of that configuration.
     /// If the given entries contradict the constraints, the result violates them.
-    pub fn led(&self, q: &[f64], given: &[bool], apart: &[bool], held: &[bool]) -> Result<Vec<f64>, Stop> {
+    pub fn configuration_by_continuation(
+        &self,
+        q: &[f64],
+        given: &[bool],
+        apart: &[bool],
+        held: &[bool],
+    ) -> Result<Vec<f64>, Stop> {
         let mut zero = self.robot.neutral()?.as_slice().to_vec();
-        let is_apart = self.entries(apart);
+        let is_apart = self.entries_moved_only_by(apart);
         for k in (0..q.len()).filter(|k| is_apart[*k]) {
             zero[k] = q[k];
         }
-        let Some(begin) = self.assembled(&zero, &zero, apart) else { return Ok(q.to_vec()) };
-        let (mut at, held) = (begin.clone(), indices(held));
+        let Some(begin) = self.assemble_near(&zero, &zero, apart) else { return Ok(q.to_vec()) };
+        let (mut at, held) = (begin.clone(), marked_indices(held));
         for step in 1..=STEPS {
             let part = f64::from(step) / f64::from(STEPS);
             for k in (0..q.len()).filter(|k| given[*k]) {
                 at[k] = if step == STEPS { q[k] } else { begin[k] + (q[k] - begin[k]) * part };
             }
-            if crate::motion::normalise(self.model, &mut at).is_err() {
+            if crate::motion::normalise_quaternions(self.model, &mut at).is_err() {
                 return Ok(q.to_vec());
             }
             if let Ok(found) = self.robot.least_violation(&at, &held) {
@@ -137,8 +146,8 @@ impl Assembly<'_, '_> {
     /// Returns a configuration on the constraints near `q`, without a change of the coordinates whose
     /// velocities are held. The search starts from `q`, then from increasingly perturbed values of the other
     /// entries. The first result whose angles are within half a revolution of the guess is preferred.
-    pub fn assembled(&self, q: &[f64], guess: &[f64], held: &[bool]) -> Option<Vec<f64>> {
-        let (given, held) = (self.entries(held), indices(held));
+    pub fn assemble_near(&self, q: &[f64], guess: &[f64], held: &[bool]) -> Option<Vec<f64>> {
+        let (given, held) = (self.entries_moved_only_by(held), marked_indices(held));
         let mut far = None;
         let nearby = (0..=ASSEMBLIES).filter_map(|attempt| {
             let mut from = q.to_vec();
@@ -146,14 +155,14 @@ impl Assembly<'_, '_> {
             for (k, x) in from.iter_mut().enumerate().filter(|(k, _)| !given[*k]) {
                 *x += size * perturbation(attempt, k);
             }
-            crate::motion::normalise(self.model, &mut from).ok()?;
+            crate::motion::normalise_quaternions(self.model, &mut from).ok()?;
             let found = self.robot.least_violation(&from, &held).ok()?.as_slice().to_vec();
-            self.holds(&found).then_some(found)
+            self.satisfies_constraints(&found).then_some(found)
         });
         let further = std::iter::once_with(|| self.robot.assemble(q, &held)).flatten();
         for found in nearby.chain(further.map(|found| found.as_slice().to_vec())) {
-            let found = self.unwound(guess, found);
-            if self.angles().all(|k| (found[k] - guess[k]).abs() <= PI + ROUNDING) {
+            let found = self.unwind_angles(guess, found);
+            if self.angle_indices().all(|k| (found[k] - guess[k]).abs() <= PI + ROUNDING) {
                 return Some(found);
             }
             far.get_or_insert(found);
@@ -162,43 +171,43 @@ impl Assembly<'_, '_> {
     }
 
     /// Iterates over the indices of configuration entries that are angles.
-    fn angles(&self) -> impl Iterator<Item = usize> {
+    fn angle_indices(&self) -> impl Iterator<Item = usize> {
         let units = self.model.units.configuration.iter().enumerate();
         units.filter(|(_, unit)| *unit == "rad").map(|(k, _)| k)
     }
 
     /// Subtracts whole revolutions from angles that differ by more than half a revolution from the guess, if
     /// the constraints remain satisfied: from all angles together, or otherwise from each one separately.
-    fn unwound(&self, guess: &[f64], q: Vec<f64>) -> Vec<f64> {
+    fn unwind_angles(&self, guess: &[f64], q: Vec<f64>) -> Vec<f64> {
         let unwind_angle = |mut q: Vec<f64>, k: usize| {
             q[k] -= 2.0 * PI * ((q[k] - guess[k]) / (2.0 * PI)).round();
             q
         };
-        let all = self.angles().fold(q.clone(), unwind_angle);
-        if all == q || self.holds(&all) {
+        let all = self.angle_indices().fold(q.clone(), unwind_angle);
+        if all == q || self.satisfies_constraints(&all) {
             return all;
         }
-        self.angles().fold(q, |q, k| {
+        self.angle_indices().fold(q, |q, k| {
             let next = unwind_angle(q.clone(), k);
-            if self.holds(&next) { next } else { q }
+            if self.satisfies_constraints(&next) { next } else { q }
         })
     }
 
     /// Whether a configuration satisfies the constraints.
-    fn holds(&self, q: &[f64]) -> bool {
-        let left = self.evaluated("constraint_residuals", &[("q", q)]);
+    fn satisfies_constraints(&self, q: &[f64]) -> bool {
+        let left = self.evaluate_function("constraint_residuals", &[("q", q)]);
         left.is_some_and(|left| left.iter().all(|x| x.abs() <= SATISFIED))
     }
 
     /// Returns the velocity with the held entries of `v` that satisfies the constraints; `None` if the held
     /// velocities contradict the constraints.
-    pub fn completed(&self, q: &[f64], v: &[f64], held: &[bool]) -> Option<Vec<f64>> {
-        let found = self.robot.complete_velocity(q, v, &indices(held)).ok()?;
+    pub fn complete_held_velocity(&self, q: &[f64], v: &[f64], held: &[bool]) -> Option<Vec<f64>> {
+        let found = self.robot.complete_velocity(q, v, &marked_indices(held)).ok()?;
         Some(found.as_slice().to_vec())
     }
 
     /// Returns the assembly mode of a configuration, see [`Robot::assembly_mode`].
-    pub fn mode(&self, q: &[f64], held: &[bool]) -> Option<i8> {
-        self.robot.assembly_mode(q, &indices(held)).ok().flatten()
+    pub fn assembly_mode_of(&self, q: &[f64], held: &[bool]) -> Option<i8> {
+        self.robot.assembly_mode(q, &marked_indices(held)).ok().flatten()
     }
 }

@@ -8,11 +8,11 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use serde_json::{Value, json};
 
-pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
+pub fn run_check(matches: &ArgMatches) -> Result<(), Stop> {
     let as_json = matches.get_flag("json");
-    let inputs = match Input::all(matches) {
+    let inputs = match Input::select_mechanisms(matches) {
         Err(Stop::Syntax(mistake)) if as_json => {
-            crate::say!("{:#}", json!({ "messages": [message(&mistake)] }));
+            crate::say!("{:#}", json!({ "messages": [error_as_json(&mistake)] }));
             return Err(Stop::Mistakes);
         }
         inputs => inputs?,
@@ -20,16 +20,16 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let (mut all, mut good) = (Vec::new(), true);
     for input in &inputs {
         let cx = &mut Diagnostics::new();
-        if let Some(source) = input.read(cx) {
+        if let Some(source) = input.parse_source(cx) {
             compile(&source, &Graph::new(), cx);
         }
         good &= cx.is_empty();
         if as_json {
-            all.extend(cx.distinct().map(|one| message(&input.mistake(one))));
+            all.extend(cx.distinct_errors().map(|one| error_as_json(&input.error_with_location(one))));
         } else if cx.is_empty() {
             crate::say!("{}: `{}` has no errors", input.file.display(), input.declaration.name);
         } else {
-            input.report(cx);
+            input.report_errors(cx);
         }
     }
     if as_json {
@@ -38,7 +38,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     if good { Ok(()) } else { Err(Stop::Mistakes) }
 }
 
-fn message(mistake: &Mistake) -> Value {
+fn error_as_json(mistake: &Mistake) -> Value {
     json!({
         "level": "error",
         "mechanism": mistake.mechanism,

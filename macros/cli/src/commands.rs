@@ -5,7 +5,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use std::path::PathBuf;
 
 /// Returns the definition of `linkwork` with its subcommands.
-pub fn command() -> Command {
+pub fn linkwork_command() -> Command {
     Command::new("linkwork")
         .version(env!("CARGO_PKG_VERSION"))
         .about("Checks, shows, simulates, draws and exports mechanisms")
@@ -13,14 +13,14 @@ pub fn command() -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommand(
-            with_input(Command::new("check").about("Lists every error with its position")).arg(json()),
+            with_input(Command::new("check").about("Lists every error with its position")).arg(json_switch()),
         )
         .subcommand(
             with_input(
                 Command::new("show")
                     .about("Prints coordinates, units, structure, equations and operation counts"),
             )
-            .arg(json()),
+            .arg(json_switch()),
         )
         .subcommand(
             with_motion(with_input(Command::new("simulate").about(
@@ -29,7 +29,7 @@ pub fn command() -> Command {
             )))
             .arg(out_file()),
         )
-        .subcommand(view())
+        .subcommand(view_command())
         .subcommand(
             Command::new("gallery")
                 .about("Writes pages that simulate several mechanisms, and an index of them")
@@ -41,7 +41,7 @@ pub fn command() -> Command {
                         .value_parser(value_parser!(PathBuf)),
                 )
                 .arg(
-                    text("out", "FOLDER", "Output folder of the pages [default: gallery]")
+                    text_argument("out", "FOLDER", "Output folder of the pages [default: gallery]")
                         .short('o')
                         .value_parser(value_parser!(PathBuf)),
                 ),
@@ -63,7 +63,7 @@ pub fn command() -> Command {
                         .value_parser(value_parser!(PathBuf)),
                 )
                 .arg(
-                    text(
+                    text_argument(
                         "linkwork",
                         "FOLDER",
                         "Sources of Linkwork for the build [default: those of this command, or its release]",
@@ -76,16 +76,16 @@ pub fn command() -> Command {
                 .about("Prints a completion script for a shell")
                 .arg(Arg::new("shell").required(true).value_parser(value_parser!(clap_complete::Shell))),
         )
-        .subcommand(export())
+        .subcommand(export_command())
 }
 
 /// Returns the definition of the subcommand `linkwork view`.
-pub fn view() -> Command {
+pub fn view_command() -> Command {
     with_motion(with_input(
         Command::new("view").about("Writes a page of HTML that shows a motion and opens offline"),
     ))
     .arg(
-        text(
+        text_argument(
             "motion",
             "FILE",
             "Motion to show, instead of simulating one: comma-separated values with the columns t and q.…",
@@ -103,11 +103,11 @@ pub fn view() -> Command {
         ]),
     )
     .arg(
-        text("meshes", "FOLDER", "Folder of the meshes of a robot file [default: next to it]")
+        text_argument("meshes", "FOLDER", "Folder of the meshes of a robot file [default: next to it]")
             .value_parser(value_parser!(PathBuf)),
     )
     .arg(
-        switch(
+        switch_argument(
             "live",
             "Writes a page that simulates the mechanism, with sliders for parameters, state and inputs",
         )
@@ -122,15 +122,18 @@ pub fn view() -> Command {
             "table",
         ]),
     )
-    .arg(switch("fragment", "Writes a part of a page, for the documentation of a crate and other documents"))
+    .arg(switch_argument(
+        "fragment",
+        "Writes a part of a page, for the documentation of a crate and other documents",
+    ))
     .arg(
-        text("out", "FILE", "Output file [default: the mechanism's name with .html]")
+        text_argument("out", "FILE", "Output file [default: the mechanism's name with .html]")
             .short('o')
             .value_parser(value_parser!(PathBuf)),
     )
 }
 
-fn export() -> Command {
+fn export_command() -> Command {
     Command::new("export")
         .about("Writes a mechanism's functions")
         .subcommand_required(true)
@@ -151,9 +154,12 @@ fn export() -> Command {
 fn export_c() -> Command {
     let command = Command::new("c").about("C99: a source file and a header that need only libm");
     with_source_options(command, "Output folder of the two files")
-        .arg(switch("casadi", "Writes a third file: the functions in the form that CasADi and acados call"))
+        .arg(switch_argument(
+            "casadi",
+            "Writes a third file: the functions in the form that CasADi and acados call",
+        ))
         .arg(
-            text("set", "NAME=VALUE", "Fixes a parameter in the functions for CasADi and acados")
+            text_argument("set", "NAME=VALUE", "Fixes a parameter in the functions for CasADi and acados")
                 .action(ArgAction::Append)
                 .requires("casadi"),
         )
@@ -166,13 +172,18 @@ fn export_kernels(name: &'static str, about: &'static str) -> Command {
 /// Adds the options that all exports of source code share.
 fn with_source_options(command: Command, folder: &'static str) -> Command {
     with_input(command)
-        .arg(text("out", "FOLDER", folder).short('o').default_value(".").value_parser(value_parser!(PathBuf)))
-        .arg(text("prefix", "NAME", "Prefix of names and files [default: the mechanism's name]"))
         .arg(
-            text("scalar", "TYPE", "Type of numbers [default: that of the struct]")
+            text_argument("out", "FOLDER", folder)
+                .short('o')
+                .default_value(".")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(text_argument("prefix", "NAME", "Prefix of names and files [default: the mechanism's name]"))
+        .arg(
+            text_argument("scalar", "TYPE", "Type of numbers [default: that of the struct]")
                 .value_parser(["double", "float"]),
         )
-        .arg(switch("no-derivatives", "Leaves out the derivatives of the dynamics"))
+        .arg(switch_argument("no-derivatives", "Leaves out the derivatives of the dynamics"))
 }
 
 fn export_fmu() -> Command {
@@ -180,14 +191,17 @@ fn export_fmu() -> Command {
         Command::new("fmu").about("FMI 3.0: a model for simulation tools, with sources and a binary");
     with_start(with_tables(with_input(command)))
         .arg(
-            text("out", "FILE", "Output file [default: the mechanism's name with .fmu]")
+            text_argument("out", "FILE", "Output file [default: the mechanism's name with .fmu]")
                 .short('o')
                 .value_parser(value_parser!(PathBuf)),
         )
-        .arg(text("prefix", "NAME", "Identifier of the model [default: the mechanism's name]"))
-        .arg(switch("no-derivatives", "Leaves out directional and adjoint derivatives"))
-        .arg(switch("no-binary", "Writes sources only"))
-        .arg(text("compiler", "NAME", "C compiler of the binary [default: cc]").conflicts_with("no-binary"))
+        .arg(text_argument("prefix", "NAME", "Identifier of the model [default: the mechanism's name]"))
+        .arg(switch_argument("no-derivatives", "Leaves out directional and adjoint derivatives"))
+        .arg(switch_argument("no-binary", "Writes sources only"))
+        .arg(
+            text_argument("compiler", "NAME", "C compiler of the binary [default: cc]")
+                .conflicts_with("no-binary"),
+        )
 }
 
 fn export_library() -> Command {
@@ -196,17 +210,17 @@ fn export_library() -> Command {
             .about("A crate and a header: all functions on plain arrays, as a shared and a static library"),
     ))
     .arg(
-        text("out", "FOLDER", "Output folder of the crate [default: the prefix]")
+        text_argument("out", "FOLDER", "Output folder of the crate [default: the prefix]")
             .short('o')
             .value_parser(value_parser!(PathBuf)),
     )
-    .arg(text("prefix", "NAME", "Prefix of names [default: the mechanism's name]"))
-    .arg(text(
+    .arg(text_argument("prefix", "NAME", "Prefix of names [default: the mechanism's name]"))
+    .arg(text_argument(
         "linkwork",
         "FOLDER",
         "Sources of Linkwork for the build [default: those of this command, or its release]",
     ))
-    .arg(switch(
+    .arg(switch_argument(
         "expanded",
         "Writes the generated code instead of the attribute, for builds without the compiler",
     ))
@@ -223,8 +237,8 @@ fn with_input(command: Command) -> Command {
                 .required(true)
                 .value_parser(value_parser!(PathBuf)),
         )
-        .arg(text("struct", "NAME", "Name of the struct, for Rust files with several"))
-        .arg(text(
+        .arg(text_argument("struct", "NAME", "Name of the struct, for Rust files with several"))
+        .arg(text_argument(
             "with",
             "OPTIONS",
             "Further arguments of the attribute, as in `base = free, inertia = trust`",
@@ -233,7 +247,7 @@ fn with_input(command: Command) -> Command {
 
 fn with_tables(command: Command) -> Command {
     command.arg(
-        text(
+        text_argument(
             "table",
             "NAME=FILE",
             "Values of a table: a line for each grid point with its variables, then its value, separated by \
@@ -248,7 +262,7 @@ fn with_tables(command: Command) -> Command {
 fn with_start(command: Command) -> Command {
     command
         .arg(
-            text(
+            text_argument(
                 "set",
                 "NAME=VALUE",
                 "Value of a parameter, of an initial coordinate q.NAME or velocity v.NAME, or of an input \
@@ -257,7 +271,7 @@ fn with_start(command: Command) -> Command {
             .action(ArgAction::Append),
         )
         .arg(
-            text(
+            text_argument(
                 "guess",
                 "q.NAME=VALUE",
                 "Guess of an initial coordinate that constraints determine; selects the assembly mode of a \
@@ -270,49 +284,53 @@ fn with_start(command: Command) -> Command {
 fn with_motion(command: Command) -> Command {
     let command = with_start(with_tables(command));
     let number_argument = |name, value, help| {
-        text(name, value, help).value_parser(value_parser!(f64)).allow_negative_numbers(true)
+        text_argument(name, value, help).value_parser(value_parser!(f64)).allow_negative_numbers(true)
     };
     command
         .arg(
-            text("inputs", "FILE", "Inputs over time: comma-separated values with the columns t and u.…")
-                .value_parser(value_parser!(PathBuf)),
+            text_argument(
+                "inputs",
+                "FILE",
+                "Inputs over time: comma-separated values with the columns t and u.…",
+            )
+            .value_parser(value_parser!(PathBuf)),
         )
         .arg(number_argument("duration", "SECONDS", "Duration of the motion [default: 10]"))
         .arg(number_argument("every", "SECONDS", "Time between samples [default: 1/60]"))
         .arg(number_argument("tolerance", "NUMBER", "Relative and absolute error of a step [default: 1e-8]"))
         .arg(
-            text(
+            text_argument(
                 "method",
                 "NAME",
                 "Method of integration [default: automatic: Dormand–Prince, from where it is stiff RODAS, \
                  with contacts time stepping]",
             )
-            .value_parser(methods()),
+            .value_parser(integration_method_names()),
         )
         .arg(number_argument("step", "SECONDS", "Step of methods with fixed steps [default: 1e-3]"))
-        .arg(switch("without-contacts", "Ignores contacts: bodies pass through each other"))
+        .arg(switch_argument("without-contacts", "Ignores contacts: bodies pass through each other"))
 }
 
 /// Names of the methods of integration.
-fn methods() -> PossibleValuesParser {
+fn integration_method_names() -> PossibleValuesParser {
     let names = linkwork_jit::Method::NAMES.iter();
     PossibleValuesParser::new(names.map(|(name, ..)| -> &'static str { name.replace('_', "-").leak() }))
 }
 
-fn text(name: &'static str, value: &'static str, help: &'static str) -> Arg {
+fn text_argument(name: &'static str, value: &'static str, help: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value).help(help)
 }
 
-fn switch(name: &'static str, help: &'static str) -> Arg {
+fn switch_argument(name: &'static str, help: &'static str) -> Arg {
     Arg::new(name).long(name).help(help).action(ArgAction::SetTrue)
 }
 
-fn json() -> Arg {
-    switch("json", "Prints JSON for other programs")
+fn json_switch() -> Arg {
+    switch_argument("json", "Prints JSON for other programs")
 }
 
 fn out_file() -> Arg {
-    text("out", "FILE", "Output file [default: standard output]")
+    text_argument("out", "FILE", "Output file [default: standard output]")
         .short('o')
         .value_parser(value_parser!(PathBuf))
 }

@@ -4,8 +4,9 @@ use crate::Stop;
 use crate::export::write_output;
 use crate::input::Input;
 use crate::names::Names;
-use crate::written::{self, Role, number, vector};
+use crate::written::{self, Role, format_number, format_vector};
 use clap::ArgMatches;
+use linkwork_compiler::compile;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::resolve::build_model;
@@ -17,7 +18,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::PathBuf;
 
-pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
+pub fn run_convert(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     if !input.is_robot {
         return Err(Stop::Failure(format!(
@@ -34,8 +35,8 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         )));
     }
     let cx = &mut Diagnostics::new();
-    let source = input.read(cx);
-    let source = input.checked(source, cx)?;
+    let source = input.parse_source(cx);
+    let source = input.result_without_errors(source, cx)?;
     if !source.mechanism.shell.file_fields.is_empty() {
         return Err(Stop::Failure("`parameters` is for structs that refer to the file".to_string()));
     }
@@ -47,8 +48,12 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         ));
     }
     let description = &source.mechanism.description;
+    // A file that would not compile itself, for example with limits that exclude every value, has no valid
+    // struct either.
+    let graph = Graph::new();
+    input.result_without_errors(compile(&source, &graph, cx), cx)?;
     let mut struct_of = Struct::new(description);
-    let text = struct_of.text(&input);
+    let text = struct_of.convert_to_struct(&input);
     struct_of.notes.iter().for_each(|note| crate::note!("linkwork: {note}"));
     struct_of.tell_renamed();
     write_output(matches, &text)
@@ -88,12 +93,12 @@ impl<'a> Struct<'a> {
             .iter()
             .map(|joint| ("joint", &joint.name.text, made.joints.field_or_same(&joint.name.text)));
         let all: Vec<_> = links.chain(joints).collect();
-        all.into_iter().for_each(|(kind, name, field)| made.rename(kind, name, &field));
+        all.into_iter().for_each(|(kind, name, field)| made.record_renamed_element(kind, name, &field));
         made
     }
 
     /// Records a name that differs from the one in the file.
-    fn rename(&mut self, kind: &str, name: &str, field: &str) {
+    fn record_renamed_element(&mut self, kind: &str, name: &str, field: &str) {
         if name != field {
             self.renamed.push((format!("{kind} `{name}`"), field.to_string()));
         }
@@ -112,34 +117,40 @@ impl<'a> Struct<'a> {
         }
     }
 
-    fn text(&mut self, input: &Input) -> String {
+    fn convert_to_struct(&mut self, input: &Input) -> String {
         let d = self.description;
-        d.bodies.iter().filter(|body| body.name.text != GROUND).for_each(|body| self.body(body));
-        d.joints.iter().for_each(|joint| self.joint(joint));
+        d.bodies.iter().filter(|body| body.name.text != GROUND).for_each(|body| self.add_body(body));
+        d.joints.iter().for_each(|joint| self.add_joint(joint));
         d.joints.iter().for_each(|joint| self.elements_of(joint));
-        self.inputs();
-        d.drives.iter().for_each(|drive| self.drive(drive));
+        self.add_inputs();
+        d.drives.iter().for_each(|drive| self.add_drive(drive));
         for (name, e) in &d.dissipations {
-            let e = self.expression(e);
-            self.declare(&format!("#[dissipation({e})]"), ("dissipation", &name.text), "Rayleigh");
+            let e = self.format_expression(e);
+            self.declare_named_element(
+                &format!("#[dissipation({e})]"),
+                ("dissipation", &name.text),
+                "Rayleigh",
+            );
         }
         for constraint in &d.constraints {
-            let (value, other) = (self.expression(&constraint.value), constraint.other.as_ref());
-            let other = other.map_or(String::new(), |other| format!(" = {}", self.expression(other)));
+            let (value, other) = (self.format_expression(&constraint.value), constraint.other.as_ref());
+            let other = other.map_or(String::new(), |other| format!(" = {}", self.format_expression(other)));
             let kind =
                 if constraint.kind == ConstraintKind::Holonomic { "Holonomic" } else { "Nonholonomic" };
             let named = ("constraint", constraint.name.text.as_str());
-            self.declare(&format!("#[constraint({value}{other})]"), named, kind);
+            self.declare_named_element(&format!("#[constraint({value}{other})]"), named, kind);
         }
-        d.limits.iter().for_each(|limit| self.limit(limit));
+        d.limits.iter().for_each(|limit| self.add_limit(limit));
         if d.limits.iter().any(|limit| limit.arguments.get(Key::Restitution).is_some()) {
             self.notes.push("limits are bounds here, not stops".to_string());
         }
         if !d.contacts.is_empty() {
             self.notes.push(format!("contacts, which `#[contact]` declares: {}", d.contacts.len()));
         }
-        let mut options =
-            vec![format!("gravity = {}", d.gravity.as_ref().map_or("0 * z".to_string(), written::gravity))];
+        let mut options = vec![format!(
+            "gravity = {}",
+            d.gravity.as_ref().map_or("0 * z".to_string(), written::format_gravity)
+        )];
         match d.inertias {
             Inertias::Check => {}
             Inertias::Trust => options.push("inertia = trust".to_string()),
@@ -170,29 +181,31 @@ impl<'a> Struct<'a> {
         text
     }
 
-    fn field(&mut self, attribute: &str, name: &str, kind: &str) {
+    fn add_field(&mut self, attribute: &str, name: &str, kind: &str) {
         let _ = writeln!(self.fields, "    {attribute}\n    {name}: {kind},");
     }
 
     /// Adds a field with a unique name, and returns the name.
-    fn element(&mut self, attribute: &str, name: &str, kind: &str) -> String {
-        let name = self.others.fresh(name, "element");
-        self.field(attribute, &name, kind);
+    fn add_unique_field(&mut self, attribute: &str, name: &str, kind: &str) -> String {
+        let name = self.others.unused_field_name(name, "element");
+        self.add_field(attribute, &name, kind);
         name
     }
 
     /// Adds a field for a named element of the file, and records the name if it must be changed.
-    fn declare(&mut self, attribute: &str, (what, name): (&str, &str), kind: &str) {
-        let field = self.element(attribute, name, kind);
-        self.rename(what, name, &field);
+    fn declare_named_element(&mut self, attribute: &str, (what, name): (&str, &str), kind: &str) {
+        let field = self.add_unique_field(attribute, name, kind);
+        self.record_renamed_element(what, name, &field);
     }
 
-    fn body(&mut self, body: &Body) {
+    fn add_body(&mut self, body: &Body) {
         let mut figures = Vec::new();
-        figures.extend(body.mass.as_ref().map(|e| format!("mass = {}", self.expression(e))));
-        figures.extend(body.com.as_ref().map(|e| format!("com = {}", self.vector(e))));
+        figures.extend(body.mass.as_ref().map(|e| format!("mass = {}", self.format_expression(e))));
+        figures.extend(body.com.as_ref().map(|e| format!("com = {}", self.format_vector(e))));
         figures.extend(
-            body.inertia.as_ref().map(|e| format!("inertia = {}", written::inertia(e, &self.expression(e)))),
+            body.inertia
+                .as_ref()
+                .map(|e| format!("inertia = {}", written::format_inertia(e, &self.format_expression(e)))),
         );
         let attribute = if figures.is_empty() {
             "#[body]".to_string()
@@ -200,13 +213,17 @@ impl<'a> Struct<'a> {
             format!("#[body({})]", figures.join(", "))
         };
         let name = self.links.field_or_same(&body.name.text);
-        self.field(&attribute, &name, "Body");
+        self.add_field(&attribute, &name, "Body");
     }
 
-    fn joint(&mut self, joint: &Joint) {
-        let mut figures = vec![format!("{} -> {}", self.end(&joint.parent), self.end(&joint.child))];
+    fn add_joint(&mut self, joint: &Joint) {
+        let mut figures = vec![format!(
+            "{} -> {}",
+            self.format_endpoint(&joint.parent),
+            self.format_endpoint(&joint.child)
+        )];
         for (word, axes) in [("about", &joint.about), ("along", &joint.along)] {
-            let axes: Vec<String> = axes.iter().map(written::axis).collect();
+            let axes: Vec<String> = axes.iter().map(written::format_axis).collect();
             match axes.as_slice() {
                 [] => {}
                 [one] => figures.push(format!("{word} = {one}")),
@@ -214,19 +231,19 @@ impl<'a> Struct<'a> {
             }
         }
         for (word, e) in [("pitch", &joint.pitch), ("lead", &joint.lead)] {
-            figures.extend(e.as_ref().map(|e| format!("{word} = {}", self.expression(e))));
+            figures.extend(e.as_ref().map(|e| format!("{word} = {}", self.format_expression(e))));
         }
         let name = self.joints.field_or_same(&joint.name.text);
-        self.field(&format!("#[joint({})]", figures.join(", ")), &name, &format!("{:?}", joint.kind));
+        self.add_field(&format!("#[joint({})]", figures.join(", ")), &name, &format!("{:?}", joint.kind));
     }
 
-    fn end(&self, end: &Endpoint) -> String {
+    fn format_endpoint(&self, end: &Endpoint) -> String {
         let mut text = self.links.field_or_same(&end.body.text);
         if let Some(at) = &end.at {
-            let _ = write!(text, ".at({})", self.vector(at));
+            let _ = write!(text, ".at({})", self.format_vector(at));
         }
         if !end.rotated.is_empty() {
-            let steps: Vec<String> = end.rotated.iter().map(|step| self.expression(step)).collect();
+            let steps: Vec<String> = end.rotated.iter().map(|step| self.format_expression(step)).collect();
             let _ = write!(text, ".rotated({})", steps.join(", "));
         }
         text
@@ -236,12 +253,16 @@ impl<'a> Struct<'a> {
     fn elements_of(&mut self, joint: &Joint) {
         let on = self.joints.field_or_same(&joint.name.text);
         if let Some(damping) = &joint.damping {
-            let e = self.expression(damping);
-            self.element(&format!("#[acts(on = {on}, damping = {e})]"), &format!("{on}_damping"), "Dashpot");
+            let e = self.format_expression(damping);
+            self.add_unique_field(
+                &format!("#[acts(on = {on}, damping = {e})]"),
+                &format!("{on}_damping"),
+                "Dashpot",
+            );
         }
         if let Some(friction) = &joint.friction {
-            let e = self.expression(friction);
-            self.element(
+            let e = self.format_expression(friction);
+            self.add_unique_field(
                 &format!("#[acts(on = {on}, coulomb = {e})]"),
                 &format!("{on}_friction"),
                 "Friction",
@@ -249,11 +270,11 @@ impl<'a> Struct<'a> {
         }
         if let Some(mimic) = &joint.mimic {
             let master = self.joints.field_or_same(&mimic.joint.text);
-            let mut rule = format!("{on} = {} * {master}", number(mimic.multiplier));
+            let mut rule = format!("{on} = {} * {master}", format_number(mimic.multiplier));
             if mimic.offset != 0.0 {
-                let _ = write!(rule, " + {}", number(mimic.offset));
+                let _ = write!(rule, " + {}", format_number(mimic.offset));
             }
-            self.element(&format!("#[constraint({rule})]"), &format!("{on}_follows"), "Holonomic");
+            self.add_unique_field(&format!("#[constraint({rule})]"), &format!("{on}_follows"), "Holonomic");
             self.notes.push(format!(
                 "`{on}` follows `{master}` by a constraint, and has a velocity of its own here"
             ));
@@ -261,24 +282,28 @@ impl<'a> Struct<'a> {
     }
 
     /// Adds the inputs in the order of the file.
-    fn inputs(&mut self) {
+    fn add_inputs(&mut self) {
         for joint in self.description.joints.iter().filter(|joint| joint.driven && joint.mimic.is_none()) {
             let on = self.joints.field_or_same(&joint.name.text);
             let attribute = format!("#[acts(on = {on})]");
-            let motor = self.element(&attribute, &format!("{on}_motor"), push(joint.kind));
-            self.rename("input", &joint.name.text, &motor);
+            let motor = self.add_unique_field(&attribute, &format!("{on}_motor"), motor_type(joint.kind));
+            self.record_renamed_element("input", &joint.name.text, &motor);
         }
         let is_driven_by_input = |drive: &&Drive| matches!(drive.law, DriveLaw::Input(_));
         for drive in self.description.drives.iter().filter(is_driven_by_input) {
-            if let [(joint, 1.0)] = drive.on.terms() {
+            if let [(joint, 1.0)] = drive.on.weighted_joints() {
                 let on = self.joints.field_or_same(&joint.text);
-                let kind = push(self.kind(&joint.text));
-                self.declare(&format!("#[acts(on = {on})]"), ("input", &drive.name.text), kind);
+                let kind = motor_type(self.kind_of_joint(&joint.text));
+                self.declare_named_element(&format!("#[acts(on = {on})]"), ("input", &drive.name.text), kind);
             } else if let Some(on) = self.length(drive) {
-                self.declare(&format!("#[acts(on = {on})]"), ("input", &drive.name.text), "Force");
+                self.declare_named_element(
+                    &format!("#[acts(on = {on})]"),
+                    ("input", &drive.name.text),
+                    "Force",
+                );
             } else {
-                let name = self.others.fresh(&drive.name.text, "input");
-                self.rename("input", &drive.name.text, &name);
+                let name = self.others.unused_field_name(&drive.name.text, "input");
+                self.record_renamed_element("input", &drive.name.text, &name);
                 let _ = writeln!(self.fields, "    {name}: Input,");
                 if let DriveOn::Wrench(wrench) = &drive.on {
                     self.add_wrench(wrench, &name, &name);
@@ -292,12 +317,12 @@ impl<'a> Struct<'a> {
     fn length(&self, drive: &Drive) -> Option<String> {
         match &drive.on {
             DriveOn::Length(length) => {
-                (!self.constant.contains(&drive.name.text)).then(|| self.expression(length))
+                (!self.constant.contains(&drive.name.text)).then(|| self.format_expression(length))
             }
             DriveOn::Sum(terms) => {
                 let terms = terms.iter().filter(|(_, weight)| *weight != 0.0);
                 let term = |(joint, weight): &(Name, f64)| {
-                    format!("{} * {}", number(*weight), self.joints.field_or_same(&joint.text))
+                    format!("{} * {}", format_number(*weight), self.joints.field_or_same(&joint.text))
                 };
                 terms.map(term).reduce(|sum, term| format!("{sum} + {term}"))
             }
@@ -312,7 +337,7 @@ impl<'a> Struct<'a> {
             if vector != [0.0; 3] {
                 let value = vector_in_axes(vector, &body);
                 let attribute = format!("#[acts(on = {on}, value = {factor} * ({value}))]");
-                self.element(&attribute, &format!("{name}_{}", kind.to_ascii_lowercase()), kind);
+                self.add_unique_field(&attribute, &format!("{name}_{}", kind.to_ascii_lowercase()), kind);
             }
         }
     }
@@ -329,8 +354,8 @@ impl<'a> Struct<'a> {
         }
         if !rates.is_empty() {
             let rate = rates.join(" + ");
-            let loss = format!("#[dissipation({} * pow({rate}, 2))]", number(damping / 2.0));
-            self.declare(&loss, ("element", name), "Rayleigh");
+            let loss = format!("#[dissipation({} * pow({rate}, 2))]", format_number(damping / 2.0));
+            self.declare_named_element(&loss, ("element", name), "Rayleigh");
         }
     }
 
@@ -342,8 +367,8 @@ impl<'a> Struct<'a> {
             return None;
         }
         let body = match &wrench.on.kind {
-            ExprKind::Method(body, ..) => body.name(),
-            _ => wrench.on.name(),
+            ExprKind::Method(body, ..) => body.as_name(),
+            _ => wrench.on.as_name(),
         };
         let body = body.filter(|body| *body != GROUND)?;
         if self.is_fixed(body) {
@@ -352,7 +377,7 @@ impl<'a> Struct<'a> {
             self.notes.push(note);
             return None;
         }
-        let point = written::place(&wrench.on, &|name| self.links.field(name));
+        let point = written::format_point(&wrench.on, &|name| self.links.field_name(name));
         Some((point, self.links.field_or_same(body)))
     }
 
@@ -372,20 +397,20 @@ impl<'a> Struct<'a> {
         false
     }
 
-    fn kind(&self, joint: &str) -> JointKind {
+    fn kind_of_joint(&self, joint: &str) -> JointKind {
         let found = self.description.joints.iter().find(|known| known.name.text == joint);
         found.map_or(JointKind::Pin, |joint| joint.kind)
     }
 
     /// Adds a spring or another element of a file. On one joint, its weight is a factor of the coefficients.
-    fn drive(&mut self, drive: &Drive) {
+    fn add_drive(&mut self, drive: &Drive) {
         let name = drive.name.text.as_str();
         if matches!(drive.law, DriveLaw::Input(_)) {
             return;
         }
         if let DriveOn::Wrench(wrench) = &drive.on {
             match drive.law {
-                DriveLaw::Push(force) => self.add_wrench(wrench, name, &number(force)),
+                DriveLaw::Push(force) => self.add_wrench(wrench, name, &format_number(force)),
                 DriveLaw::Damper(damping) => self.add_wrench_damping(wrench, name, damping),
                 // The other laws have no effect without a length.
                 _ => {}
@@ -398,33 +423,45 @@ impl<'a> Struct<'a> {
         // The friction law is regularised in the velocity of the weighted sum, so that the weight cannot
         // become a factor.
         let is_scaled = matches!(drive.law, DriveLaw::Friction(_));
-        if let [(joint, w)] = drive.on.terms()
+        if let [(joint, w)] = drive.on.weighted_joints()
             && (w.abs() == 1.0 || !is_scaled)
         {
-            let (on, w, kind) = (self.joints.field_or_same(&joint.text), *w, self.kind(&joint.text));
+            let (on, w, kind) = (self.joints.field_or_same(&joint.text), *w, self.kind_of_joint(&joint.text));
             let (figures, element) = match drive.law {
                 DriveLaw::Slack { stiffness, range } => {
                     let range = range.map(|end| end / w);
-                    (slack(stiffness * w * w, if w < 0.0 { [range[1], range[0]] } else { range }), "Spring")
+                    (
+                        slack_spring_energy(
+                            stiffness * w * w,
+                            if w < 0.0 { [range[1], range[0]] } else { range },
+                        ),
+                        "Spring",
+                    )
                 }
                 DriveLaw::Spring { stiffness, free } => {
                     let word = if kind == JointKind::Sleeve { "free_length" } else { "free_angle" };
                     let free = if free == 0.0 {
                         String::new()
                     } else {
-                        format!(", {word} = {}", written::angle(&number(free / w)))
+                        format!(", {word} = {}", written::format_angle(&format_number(free / w)))
                     };
-                    (format!("stiffness = {}{free}", number(stiffness * w * w)), "Spring")
+                    (format!("stiffness = {}{free}", format_number(stiffness * w * w)), "Spring")
                 }
-                DriveLaw::Damper(damping) => (damper(damping * w * w), "Dashpot"),
-                DriveLaw::Friction(force) => (format!("coulomb = {}", number((force * w).abs())), "Friction"),
+                DriveLaw::Damper(damping) => (damper_law(damping * w * w), "Dashpot"),
+                DriveLaw::Friction(force) => {
+                    (format!("coulomb = {}", format_number((force * w).abs())), "Friction")
+                }
                 DriveLaw::Inerter(inertance) => {
-                    (format!("inertance = {}", number(inertance * w * w)), "Inerter")
+                    (format!("inertance = {}", format_number(inertance * w * w)), "Inerter")
                 }
-                DriveLaw::Push(force) => (format!("value = {}", number(force * w)), push(kind)),
+                DriveLaw::Push(force) => (format!("value = {}", format_number(force * w)), motor_type(kind)),
                 DriveLaw::Input(_) => return,
             };
-            return self.declare(&format!("#[acts(on = {on}, {figures})]"), ("element", name), element);
+            return self.declare_named_element(
+                &format!("#[acts(on = {on}, {figures})]"),
+                ("element", name),
+                element,
+            );
         }
         self.on_length(&on, name, drive.law);
     }
@@ -432,60 +469,62 @@ impl<'a> Struct<'a> {
     /// Adds a spring or another element on the length of a cable, or on a sum of coordinates.
     fn on_length(&mut self, on: &str, name: &str, law: DriveLaw) {
         let (figures, element) = match law {
-            DriveLaw::Spring { stiffness, free } => {
-                (format!("stiffness = {}, free_length = {}", number(stiffness), number(free)), "Spring")
-            }
-            DriveLaw::Slack { stiffness, range } => (slack(stiffness, range), "Spring"),
-            DriveLaw::Damper(damping) => (damper(damping), "Dashpot"),
-            DriveLaw::Friction(force) => (format!("coulomb = {}", number(force)), "Friction"),
-            DriveLaw::Inerter(inertance) => (format!("inertance = {}", number(inertance)), "Inerter"),
-            DriveLaw::Push(force) => (format!("value = {}", number(force)), "Force"),
+            DriveLaw::Spring { stiffness, free } => (
+                format!("stiffness = {}, free_length = {}", format_number(stiffness), format_number(free)),
+                "Spring",
+            ),
+            DriveLaw::Slack { stiffness, range } => (slack_spring_energy(stiffness, range), "Spring"),
+            DriveLaw::Damper(damping) => (damper_law(damping), "Dashpot"),
+            DriveLaw::Friction(force) => (format!("coulomb = {}", format_number(force)), "Friction"),
+            DriveLaw::Inerter(inertance) => (format!("inertance = {}", format_number(inertance)), "Inerter"),
+            DriveLaw::Push(force) => (format!("value = {}", format_number(force)), "Force"),
             DriveLaw::Input(_) => return,
         };
-        self.declare(&format!("#[acts(on = {on}, {figures})]"), ("element", name), element);
+        self.declare_named_element(&format!("#[acts(on = {on}, {figures})]"), ("element", name), element);
     }
 
-    fn limit(&mut self, limit: &Limit) {
-        let mut figures = vec![format!("on = {}", self.expression(&limit.on))];
+    fn add_limit(&mut self, limit: &Limit) {
+        let mut figures = vec![format!("on = {}", self.format_expression(&limit.on))];
         for (key, e) in limit.arguments.iter().filter(|(key, _)| *key != Key::Restitution) {
-            let value = self.expression(e);
-            let value = if matches!(key, Key::From | Key::To) { written::angle(&value) } else { value };
+            let value = self.format_expression(e);
+            let value =
+                if matches!(key, Key::From | Key::To) { written::format_angle(&value) } else { value };
             figures.push(format!("{} = {value}", key.name()));
         }
         if figures.len() > 1 {
             let name = format!("{}_limit", limit.name.text);
-            self.element(&format!("#[limit({})]", figures.join(", ")), &name, "Limit");
+            self.add_unique_field(&format!("#[limit({})]", figures.join(", ")), &name, "Limit");
         }
     }
 
-    fn vector(&self, e: &Expr) -> String {
-        vector(e).unwrap_or_else(|| self.expression(e))
+    fn format_vector(&self, e: &Expr) -> String {
+        format_vector(e).unwrap_or_else(|| self.format_expression(e))
     }
 
-    fn expression(&self, e: &Expr) -> String {
-        written::expression(e, &|name, role| match role {
-            Role::Body => self.links.field(name),
-            Role::Coordinate => self.joints.field(name).or_else(|| self.links.field(name)),
+    fn format_expression(&self, e: &Expr) -> String {
+        written::format_expression(e, &|name, role| match role {
+            Role::Body => self.links.field_name(name),
+            Role::Coordinate => self.joints.field_name(name).or_else(|| self.links.field_name(name)),
         })
     }
 }
 
 /// Returns the type of a motor: a force for a prismatic joint, otherwise a torque.
-fn push(kind: JointKind) -> &'static str {
+fn motor_type(kind: JointKind) -> &'static str {
     if kind == JointKind::Sleeve { "Force" } else { "Torque" }
 }
 
 /// Returns a vector in the axes of a body.
 fn vector_in_axes(vector: [f64; 3], body: &str) -> String {
     let parts = vector.into_iter().zip(["x", "y", "z"]).filter(|(x, _)| *x != 0.0);
-    parts.map(|(x, axis)| format!("{} * {body}.{axis}", number(x))).collect::<Vec<_>>().join(" + ")
+    parts.map(|(x, axis)| format!("{} * {body}.{axis}", format_number(x))).collect::<Vec<_>>().join(" + ")
 }
 
 /// Returns the law of a damper; one with a negative coefficient, which adds energy, is written as a force.
-fn damper(damping: f64) -> String {
+fn damper_law(damping: f64) -> String {
     match damping < 0.0 {
-        true => format!("force = {} * speed", number(damping)),
-        false => format!("damping = {}", number(damping)),
+        true => format!("force = {} * speed", format_number(damping)),
+        false => format!("damping = {}", format_number(damping)),
     }
 }
 
@@ -500,14 +539,14 @@ fn constant_lengths(description: &Description) -> BTreeSet<String> {
     let probe = Description { drives: lengths.iter().enumerate().map(push).collect(), ..description.clone() };
     let graph = Graph::new();
     let Some(model) = build_model(&probe, &graph, &mut Diagnostics::new()) else { return BTreeSet::new() };
-    let forces: Vec<f64> = model.loads.iter().filter_map(|load| load.force.value()).collect();
+    let forces: Vec<f64> = model.loads.iter().filter_map(|load| load.force.constant_value()).collect();
     let is_constant = |k: usize| !forces.contains(&(k as f64 + 1.0));
     let names = lengths.iter().enumerate().filter(|(k, _)| is_constant(*k));
     names.map(|(_, drive)| drive.name.text.clone()).collect()
 }
 
 /// Returns the energy of a spring that is slack within a range.
-fn slack(stiffness: f64, [low, high]: [f64; 2]) -> String {
-    let (half, low, high) = (number(stiffness / 2.0), number(low), number(high));
+fn slack_spring_energy(stiffness: f64, [low, high]: [f64; 2]) -> String {
+    let (half, low, high) = (format_number(stiffness / 2.0), format_number(low), format_number(high));
     format!("energy = {half} * (pow(min(stretch - {low}, 0), 2) + pow(max(stretch - {high}, 0), 2))")
 }

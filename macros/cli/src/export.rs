@@ -5,7 +5,7 @@ use crate::Stop;
 use crate::commands::text_option;
 use crate::input::Input;
 use crate::library;
-use crate::motion::values;
+use crate::motion::named_option_values;
 use clap::ArgMatches;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::export::c::{self, Options};
@@ -14,18 +14,18 @@ use linkwork_compiler::{Source, expand, export_c, export_cuda, export_wgsl};
 use std::path::{Path, PathBuf};
 
 /// Writes a C source file and a header.
-pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
+pub fn export_c99_files(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let cx = &mut Diagnostics::new();
-    let source = input.read(cx);
-    let mut source = input.checked(source, cx)?;
-    let single = prepare(&mut source, matches);
+    let source = input.parse_source(cx);
+    let mut source = input.result_without_errors(source, cx)?;
+    let single = prepare_source(&mut source, matches);
     let prefix = text_option(matches, "prefix").unwrap_or_default().to_string();
-    let fixed = values("set", matches)?;
+    let fixed = named_option_values("set", matches)?;
     let fixed = fixed.into_iter().map(|(name, value)| (name.to_string(), value));
     let casadi = matches.get_flag("casadi").then(|| fixed.collect());
     let files = export_c(&source, &Options { prefix, single, casadi, ..Options::default() }, cx);
-    let files = input.checked(files, cx)?;
+    let files = input.result_without_errors(files, cx)?;
     let texts = [(".h", &files.header), (".c", &files.source)];
     let casadi = files.casadi.as_ref().map(|text| ("_casadi.c", text));
     write_all(matches, &files.prefix, &texts.into_iter().chain(casadi).collect::<Vec<_>>())?;
@@ -36,15 +36,15 @@ pub fn c99(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// Writes kernels in CUDA, and functions that launch them from C++ and Python.
-pub fn cuda(matches: &ArgMatches) -> Result<(), Stop> {
+pub fn export_cuda_files(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let cx = &mut Diagnostics::new();
-    let source = input.read(cx);
-    let mut source = input.checked(source, cx)?;
-    let single = prepare(&mut source, matches);
+    let source = input.parse_source(cx);
+    let mut source = input.result_without_errors(source, cx)?;
+    let single = prepare_source(&mut source, matches);
     let prefix = checked_prefix(matches, "CUDA")?;
     let files = export_cuda(&source, &Options { prefix, single, ..Options::default() }, cx);
-    let files = input.checked(files, cx)?;
+    let files = input.result_without_errors(files, cx)?;
     let texts = [(".cu", &files.kernels), (".cuh", &files.host), ("_cuda.py", &files.python)];
     write_all(matches, &files.prefix, &texts)?;
     for line in &files.left_out {
@@ -54,19 +54,19 @@ pub fn cuda(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// Writes compute shaders in WGSL, and a module for Python that runs them.
-pub fn wgsl(matches: &ArgMatches) -> Result<(), Stop> {
+pub fn export_wgsl_files(matches: &ArgMatches) -> Result<(), Stop> {
     if text_option(matches, "scalar") == Some("double") {
         let why = "WGSL has no double precision: remove `--scalar double`, or use `linkwork export cuda`";
         return Err(Stop::Failure(why.to_string()));
     }
     let input = Input::one(matches)?;
     let cx = &mut Diagnostics::new();
-    let source = input.read(cx);
-    let mut source = input.checked(source, cx)?;
-    prepare(&mut source, matches);
+    let source = input.parse_source(cx);
+    let mut source = input.result_without_errors(source, cx)?;
+    prepare_source(&mut source, matches);
     let prefix = checked_prefix(matches, "WGSL")?;
     let files = export_wgsl(&source, &prefix, cx);
-    let files = input.checked(files, cx)?;
+    let files = input.result_without_errors(files, cx)?;
     write_all(matches, &files.prefix, &[(".wgsl", &files.shaders), ("_wgpu.py", &files.python)])?;
     for line in &files.left_out {
         crate::note!("linkwork: not in WGSL: {line}");
@@ -75,7 +75,7 @@ pub fn wgsl(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// Requests the derivatives unless an option excludes them. Returns true for single precision.
-fn prepare(source: &mut Source, matches: &ArgMatches) -> bool {
+fn prepare_source(source: &mut Source, matches: &ArgMatches) -> bool {
     let description = &source.mechanism.description;
     let single = match text_option(matches, "scalar") {
         Some(scalar) => scalar == "float",
@@ -105,18 +105,20 @@ fn write_all(matches: &ArgMatches, prefix: &str, texts: &[(&str, &String)]) -> R
         .map_err(|error| Stop::Failure(format!("cannot create the folder {}: {error}", folder.display())))?;
     for (end, text) in texts {
         let path = folder.join(format!("{prefix}{end}"));
-        write(&path, text)?;
+        write_file(&path, text)?;
         crate::say!("{}", path.display());
     }
     Ok(())
 }
 
 /// Writes a crate whose functions have an interface of plain arrays.
-pub fn library(matches: &ArgMatches) -> Result<(), Stop> {
+pub fn export_library_crate(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let given_prefix = text_option(matches, "prefix").map(ToString::to_string);
-    let prefix = c::identifier(&given_prefix.unwrap_or_else(|| c::prefix(&input.declaration.name)));
-    let made = library::write(&input, &prefix, matches)?;
+    let prefix = c::identifier_from_name(
+        &given_prefix.unwrap_or_else(|| c::snake_case_prefix(&input.declaration.name)),
+    );
+    let made = library::generate_crate(&input, &prefix, matches)?;
     let folder = matches.get_one::<PathBuf>("out").cloned().unwrap_or_else(|| PathBuf::from(&prefix));
     for (path, text) in &made.files {
         let path = folder.join(path.replace("NAME", &made.prefix));
@@ -124,7 +126,7 @@ pub fn library(matches: &ArgMatches) -> Result<(), Stop> {
         std::fs::create_dir_all(parent).map_err(|error| {
             Stop::Failure(format!("cannot create the folder {}: {error}", parent.display()))
         })?;
-        write(&path, text)?;
+        write_file(&path, text)?;
         crate::say!("{}", path.display());
     }
     for name in &made.left_out {
@@ -134,13 +136,13 @@ pub fn library(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// Writes the generated Rust code, formatted.
-pub fn rust(matches: &ArgMatches) -> Result<(), Stop> {
+pub fn export_rust_code(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let cx = &mut Diagnostics::new();
-    if let Some(source) = input.read(cx) {
+    if let Some(source) = input.parse_source(cx) {
         linkwork_compiler::compile(&source, &linkwork_compiler::expr::Graph::new(), cx);
     }
-    input.checked(Some(()), cx)?;
+    input.result_without_errors(Some(()), cx)?;
     let tokens = expand(input.declaration.arguments.clone(), input.declaration.item.clone(), &input.folder)
         .into_tokens()?;
     let text = prettyplease::unparse(&syn::parse2(tokens)?);
@@ -150,7 +152,7 @@ pub fn rust(matches: &ArgMatches) -> Result<(), Stop> {
 /// Writes a text to the file of `--out`, or to standard output.
 pub fn write_output(matches: &ArgMatches, text: &str) -> Result<(), Stop> {
     match matches.get_one::<PathBuf>("out") {
-        Some(path) => write(path, text),
+        Some(path) => write_file(path, text),
         None => {
             crate::print(format_args!("{text}"));
             Ok(())
@@ -158,7 +160,7 @@ pub fn write_output(matches: &ArgMatches, text: &str) -> Result<(), Stop> {
     }
 }
 
-fn write(path: &Path, text: &str) -> Result<(), Stop> {
+fn write_file(path: &Path, text: &str) -> Result<(), Stop> {
     std::fs::write(path, text)
         .map_err(|error| Stop::Failure(format!("cannot write {}: {error}", path.display())))
 }

@@ -18,12 +18,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Writes an FMU with sources, and with a binary for this machine if there is a C compiler.
-pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
+pub fn run_fmu_export(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let prefix = checked_prefix(matches, "FMI")?;
     let cx = &mut Diagnostics::new();
-    let source = input.read(cx);
-    let mut source = input.checked(source, cx)?;
+    let source = input.parse_source(cx);
+    let mut source = input.result_without_errors(source, cx)?;
     let graph = Graph::new();
     let values = start_values(&input, &graph, matches)?;
     let requests = &mut source.mechanism.requests;
@@ -33,7 +33,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
         requests.sensitivities |= !values.start.parameters.is_empty();
     }
     let files = export_fmu(&source, &prefix, &values.start, cx);
-    let files = input.checked(files, cx)?;
+    let files = input.result_without_errors(files, cx)?;
     let mut archive = Archive::default();
     for (path, text) in &files.files {
         archive.add(path, text.as_bytes())?;
@@ -48,7 +48,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     }
     let path = matches.get_one::<PathBuf>("out").cloned();
     let path = path.unwrap_or_else(|| PathBuf::from(format!("{}.fmu", files.identifier)));
-    std::fs::write(&path, archive.bytes())
+    std::fs::write(&path, archive.archive_bytes())
         .map_err(|error| Stop::Failure(format!("cannot write {}: {error}", path.display())))?;
     crate::say!("{}", path.display());
     for line in &files.left_out {
@@ -65,18 +65,21 @@ struct Values {
 
 /// Returns the start values of all variables; the initial state satisfies the constraints.
 fn start_values(input: &Input, graph: &Graph, matches: &ArgMatches) -> Result<Values, Stop> {
-    let loaded = input.loaded(graph)?;
+    let loaded = input.load_mechanism(graph)?;
     let start = Start::new(&loaded, matches)?;
-    if let Some(why) = start.obstacle() {
+    if let Some(why) = start.reason_without_motion() {
         return Err(Stop::Failure(format!("`{}` cannot be an FMU: {why}", loaded.model.name)));
     }
-    let (q, v) = start.state()?;
-    let tables = grid::table_options(matches, &loaded.source.tables())?.into_iter().map(|grid| TableValues {
-        axes: grid.axes,
-        values: grid.values,
-        smooth: grid.smooth,
-        extrapolated: grid.extrapolated,
-    });
+    let (q, v) = start.initial_state()?;
+    let tables =
+        grid::table_options(matches, &loaded.source.tables_with_variable_counts())?.into_iter().map(|grid| {
+            TableValues {
+                axes: grid.axes,
+                values: grid.values,
+                smooth: grid.smooth,
+                extrapolated: grid.extrapolated,
+            }
+        });
     let mut parameters = start.robot.parameter_values().to_vec();
     let states: Vec<usize> =
         loaded.source.mechanism.description.states.iter().map(|(_, index)| *index).collect();

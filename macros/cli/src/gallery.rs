@@ -6,7 +6,7 @@ use linkwork_view::Page;
 use std::path::{Path, PathBuf};
 
 /// Writes a page for each line of the list, and the index.
-pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
+pub fn write_gallery(matches: &ArgMatches) -> Result<(), Stop> {
     let list: &PathBuf =
         matches.get_one("list").ok_or_else(|| Stop::Failure("expected a list".to_string()))?;
     let out = matches.get_one("out").cloned().unwrap_or_else(|| PathBuf::from("gallery"));
@@ -18,7 +18,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
             continue;
         }
         let here = format!("{}:{}", list.display(), number + 1);
-        let (name, page) = page(list, line).map_err(|stop| match stop {
+        let (name, page) = page_of_line(list, line).map_err(|stop| match stop {
             Stop::Failure(why) => Stop::Failure(format!("{here}: {why}")),
             other => {
                 crate::note!("linkwork: {here}: the mechanism has errors");
@@ -42,20 +42,20 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// Returns the name and the page of the mechanism of a line.
-fn page(list: &Path, line: &str) -> Result<(String, Page), Stop> {
-    let mut words = words(line)?;
+fn page_of_line(list: &Path, line: &str) -> Result<(String, Page), Stop> {
+    let mut words = split_quoted_words(line)?;
     if let (Some(file), Some(folder)) = (words.first_mut(), list.parent()) {
         *file = folder.join(&*file).display().to_string();
     }
     let all = ["view".to_string(), "--live".to_string()].into_iter().chain(words);
-    let matches = commands::view()
+    let matches = commands::view_command()
         .try_get_matches_from(all)
         .map_err(|error| Stop::Failure(error.to_string().trim_end().to_string()))?;
-    view::page(&matches)
+    view::mechanism_page(&matches)
 }
 
 /// Splits a line at spaces outside of double quotes.
-fn words(line: &str) -> Result<Vec<String>, Stop> {
+fn split_quoted_words(line: &str) -> Result<Vec<String>, Stop> {
     let mut out: Vec<String> = Vec::new();
     for (k, part) in line.split('"').enumerate() {
         match k % 2 {

@@ -74,24 +74,24 @@ impl Grid {
             values.push(*value.ok_or_else(|| format!("the grid has no value at {at:?}"))?);
         }
         let grid = Grid { axes, values, smooth: false, extrapolated: false };
-        grid.looked().map_err(|error| error.to_string())?;
+        grid.interpolation_table().map_err(|error| error.to_string())?;
         Ok(grid)
     }
 
     /// Returns the table for interpolation; its values are leaked and live as long as the process.
-    pub fn looked(&self) -> Result<AnyTable, TableError> {
+    pub fn interpolation_table(&self) -> Result<AnyTable, TableError> {
         let leak_to_static_slice = |list: &[f64]| -> &'static [f64] { Vec::leak(list.to_vec()) };
         let axes: Vec<&'static [f64]> = self.axes.iter().map(|axis| leak_to_static_slice(axis)).collect();
         let values = leak_to_static_slice(&self.values);
         match axes[..] {
-            [a] => Table::new([a], values).map(|table| self.shaped(table).into()),
-            [a, b] => Table::new([a, b], values).map(|table| self.shaped(table).into()),
-            [a, b, c] => Table::new([a, b, c], values).map(|table| self.shaped(table).into()),
+            [a] => Table::new([a], values).map(|table| self.apply_table_options(table).into()),
+            [a, b] => Table::new([a, b], values).map(|table| self.apply_table_options(table).into()),
+            [a, b, c] => Table::new([a, b, c], values).map(|table| self.apply_table_options(table).into()),
             _ => Err(TableError::Size { expected: 3, found: axes.len() }),
         }
     }
 
-    fn shaped<const N: usize>(&self, table: Table<N>) -> Table<N> {
+    fn apply_table_options<const N: usize>(&self, table: Table<N>) -> Table<N> {
         let table = if self.smooth { table.smooth() } else { table };
         if self.extrapolated { table.extrapolated() } else { table }
     }

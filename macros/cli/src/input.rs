@@ -9,7 +9,10 @@ use linkwork_compiler::expr::Graph;
 use linkwork_compiler::import;
 use linkwork_compiler::mechanism::Model;
 use linkwork_compiler::passes::Passes;
-use linkwork_compiler::{DeclaredStruct, Source, compile, compile_with, declarations, derive_above, read};
+use linkwork_compiler::{
+    DeclaredStruct, Source, compile, compile_with, derive_above, mechanism_declarations, read_source,
+    reject_reproducible,
+};
 use linkwork_jit::Robot;
 use proc_macro2::{Span, TokenStream};
 use std::io::{ErrorKind, Read};
@@ -52,7 +55,7 @@ pub struct Loaded<'g> {
 impl Input {
     /// Returns the mechanism of the command line: the only one of its file, or the one that `--struct` names.
     pub fn one(matches: &ArgMatches) -> Result<Input, Stop> {
-        let mut all = Input::all(matches)?;
+        let mut all = Input::select_mechanisms(matches)?;
         if all.len() > 1 {
             let names: Vec<&str> = all.iter().map(|input| input.declaration.name.as_str()).collect();
             return Err(Stop::Failure(format!(
@@ -65,7 +68,7 @@ impl Input {
     }
 
     /// Returns all mechanisms of the file, or the one that `--struct` names.
-    pub fn all(matches: &ArgMatches) -> Result<Vec<Input>, Stop> {
+    pub fn select_mechanisms(matches: &ArgMatches) -> Result<Vec<Input>, Stop> {
         let file: &PathBuf =
             matches.get_one("file").ok_or_else(|| Stop::Failure("expected a file".to_string()))?;
         let more: TokenStream = text_option(matches, "with")
@@ -92,55 +95,60 @@ impl Input {
     }
 
     /// Parses the arguments and the struct. Errors are added to `cx`.
-    pub fn read(&self, cx: &mut Diagnostics) -> Option<Source> {
+    pub fn parse_source(&self, cx: &mut Diagnostics) -> Option<Source> {
         let DeclaredStruct { arguments, item, .. } = &self.declaration;
         if let Some(attribute) = self.declaration.derive_above {
             cx.add(derive_above(attribute));
         }
-        read(arguments.clone(), item.clone(), &self.folder, cx)
+        read_source(arguments.clone(), item.clone(), &self.folder, cx)
     }
 
     /// Prints the errors, if there are any.
-    pub fn report(&self, cx: &Diagnostics) -> Stop {
-        for one in cx.distinct() {
-            crate::note!("{}", self.mistake(one));
+    pub fn report_errors(&self, cx: &Diagnostics) -> Stop {
+        for one in cx.distinct_errors() {
+            crate::note!("{}", self.error_with_location(one));
         }
         Stop::Mistakes
     }
 
     /// Returns the result if there are no errors; otherwise prints them.
-    pub fn checked<T>(&self, made: Option<T>, cx: &Diagnostics) -> Result<T, Stop> {
+    pub fn result_without_errors<T>(&self, made: Option<T>, cx: &Diagnostics) -> Result<T, Stop> {
         match made {
             Some(made) if cx.is_empty() => Ok(made),
-            _ => Err(self.report(cx)),
+            _ => Err(self.report_errors(cx)),
         }
     }
 
     /// Returns the mechanism with its generated functions; otherwise prints the errors.
-    pub fn compiled<'g>(&self, graph: &'g Graph) -> Result<Compiled<'g>, Stop> {
+    pub fn compile_mechanism<'g>(&self, graph: &'g Graph) -> Result<Compiled<'g>, Stop> {
         let cx = &mut Diagnostics::new();
-        let source = self.checked(self.read(cx), cx)?;
-        let (model, output) = self.checked(compile(&source, graph, cx), cx)?;
+        let source = self.result_without_errors(self.parse_source(cx), cx)?;
+        let (model, output) = self.result_without_errors(compile(&source, graph, cx), cx)?;
         Ok(Compiled { source, model, output })
     }
 
     /// Returns the model of the mechanism, and the mechanism with machine code; otherwise prints the errors.
-    pub fn loaded<'g>(&self, graph: &'g Graph) -> Result<Loaded<'g>, Stop> {
+    pub fn load_mechanism<'g>(&self, graph: &'g Graph) -> Result<Loaded<'g>, Stop> {
         let cx = &mut Diagnostics::new();
-        let mut source = self.checked(self.read(cx), cx)?;
+        let mut source = self.result_without_errors(self.parse_source(cx), cx)?;
         linkwork_jit::without_rust(&mut source);
         let passes = Passes { lanes: false, ..Passes::default() };
-        let (model, output) = self.checked(compile_with(&source, graph, passes, cx), cx)?;
+        let allowed = reject_reproducible(&source, "loaded mechanisms", cx);
+        let compiled = allowed.and_then(|()| compile_with(&source, graph, passes, cx));
+        let (model, output) = self.result_without_errors(compiled, cx)?;
         let equations = output.equations.mathml.clone();
         let robot = linkwork_jit::compiled(&source, &model, output);
         Ok(Loaded { source, model, robot, equations })
     }
 
     /// Converts a diagnostic to an error message with its location.
-    pub fn mistake(&self, one: &Diagnostic) -> Mistake {
-        let (file, at) = match &one.place().file {
+    pub fn error_with_location(&self, one: &Diagnostic) -> Mistake {
+        let (file, at) = match &one.source_position().file {
             Some(at) => (at.file.to_string(), Some((at.line as usize, at.column as usize))),
-            None => (self.file.display().to_string(), (!self.is_robot).then(|| start(one.place().span))),
+            None => (
+                self.file.display().to_string(),
+                (!self.is_robot).then(|| start_of_span(one.source_position().span)),
+            ),
         };
         let reword_for_command = |text: &String| if self.is_robot { for_command(text) } else { text.clone() };
         Mistake {
@@ -182,7 +190,7 @@ fn for_command(text: &str) -> String {
 }
 
 /// Returns line and column of the start of a span, both counted from one.
-fn start(span: Span) -> (usize, usize) {
+fn start_of_span(span: Span) -> (usize, usize) {
     let start = span.start();
     (start.line, start.column + 1)
 }
@@ -245,8 +253,11 @@ fn text_of(path: &Path) -> Result<String, Stop> {
 /// the package.
 fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
     let text = text_of(path)?;
-    let found = declarations(&text).map_err(|error| {
-        Stop::Syntax(Box::new(Mistake { file: path.display().to_string(), ..syntax::located(&text, &error) }))
+    let found = mechanism_declarations(&text).map_err(|error| {
+        Stop::Syntax(Box::new(Mistake {
+            file: path.display().to_string(),
+            ..syntax::syntax_error_of_text(&text, &error)
+        }))
     })?;
     let whole = path.canonicalize()?;
     let package = whole.ancestors().find(|folder| folder.join("Cargo.toml").is_file());

@@ -70,23 +70,23 @@ fn print(text: std::fmt::Arguments<'_>) {
 }
 
 fn main() -> ExitCode {
-    let matches = commands::command().get_matches();
+    let matches = commands::linkwork_command().get_matches();
     let done = match matches.subcommand() {
-        Some(("check", given)) => check::run(given),
-        Some(("show", given)) => show::run(given),
-        Some(("simulate", given)) => simulate::run(given),
-        Some(("view", given)) => view::run(given),
-        Some(("gallery", given)) => gallery::run(given),
-        Some(("convert", given)) => convert::run(given),
-        Some(("new", given)) => new::run(given),
-        Some(("completions", given)) => completions(given),
+        Some(("check", given)) => check::run_check(given),
+        Some(("show", given)) => show::run_show(given),
+        Some(("simulate", given)) => simulate::run_simulate(given),
+        Some(("view", given)) => view::run_view(given),
+        Some(("gallery", given)) => gallery::write_gallery(given),
+        Some(("convert", given)) => convert::run_convert(given),
+        Some(("new", given)) => new::create_package(given),
+        Some(("completions", given)) => print_completions(given),
         Some(("export", given)) => match given.subcommand() {
-            Some(("c", given)) => export::c99(given),
-            Some(("cuda", given)) => export::cuda(given),
-            Some(("wgsl", given)) => export::wgsl(given),
-            Some(("fmu", given)) => fmu::run(given),
-            Some(("library", given)) => export::library(given),
-            Some(("rust", given)) => export::rust(given),
+            Some(("c", given)) => export::export_c99_files(given),
+            Some(("cuda", given)) => export::export_cuda_files(given),
+            Some(("wgsl", given)) => export::export_wgsl_files(given),
+            Some(("fmu", given)) => fmu::run_fmu_export(given),
+            Some(("library", given)) => export::export_library_crate(given),
+            Some(("rust", given)) => export::export_rust_code(given),
             _ => Err(Stop::Failure("expected `c`, `cuda`, `wgsl`, `fmu`, `library` or `rust`".to_string())),
         },
         _ => Err(Stop::Failure("expected a command".to_string())),
@@ -106,11 +106,11 @@ fn main() -> ExitCode {
 }
 
 /// Prints the completion script for a shell.
-fn completions(matches: &clap::ArgMatches) -> Result<(), Stop> {
+fn print_completions(matches: &clap::ArgMatches) -> Result<(), Stop> {
     let shell = matches.get_one::<clap_complete::Shell>("shell").copied();
     let shell = shell.ok_or_else(|| Stop::Failure("expected a shell".to_string()))?;
     let mut script = Vec::new();
-    clap_complete::generate(shell, &mut commands::command(), "linkwork", &mut script);
+    clap_complete::generate(shell, &mut commands::linkwork_command(), "linkwork", &mut script);
     print(format_args!("{}", String::from_utf8_lossy(&script)));
     Ok(())
 }

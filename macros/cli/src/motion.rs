@@ -9,7 +9,7 @@ use clap::ArgMatches;
 use linkwork::integrate;
 use linkwork::nalgebra::IsometryMatrix3;
 use linkwork::simulate::Overlaps;
-use linkwork_compiler::diag::nearest;
+use linkwork_compiler::diag::nearest_candidate;
 use linkwork_compiler::expr::Expr;
 use linkwork_compiler::expr::eval::eval_one;
 use linkwork_compiler::mechanism::{Chart, Model, Quantity};
@@ -64,8 +64,8 @@ const FAR: f64 = 0.05;
 const MAX_SAMPLES: f64 = 1e7;
 
 /// Normalises quaternions; a zero quaternion is an error.
-pub fn normalise(model: &Model<'_>, q: &mut [f64]) -> Result<(), Stop> {
-    for first in model.charts.iter().filter_map(Chart::quaternion) {
+pub fn normalise_quaternions(model: &Model<'_>, q: &mut [f64]) -> Result<(), Stop> {
+    for first in model.charts.iter().filter_map(Chart::first_quaternion_index) {
         let quaternion = &mut q[first.and_next(4)];
         let size = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
         if size < 1e-9 || !size.is_finite() {
@@ -97,7 +97,7 @@ impl<'a, 'g> Start<'a, 'g> {
         let mut q = neutral(model);
         let (mut v, mut u) = (vec![0.0; model.nv()], vec![0.0; model.nu()]);
         let mut known = [vec![false; q.len()], vec![false; v.len()]];
-        for (name, value) in values("set", matches)? {
+        for (name, value) in named_option_values("set", matches)? {
             let index_of_name = |list: &[String]| list.iter().position(|known| known == name);
             if let Some(k) = index_of_name(&model.parameters) {
                 parameters[k] = Some(value);
@@ -114,14 +114,14 @@ impl<'a, 'g> Start<'a, 'g> {
                 let own: Vec<String> =
                     model.parameters.iter().filter(|name| !is_state(name)).cloned().collect();
                 let known = [own, configuration, velocities, of_states, inputs].concat();
-                let meant = nearest(name, &known.iter().map(String::as_str).collect::<Vec<_>>());
+                let meant = nearest_candidate(name, &known.iter().map(String::as_str).collect::<Vec<_>>());
                 let meant = meant.map_or(String::new(), |meant| format!("; did you mean `{meant}`?"));
                 let known = known.join(", ");
                 return Err(Stop::Failure(format!("`--set`: there is no `{name}`, but {known}{meant}")));
             }
         }
         let is_guessed = matches.contains_id("guess");
-        for (name, value) in values("guess", matches)? {
+        for (name, value) in named_option_values("guess", matches)? {
             let Some(k) = configuration.iter().position(|known| known == name) else {
                 let known = configuration.join(", ");
                 return Err(Stop::Failure(format!("`--guess`: there is no `{name}`, but {known}")));
@@ -141,20 +141,24 @@ impl<'a, 'g> Start<'a, 'g> {
         if !missing.is_empty() {
             return Err(Stop::Failure(format!("parameters without a value: {}", missing.join(" "))));
         }
-        for ((name, _), grid) in source.tables().iter().zip(grid::table_options(matches, &source.tables())?) {
-            robot.set_table(name, grid.looked()?)?;
+        for ((name, _), grid) in source
+            .tables_with_variable_counts()
+            .iter()
+            .zip(grid::table_options(matches, &source.tables_with_variable_counts())?)
+        {
+            robot.set_table(name, grid.interpolation_table()?)?;
         }
         let parameters: Vec<f64> = parameters.into_iter().flatten().collect();
         let x = states.iter().map(|(_, k)| parameters[*k]).collect();
         robot.set_parameters(&parameters)?;
         robot.validate()?;
-        normalise(model, &mut q)?;
+        normalise_quaternions(model, &mut q)?;
         let states = states.into_iter().map(|(name, _)| name).collect();
         Ok(Start { robot, model, states, q, v, x, u, given: known, is_guessed })
     }
 
     /// Returns the reason why the mechanism has no motion, if any.
-    pub fn obstacle(&self) -> Option<&'static str> {
+    pub fn reason_without_motion(&self) -> Option<&'static str> {
         self.model
             .kinematic
             .then_some("it has no masses (`inertia = none`), so it has no equations of motion")
@@ -165,7 +169,7 @@ impl<'a, 'g> Start<'a, 'g> {
     /// # Errors
     ///
     /// An internal error.
-    pub fn placements(&self, t: f64, q: &[f64], x: &[f64]) -> Result<Vec<IsometryMatrix3<f64>>, Stop> {
+    pub fn frame_placements(&self, t: f64, q: &[f64], x: &[f64]) -> Result<Vec<IsometryMatrix3<f64>>, Stop> {
         let mut robot = self.robot.clone();
         robot.set_time(t);
         for (name, value) in self.states.iter().zip(x) {
@@ -180,7 +184,7 @@ impl<'a, 'g> Start<'a, 'g> {
     }
 
     /// Evaluates an expression of the parameters.
-    pub fn value(&self, e: Expr<'_>) -> f64 {
+    pub fn evaluate_expression(&self, e: Expr<'_>) -> f64 {
         let parameters = self.robot.parameter_values();
         eval_one(e, &|symbol| match Quantity::from_symbol(symbol) {
             Quantity::Parameter(k) => parameters.get(k).copied().unwrap_or(f64::NAN),
@@ -189,7 +193,7 @@ impl<'a, 'g> Start<'a, 'g> {
     }
 
     /// Returns the method of integration.
-    fn method(&self, matches: &ArgMatches, without_contacts: bool) -> Result<Method, Stop> {
+    fn integration_method(&self, matches: &ArgMatches, without_contacts: bool) -> Result<Method, Stop> {
         let read_positive_option = |name: &str| match matches.get_one::<f64>(name) {
             Some(x) if !(*x > 0.0 && x.is_finite()) => {
                 Err(Stop::Failure(format!("`--{name}`: expected a number above zero, found {x}")))
@@ -221,9 +225,9 @@ impl<'a, 'g> Start<'a, 'g> {
     }
 
     /// Simulates the motion that the options describe, and returns its samples.
-    pub fn run(&self, matches: &ArgMatches) -> Result<Vec<Sample>, Stop> {
+    pub fn simulate_motion(&self, matches: &ArgMatches) -> Result<Vec<Sample>, Stop> {
         let name = &self.model.name;
-        if let Some(why) = self.obstacle() {
+        if let Some(why) = self.reason_without_motion() {
             return Err(Stop::Failure(format!("`{name}` cannot be simulated: {why}")));
         }
         let positive_option_or_default = |name: &str, usual: f64| match matches.get_one::<f64>(name) {
@@ -238,9 +242,9 @@ impl<'a, 'g> Start<'a, 'g> {
             return Err(Stop::Failure(format!("more than {MAX_SAMPLES} samples: choose a larger `--every`")));
         }
         let without_contacts = matches.get_flag("without-contacts");
-        let method = self.method(matches, without_contacts)?;
-        let (times, values) = self.inputs(matches)?;
-        let (q, v) = self.state()?;
+        let method = self.integration_method(matches, without_contacts)?;
+        let (times, values) = self.read_inputs(matches)?;
+        let (q, v) = self.initial_state()?;
         let state = [&v[..], &self.x].concat();
         let sampled_inputs = || Inputs::Samples { times: &times, values: &values };
         let simulate_from_state = |q: &'_ [f64], v: &'_ [f64], duration: f64, samples: &mut Vec<Sample>| {
@@ -261,7 +265,7 @@ impl<'a, 'g> Start<'a, 'g> {
             // The projection of the start changes rounding alone.
             (first.q, first.v) = (q.clone(), v.clone());
         } else if let Some(first) = samples.first() {
-            let moved = self.moves(&first.q, &first.v);
+            let moved = self.format_state_changes(&first.q, &first.v);
             if !moved.is_empty() && !self.model.contacts.is_empty() {
                 crate::note!(
                     "linkwork: surfaces overlap at the beginning; the motion begins near it, at {moved}"
@@ -280,20 +284,20 @@ impl<'a, 'g> Start<'a, 'g> {
                 let mut before = Vec::new();
                 let mut near = || {
                     let (_, from) = last.as_ref()?;
-                    let t = failure(&error)?;
+                    let t = time_of_failure(&error)?;
                     let to = from + (t - from) * (1.0 - 1e-3);
                     let _ = simulate_from_state(&q, &state, to, &mut before);
                     before.pop()
                 };
-                return Err(self.ended(&error, near().map(|sample| sample.q)));
+                return Err(self.motion_failure(&error, near().map(|sample| sample.q)));
             }
         }
         Ok(samples)
     }
 
     /// Returns the message of a motion that cannot be continued.
-    fn ended(&self, error: &Error, q: Option<Vec<f64>>) -> Stop {
-        let Some(t) = failure(error) else { return Stop::Failure(error.to_string()) };
+    fn motion_failure(&self, error: &Error, q: Option<Vec<f64>>) -> Stop {
+        let Some(t) = time_of_failure(error) else { return Stop::Failure(error.to_string()) };
         let is_singular = q.is_some_and(|q| self.robot.regularity_of_speeds(&q) <= NEARLY_SINGULAR);
         let why = match is_singular {
             true => "declared speeds are singular there",
@@ -307,9 +311,9 @@ impl<'a, 'g> Start<'a, 'g> {
     /// # Errors
     ///
     /// The mechanism cannot be assembled.
-    pub fn state(&self) -> Result<(Vec<f64>, Vec<f64>), Stop> {
+    pub fn initial_state(&self) -> Result<(Vec<f64>, Vec<f64>), Stop> {
         match self.robot.is_constrained() {
-            true => self.begin(),
+            true => self.consistent_initial_state(),
             false => Ok((self.q.clone(), self.v.clone())),
         }
     }
@@ -321,7 +325,7 @@ impl<'a, 'g> Start<'a, 'g> {
 
     /// Returns an initial state that satisfies the constraints: with the specified entries unchanged if
     /// possible, otherwise the nearest one. Prints the changes.
-    fn begin(&self) -> Result<(Vec<f64>, Vec<f64>), Stop> {
+    fn consistent_initial_state(&self) -> Result<(Vec<f64>, Vec<f64>), Stop> {
         let m = Assembly { robot: &self.robot, model: self.model };
         let (name, [in_q, in_v]) = (&self.model.name, &self.given);
         let is_singular = |q: &[f64]| self.robot.regularity_of_speeds(q) <= SINGULAR;
@@ -333,17 +337,21 @@ impl<'a, 'g> Start<'a, 'g> {
             )));
         }
         // Entries that no constraint affects remain unchanged.
-        let [apart, still] = m.unreached(&self.q);
+        let [apart, still] = m.unconstrained_velocities(&self.q);
         let in_v: Vec<bool> = in_v.iter().zip(&still).map(|(given, still)| *given || *still).collect();
-        let moving: Vec<bool> =
-            m.moving(in_q).iter().zip(&apart).map(|(given, apart)| *given || *apart).collect();
+        let moving: Vec<bool> = m
+            .velocities_moving_entries(in_q)
+            .iter()
+            .zip(&apart)
+            .map(|(given, apart)| *given || *apart)
+            .collect();
         let near = match self.is_guessed {
             true => self.q.clone(),
-            false => m.led(&self.q, in_q, &apart, &moving)?,
+            false => m.configuration_by_continuation(&self.q, in_q, &apart, &moving)?,
         };
-        let held = m.assembled(&near, &self.q, &moving);
+        let held = m.assemble_near(&near, &self.q, &moving);
         let mut kept = held.is_some();
-        let q = held.or_else(|| m.assembled(&near, &self.q, &apart));
+        let q = held.or_else(|| m.assemble_near(&near, &self.q, &apart));
         let q = q.ok_or_else(|| {
             Stop::Failure(format!(
                 "`{name}` cannot be assembled: no configuration near the initial one satisfies the \
@@ -359,13 +367,13 @@ impl<'a, 'g> Start<'a, 'g> {
                 names.join(", ")
             )));
         }
-        let v = m.completed(&q, &self.v, &in_v).or_else(|| {
+        let v = m.complete_held_velocity(&q, &self.v, &in_v).or_else(|| {
             kept = false;
-            m.completed(&q, &self.v, &still)
+            m.complete_held_velocity(&q, &self.v, &still)
         });
         let v =
             v.ok_or_else(|| Stop::Failure(format!("`{name}` has constraints that contradict each other")))?;
-        let moves = self.moves(&q, &v);
+        let moves = self.format_state_changes(&q, &v);
         let some = self.given.iter().flatten().any(|given| *given);
         let given = self.given.iter().flatten().zip(self.q.iter().chain(&self.v).zip(q.iter().chain(&v)));
         let is_far_from_given_value =
@@ -383,7 +391,7 @@ impl<'a, 'g> Start<'a, 'g> {
         };
         if !moves.is_empty() {
             let held = if kept { &moving } else { &apart };
-            let mode = m.mode(&q, held).map_or(String::new(), |mode| {
+            let mode = m.assembly_mode_of(&q, held).map_or(String::new(), |mode| {
                 format!(
                     "; this is assembly mode {mode}, and `--guess q.NAME=VALUE` near another mode selects it"
                 )
@@ -394,7 +402,7 @@ impl<'a, 'g> Start<'a, 'g> {
     }
 
     /// Formats the entries of the initial state that differ from the requested values.
-    fn moves(&self, q: &[f64], v: &[f64]) -> String {
+    fn format_state_changes(&self, q: &[f64], v: &[f64]) -> String {
         let wanted = self.q.iter().chain(&self.v);
         let names = self.model.configuration.iter().map(|name| format!("q.{name}"));
         let names = names.chain(self.model.velocities.iter().map(|(name, _)| format!("v.{name}")));
@@ -407,9 +415,9 @@ impl<'a, 'g> Start<'a, 'g> {
     }
 
     /// Returns times, and the inputs at each of them.
-    fn inputs(&self, matches: &ArgMatches) -> Result<(Vec<f64>, Vec<f64>), Stop> {
+    fn read_inputs(&self, matches: &ArgMatches) -> Result<(Vec<f64>, Vec<f64>), Stop> {
         let Some(path) = matches.get_one::<PathBuf>("inputs") else { return Ok((vec![0.0], self.u.clone())) };
-        let table = Table::read(path)?;
+        let table = Table::read_table(path)?;
         let names: Vec<String> = self.model.inputs.iter().map(|(name, _)| format!("u.{name}")).collect();
         // Other columns of a log are ignored.
         let unknown = table.columns.iter().find(|(name, _)| name.starts_with("u.") && !names.contains(name));
@@ -420,10 +428,10 @@ impl<'a, 'g> Start<'a, 'g> {
                 path.display()
             )));
         }
-        let columns: Vec<Option<&[f64]>> = names.iter().map(|name| table.column(name)).collect();
+        let columns: Vec<Option<&[f64]>> = names.iter().map(|name| table.column_by_name(name)).collect();
         let is_column =
-            |(name, _): &(&str, f64)| names.iter().any(|n| n == name) && table.column(name).is_some();
-        if let Some((name, _)) = values("set", matches)?.into_iter().find(is_column) {
+            |(name, _): &(&str, f64)| names.iter().any(|n| n == name) && table.column_by_name(name).is_some();
+        if let Some((name, _)) = named_option_values("set", matches)?.into_iter().find(is_column) {
             let path = path.display();
             return Err(Stop::Failure(format!("{path}: `{name}` is a column here and given by `--set`")));
         }
@@ -457,14 +465,14 @@ fn fill_in(model: &Model<'_>, parameters: &mut [Option<f64>]) {
 /// Returns the neutral configuration.
 fn neutral(model: &Model<'_>) -> Vec<f64> {
     let mut q = vec![0.0; model.nq()];
-    for first in model.charts.iter().filter_map(Chart::quaternion) {
+    for first in model.charts.iter().filter_map(Chart::first_quaternion_index) {
         q[first.0 + 3] = 1.0;
     }
     q
 }
 
 /// Returns the time at which a numerical error ended a motion.
-fn failure(error: &Error) -> Option<f64> {
+fn time_of_failure(error: &Error) -> Option<f64> {
     use integrate::Error::{NotConverged, NotFinite, StepTooSmall, TooManySteps};
     let Error::Motion { reason, .. } = error else { return None };
     match *reason {
@@ -474,7 +482,7 @@ fn failure(error: &Error) -> Option<f64> {
 }
 
 /// Returns the names with their values that an option gives; a name that is given twice is an error.
-pub fn values<'a>(option: &str, matches: &'a ArgMatches) -> Result<Vec<(&'a str, f64)>, Stop> {
+pub fn named_option_values<'a>(option: &str, matches: &'a ArgMatches) -> Result<Vec<(&'a str, f64)>, Stop> {
     let mut found: Vec<(&str, f64)> = Vec::new();
     for given in matches.get_many::<String>(option).into_iter().flatten() {
         let one = parse(&format!("--{option}"), given)?;

@@ -21,14 +21,14 @@ impl Names {
     pub fn add<'a>(&mut self, names: impl Iterator<Item = &'a str>, kind: &str) -> Names {
         let mut of = BTreeMap::new();
         for name in names {
-            let field = if name == GROUND { name.to_string() } else { self.fresh(name, kind) };
+            let field = if name == GROUND { name.to_string() } else { self.unused_field_name(name, kind) };
             of.insert(name.to_string(), field);
         }
         Names { of, taken: BTreeSet::new() }
     }
 
     /// Returns an unused field name.
-    pub fn fresh(&mut self, name: &str, kind: &str) -> String {
+    pub fn unused_field_name(&mut self, name: &str, kind: &str) -> String {
         let plain: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
         let plain = plain.trim_matches('_').to_ascii_lowercase();
         let begins = plain.starts_with(|c: char| c.is_ascii_alphabetic());
@@ -50,11 +50,11 @@ impl Names {
 
     /// Returns the field name of a name in the file, or the name itself.
     pub fn field_or_same(&self, name: &str) -> String {
-        self.field(name).unwrap_or_else(|| name.to_string())
+        self.field_name(name).unwrap_or_else(|| name.to_string())
     }
 
     /// Returns the field name, if the name exists in the file.
-    pub fn field(&self, name: &str) -> Option<String> {
+    pub fn field_name(&self, name: &str) -> Option<String> {
         self.of.get(name).cloned()
     }
 }

@@ -1,13 +1,13 @@
 //! `linkwork new`: creates an executable project.
 
-use crate::sources::dependency;
+use crate::sources::manifest_dependency;
 use crate::{Stop, sources};
 use clap::ArgMatches;
 use std::path::{Path, PathBuf};
 
 const MAIN: &str = include_str!("starter/main.rs");
 
-pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
+pub fn create_package(matches: &ArgMatches) -> Result<(), Stop> {
     let folder: &PathBuf =
         matches.get_one("folder").ok_or_else(|| Stop::Failure("expected a folder".to_string()))?;
     let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
@@ -23,7 +23,7 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
     let sources = matches.get_one::<PathBuf>("linkwork").map(std::fs::canonicalize).transpose();
     let sources = sources.map_err(|error| Stop::Failure(format!("`--linkwork`: {error}")))?;
     let sources = sources.or_else(sources::of_command);
-    write_project_file("Cargo.toml", &manifest(&name, sources.as_deref()))?;
+    write_project_file("Cargo.toml", &manifest_text(&name, sources.as_deref()))?;
     write_project_file("src/main.rs", MAIN)?;
     write_project_file(".gitignore", "/target\n/motion.html\n")?;
     crate::say!("{0}: `cd {0}`, then `cargo run`, and open motion.html", folder.display());
@@ -46,9 +46,9 @@ fn check_name(name: &str) -> Result<(), Stop> {
 }
 
 /// Returns the manifest, which depends on the Linkwork sources in a folder or on the release.
-fn manifest(name: &str, sources: Option<&Path>) -> String {
-    let linkwork = dependency("linkwork", "runtime", sources);
-    let view = dependency("linkwork-view", "runtime/view", sources);
+fn manifest_text(name: &str, sources: Option<&Path>) -> String {
+    let linkwork = manifest_dependency("linkwork", "runtime", sources);
+    let view = manifest_dependency("linkwork-view", "runtime/view", sources);
     format!(
         "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
          [dependencies]\n{linkwork}\n{view}\n\n\

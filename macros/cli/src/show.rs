@@ -8,16 +8,16 @@ use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Model;
 use serde_json::{Value, json};
 
-pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
+pub fn run_show(matches: &ArgMatches) -> Result<(), Stop> {
     let as_json = matches.get_flag("json");
     let mut all = Vec::new();
-    for input in &Input::all(matches)? {
+    for input in &Input::select_mechanisms(matches)? {
         let graph = Graph::new();
-        let Compiled { source, model, output } = input.compiled(&graph)?;
-        let shown = Shown { model: &model, output: &output, structure: source.structure() };
+        let Compiled { source, model, output } = input.compile_mechanism(&graph)?;
+        let shown = Shown { model: &model, output: &output, structure: source.joint_structure_lines() };
         match as_json {
-            true => all.push(shown.json()),
-            false => crate::print(format_args!("{}", shown.text())),
+            true => all.push(shown.summary_as_json()),
+            false => crate::print(format_args!("{}", shown.summary_text())),
         }
     }
     if as_json {
@@ -36,14 +36,14 @@ struct Shown<'a, 'g> {
 type List<'a> = (&'static str, &'static str, Vec<&'a str>, &'a [String]);
 
 impl Shown<'_, '_> {
-    fn lists(&self) -> Vec<List<'_>> {
+    fn lists_of_names(&self) -> Vec<List<'_>> {
         let m = self.model;
-        fn plain(list: &[String]) -> Vec<&str> {
+        fn names_as_str(list: &[String]) -> Vec<&str> {
             list.iter().map(String::as_str).collect()
         }
         vec![
-            ("Parameters", "parameters", plain(&m.parameters), &m.units.parameters),
-            ("Configuration q", "configuration", plain(&m.configuration), &m.units.configuration),
+            ("Parameters", "parameters", names_as_str(&m.parameters), &m.units.parameters),
+            ("Configuration q", "configuration", names_as_str(&m.configuration), &m.units.configuration),
             (
                 "Velocity v",
                 "velocity",
@@ -60,10 +60,10 @@ impl Shown<'_, '_> {
         ]
     }
 
-    fn text(&self) -> String {
+    fn summary_text(&self) -> String {
         let m = self.model;
         let mut text = format!("{}: NQ = {}, NV = {}, NU = {}\n", m.name, m.nq(), m.nv(), m.nu());
-        for (title, _, names, units) in self.lists() {
+        for (title, _, names, units) in self.lists_of_names() {
             if names.is_empty() {
                 continue;
             }
@@ -98,7 +98,7 @@ impl Shown<'_, '_> {
         text
     }
 
-    fn json(&self) -> Value {
+    fn summary_as_json(&self) -> Value {
         let m = self.model;
         let mut all = json!({
             "name": m.name,
@@ -121,7 +121,7 @@ impl Shown<'_, '_> {
                 })
             }).collect::<Vec<_>>(),
         });
-        for (_, key, names, units) in self.lists() {
+        for (_, key, names, units) in self.lists_of_names() {
             let unit_at_index = |k: usize| units.get(k).map_or("", String::as_str);
             let list: Vec<Value> = names
                 .iter()

@@ -9,24 +9,24 @@ use linkwork_compiler::expr::Graph;
 use linkwork_view::{Instant, Names, mcap_of};
 use std::path::PathBuf;
 
-pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
+pub fn run_simulate(matches: &ArgMatches) -> Result<(), Stop> {
     let input = Input::one(matches)?;
     let graph = Graph::new();
-    let loaded = input.loaded(&graph)?;
+    let loaded = input.load_mechanism(&graph)?;
     let start = Start::new(&loaded, matches)?;
-    let samples = start.run(matches)?;
+    let samples = start.simulate_motion(matches)?;
     match matches.get_one::<PathBuf>("out") {
         Some(path) if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mcap")) => {
-            let log = mcap(&start, samples)?;
+            let log = mcap_log(&start, samples)?;
             std::fs::write(path, log)
                 .map_err(|error| Stop::Failure(format!("cannot write {}: {error}", path.display())))
         }
-        _ => write_output(matches, &csv(&start, &samples)),
+        _ => write_output(matches, &csv_log(&start, &samples)),
     }
 }
 
 /// Returns the MCAP log of a motion with the placements of all frames.
-fn mcap(start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop> {
+fn mcap_log(start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop> {
     let model = start.model;
     let frames: Vec<&str> = model.frames.iter().map(|frame| frame.name.as_str()).collect();
     let configuration: Vec<&str> = model.configuration.iter().map(String::as_str).collect();
@@ -38,14 +38,14 @@ fn mcap(start: &Start<'_, '_>, samples: Vec<Sample>) -> Result<Vec<u8>, Stop> {
     let names =
         Names { frames: &frames, configuration: &configuration, velocities: &velocities, inputs: &inputs };
     let instant_from_sample = |Sample { t, q, v, x, u }| {
-        let placements = start.placements(t, &q, &x)?;
+        let placements = start.frame_placements(t, &q, &x)?;
         Ok(Instant { t, q, v: [v, x].concat(), u, placements })
     };
     let instants = samples.into_iter().map(instant_from_sample).collect::<Result<Vec<_>, Stop>>()?;
     Ok(mcap_of(&names, instants)?)
 }
 
-fn csv(start: &Start<'_, '_>, samples: &[Sample]) -> String {
+fn csv_log(start: &Start<'_, '_>, samples: &[Sample]) -> String {
     let model = start.model;
     let mut head = vec!["t".to_string()];
     head.extend(model.configuration.iter().map(|name| format!("q.{name}")));

@@ -15,7 +15,7 @@ pub fn of_command() -> Option<PathBuf> {
 }
 
 /// Returns a dependency of a manifest: by its folder in the sources, or by its version in the registry.
-pub fn dependency(name: &str, folder: &str, sources: Option<&Path>) -> String {
+pub fn manifest_dependency(name: &str, folder: &str, sources: Option<&Path>) -> String {
     match sources {
         Some(sources) => format!("{name} = {{ path = {:?} }}", sources.join(folder).display().to_string()),
         None => format!("{name} = {:?}", env!("CARGO_PKG_VERSION")),

@@ -6,21 +6,21 @@ use proc_macro2::{Delimiter, LineColumn, TokenStream, TokenTree};
 use std::str::FromStr;
 
 /// Returns the error of a text that is not a Rust file; `error` is the error of the parser.
-pub fn located(text: &str, error: &syn::Error) -> Mistake {
+pub fn syntax_error_of_text(text: &str, error: &syn::Error) -> Mistake {
     let (at, message, notes) = match TokenStream::from_str(text) {
         Ok(tokens) if error.to_string().starts_with("expected `,`") => {
-            let (before, after) = around(&tokens, error.span().start());
+            let (before, after) = tokens_around_position(&tokens, error.span().start());
             (before.unwrap_or(error.span().start()), format!("expected `,`{after}"), Vec::new())
         }
         Ok(_) => (error.span().start(), error.to_string(), Vec::new()),
-        Err(lexed) => unbalanced(text, lexed.span().start()),
+        Err(lexed) => describe_unbalanced_text(text, lexed.span().start()),
     };
     Mistake { at: Some((at.line, at.column + 1)), message, notes, ..Mistake::default() }
 }
 
 /// Returns the position, message and notes for a text that cannot be split into tokens beyond `at`: its
 /// brackets do not match, or it has characters that begin no token.
-fn unbalanced(text: &str, at: LineColumn) -> (LineColumn, String, Vec<String>) {
+fn describe_unbalanced_text(text: &str, at: LineColumn) -> (LineColumn, String, Vec<String>) {
     let (before, found) = text.split_at(index(text, at));
     let found = found.chars().next();
     match found {
@@ -40,15 +40,15 @@ fn unbalanced(text: &str, at: LineColumn) -> (LineColumn, String, Vec<String>) {
                     at,
                     format!(
                         "mismatched closing delimiter: expected `{}`, found `{closing}`",
-                        partner(bracket)
+                        closing_bracket(bracket)
                     ),
                     vec![note],
                 )
             }
         },
         Some(opening @ ('(' | '[' | '{')) => {
-            let (at, opening) = misaligned(text).map_or((at, opening), |at| (at, '{'));
-            (at, format!("this is never closed: `{}` is missing", partner(opening)), Vec::new())
+            let (at, opening) = find_misaligned_brace(text).map_or((at, opening), |at| (at, '{'));
+            (at, format!("this is never closed: `{}` is missing", closing_bracket(opening)), Vec::new())
         }
         _ => (at, "this is not a Rust token, or a string that is never closed".to_string(), Vec::new()),
     }
@@ -56,7 +56,7 @@ fn unbalanced(text: &str, at: LineColumn) -> (LineColumn, String, Vec<String>) {
 
 /// Returns the position of the opening brace that is probably not closed, in a text that ends before all its
 /// brackets are closed: the first brace whose partner is indented differently from the line of the brace.
-fn misaligned(text: &str) -> Option<LineColumn> {
+fn find_misaligned_brace(text: &str) -> Option<LineColumn> {
     let mut whole = text.to_string();
     // Closes all open brackets at the end of the text.
     let tokens = loop {
@@ -68,7 +68,7 @@ fn misaligned(text: &str) -> Option<LineColumn> {
                     return None;
                 }
                 whole.push('\n');
-                whole.push(partner(bracket));
+                whole.push(closing_bracket(bracket));
             }
         }
     };
@@ -97,7 +97,7 @@ fn misaligned(text: &str) -> Option<LineColumn> {
 }
 
 /// Returns the end of the last token before a position, and the text `, found …` for the token at it.
-fn around(tokens: &TokenStream, at: LineColumn) -> (Option<LineColumn>, String) {
+fn tokens_around_position(tokens: &TokenStream, at: LineColumn) -> (Option<LineColumn>, String) {
     let (mut before, mut after, mut todo): (Option<LineColumn>, _, _) =
         (None, String::new(), vec![tokens.clone()]);
     while let Some(tokens) = todo.pop() {
@@ -122,7 +122,7 @@ fn around(tokens: &TokenStream, at: LineColumn) -> (Option<LineColumn>, String) 
 }
 
 /// Returns the closing bracket that belongs to an opening one.
-fn partner(opening: char) -> char {
+fn closing_bracket(opening: char) -> char {
     match opening {
         '(' => ')',
         '[' => ']',
@@ -142,7 +142,7 @@ fn index(text: &str, at: LineColumn) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::located;
+    use super::syntax_error_of_text;
 
     /// Compares with the positions of rustc 1.95, except for brackets that are open at the end of a file:
     /// rustc points at the end of the file and labels the bracket.
@@ -164,7 +164,7 @@ mod tests {
             ("struct S {\n    a: \"text,\n}", (2, 8), "never closed"),
         ] {
             let Err(error) = syn::parse_file(text) else { panic!("{text} is a file of Rust") };
-            let found = located(text, &error);
+            let found = syntax_error_of_text(text, &error);
             assert!(
                 found.at == Some(at) && found.message.contains(message),
                 "{text}\n{:?} {}",

@@ -14,14 +14,14 @@ pub struct Table {
 
 impl Table {
     /// Reads a file; one of its columns is `t`.
-    pub fn read(path: &Path) -> Result<Table, Stop> {
+    pub fn read_table(path: &Path) -> Result<Table, Stop> {
         let text = text_of(path).map_err(Stop::Failure)?;
         Table::parse(&text).map_err(|why| Stop::Failure(format!("{}: {why}", path.display())))
     }
 
     fn parse(text: &str) -> Result<Table, String> {
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-        let head = lines.next().map(|(_, line)| fields(line)).unwrap_or_default();
+        let head = lines.next().map(|(_, line)| split_csv_fields(line)).unwrap_or_default();
         let time = head.iter().position(|name| name == "t").ok_or_else(|| {
             let found: Vec<String> = head.iter().map(|name| format!("`{name}`")).collect();
             match found.is_empty() {
@@ -34,7 +34,7 @@ impl Table {
         }
         let mut columns: Vec<Vec<f64>> = vec![Vec::new(); head.len()];
         for (number, line) in lines {
-            let found = fields(line);
+            let found = split_csv_fields(line);
             if found.len() != head.len() {
                 let why =
                     format!("line {}: expected {} values, found {}", number + 1, head.len(), found.len());
@@ -57,7 +57,7 @@ impl Table {
     }
 
     /// Returns a column by name.
-    pub fn column(&self, name: &str) -> Option<&[f64]> {
+    pub fn column_by_name(&self, name: &str) -> Option<&[f64]> {
         self.columns.iter().find(|(known, _)| known == name).map(|(_, values)| values.as_slice())
     }
 }
@@ -70,7 +70,7 @@ pub fn text_of(path: &Path) -> Result<String, String> {
 }
 
 /// Splits a line into fields. Quoted fields may contain commas and doubled quotes.
-fn fields(line: &str) -> Vec<String> {
+fn split_csv_fields(line: &str) -> Vec<String> {
     let (mut fields, mut field, mut quoted) = (Vec::new(), String::new(), false);
     let mut rest = line.trim_end_matches('\r').chars().peekable();
     while let Some(c) = rest.next() {
@@ -87,11 +87,11 @@ fn fields(line: &str) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Table, fields};
+    use super::{Table, split_csv_fields};
 
     #[test]
     fn quotes_hold_commas() {
-        assert_eq!(fields("t, q.a,\"b,\"\"c\"\"\"\r"), ["t", "q.a", "b,\"c\""]);
+        assert_eq!(split_csv_fields("t, q.a,\"b,\"\"c\"\"\"\r"), ["t", "q.a", "b,\"c\""]);
     }
 
     /// Checks files of spreadsheets, which begin with a byte order mark and may contain no-break spaces.
@@ -104,9 +104,9 @@ mod tests {
             "\u{feff}\"t\",u.a\n0,1\n2,3",
         ] {
             std::fs::write(&file, text).expect("a file");
-            let table = Table::read(&file).unwrap_or_else(|_| panic!("{text:?}"));
+            let table = Table::read_table(&file).unwrap_or_else(|_| panic!("{text:?}"));
             assert_eq!(
-                (table.times.as_slice(), table.column("u.a")),
+                (table.times.as_slice(), table.column_by_name("u.a")),
                 (&[0.0, 2.0][..], Some(&[1.0, 3.0][..]))
             );
         }

@@ -2,9 +2,9 @@
 
 use crate::Stop;
 use crate::input::{Input, Loaded};
-use crate::library::docs;
+use crate::library::doc_paragraphs;
 use crate::live;
-use crate::motion::{Start, normalise};
+use crate::motion::{Start, normalise_quaternions};
 use crate::table::Table;
 use clap::ArgMatches;
 use linkwork_compiler::export::without_links;
@@ -19,8 +19,8 @@ type State = (f64, Vec<f64>, Vec<f64>, Vec<f64>);
 /// Maximum number of coordinates that are plotted by default.
 const PLOTTED: usize = 12;
 
-pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
-    let (name, page) = page(matches)?;
+pub fn run_view(matches: &ArgMatches) -> Result<(), Stop> {
+    let (name, page) = mechanism_page(matches)?;
     let out = matches.get_one("out").cloned().unwrap_or_else(|| PathBuf::from(format!("{name}.html")));
     match matches.get_flag("fragment") {
         true => std::fs::write(&out, page.embedded())?,
@@ -31,40 +31,40 @@ pub fn run(matches: &ArgMatches) -> Result<(), Stop> {
 }
 
 /// Returns the mechanism's name and its page.
-pub fn page(matches: &ArgMatches) -> Result<(String, Page), Stop> {
+pub fn mechanism_page(matches: &ArgMatches) -> Result<(String, Page), Stop> {
     let mut input = Input::one(matches)?;
     if !input.declaration.arguments.clone().into_iter().any(|token| token.to_string() == "drawing") {
         input.declaration.add(quote::quote!(drawing));
     }
     let graph = Graph::new();
-    let loaded = input.loaded(&graph)?;
+    let loaded = input.load_mechanism(&graph)?;
     let Loaded { source, model, .. } = &loaded;
     let start = Start::new(&loaded, matches)?;
-    let about = without_links(&docs(&source.mechanism.shell.attributes).join("\n\n"));
+    let about = without_links(&doc_paragraphs(&source.mechanism.shell.attributes).join("\n\n"));
     let page = Page::new(&input.declaration.name).text(&about);
-    let figure = with_meshes(figure(&start, model), &input, matches)?;
+    let figure = with_meshes(declared_figure(&start, model), &input, matches)?;
     let page = match matches.get_flag("live") {
-        true => page.equations(&loaded.equations).motion(live::motion(&start, figure)?),
-        false => page.motion(recorded(&start, figure, matches)?),
+        true => page.equations(&loaded.equations).motion(live::live_motion(&start, figure)?),
+        false => page.motion(recorded_motion(&start, figure, matches)?),
     };
     Ok((input.declaration.name, page))
 }
 
 /// Returns the motion of a log, or a simulated one.
-fn recorded(start: &Start<'_, '_>, figure: Figure, matches: &ArgMatches) -> Result<Motion, Stop> {
+fn recorded_motion(start: &Start<'_, '_>, figure: Figure, matches: &ArgMatches) -> Result<Motion, Stop> {
     let model = start.model;
     let states = match matches.get_one::<PathBuf>("motion") {
         Some(path) => from_log(path, start)?,
-        None => match start.obstacle() {
+        None => match start.reason_without_motion() {
             Some(why) if matches.get_one::<f64>("duration").is_none() => {
                 crate::note!("linkwork: the page shows one configuration: {why}");
                 vec![(0.0, start.q.clone(), start.x.clone(), Vec::new())]
             }
-            _ => start.run(matches)?.into_iter().map(|s| (s.t, s.q, s.x, s.u)).collect(),
+            _ => start.simulate_motion(matches)?.into_iter().map(|s| (s.t, s.q, s.x, s.u)).collect(),
         },
     };
     let times = states.iter().map(|(t, ..)| *t).collect();
-    let placements = states.iter().map(|(t, q, x, _)| start.placements(*t, q, x));
+    let placements = states.iter().map(|(t, q, x, _)| start.frame_placements(*t, q, x));
     let placements = placements.collect::<Result<Vec<_>, Stop>>()?;
     let terrain_height_at = |number: usize, place: [f64; 2]| {
         let heights = start.robot.terrain_heights(place)?;
@@ -75,13 +75,13 @@ fn recorded(start: &Start<'_, '_>, figure: Figure, matches: &ArgMatches) -> Resu
         let values_of_coordinate = |k: usize| states.iter().map(|(_, q, ..)| q[k]).collect();
         motion = motion.plots(
             "Coordinates",
-            curves(&model.configuration, &model.units.configuration, values_of_coordinate),
+            named_curves(&model.configuration, &model.units.configuration, values_of_coordinate),
         )?;
     }
     if states.len() > 1 && model.nu() <= PLOTTED {
         // Constant inputs are not plotted.
         let values = |k: usize| states.iter().map(|(.., u)| u.get(k).copied().unwrap_or(0.0)).collect();
-        let curves = curves(model.inputs.iter().map(|(name, _)| name), &model.units.inputs, values);
+        let curves = named_curves(model.inputs.iter().map(|(name, _)| name), &model.units.inputs, values);
         if curves.iter().any(|(.., values)| values.iter().any(|value| *value != values[0])) {
             motion = motion.plots("Inputs", curves)?;
         }
@@ -121,16 +121,16 @@ fn with_meshes(mut figure: Figure, input: &Input, matches: &ArgMatches) -> Resul
 
 /// Reads the configurations of a log.
 fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
-    let table = Table::read(path)?;
+    let table = Table::read_table(path)?;
     let column = |name: &String| {
         let name = format!("q.{name}");
-        let found = table.column(&name);
+        let found = table.column_by_name(&name);
         found.ok_or_else(|| Stop::Failure(format!("{}: there is no column `{name}`", path.display())))
     };
     let columns = start.model.configuration.iter().map(column).collect::<Result<Vec<_>, Stop>>()?;
     // Inputs, and states, are used if the log has all of them; some of them alone are an error.
     let all_or_none = |names: Vec<String>| {
-        let found: Vec<Option<&[f64]>> = names.iter().map(|name| table.column(name)).collect();
+        let found: Vec<Option<&[f64]>> = names.iter().map(|name| table.column_by_name(name)).collect();
         match found.iter().position(Option::is_none).filter(|_| found.iter().any(Option::is_some)) {
             Some(k) => Err(Stop::Failure(format!("{}: there is no column `{}`", path.display(), names[k]))),
             None => Ok(found.into_iter().collect::<Option<Vec<&[f64]>>>()),
@@ -141,7 +141,7 @@ fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
     let states = all_or_none(start.states.iter().map(|name| format!("x.{name}")).collect())?;
     let state_of_log_row = |(k, t): (usize, &f64)| {
         let mut q: Vec<f64> = columns.iter().map(|column| column[k]).collect();
-        normalise(start.model, &mut q)?;
+        normalise_quaternions(start.model, &mut q)?;
         let u = inputs.iter().map(|column| column[k]).collect();
         let x = states
             .as_ref()
@@ -152,7 +152,7 @@ fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
 }
 
 /// Returns curves with their units and names.
-fn curves<'n>(
+fn named_curves<'n>(
     names: impl IntoIterator<Item = &'n String>,
     units: &'n [String],
     values: impl Fn(usize) -> Vec<f64>,
@@ -162,11 +162,11 @@ fn curves<'n>(
 }
 
 /// Returns the declared drawing with the values of the parameters.
-fn figure(start: &Start<'_, '_>, model: &mechanism::Model<'_>) -> Figure {
+fn declared_figure(start: &Start<'_, '_>, model: &mechanism::Model<'_>) -> Figure {
     let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
     for piece in &model.drawing {
         pieces.push(linkwork_jit::drawn(piece, numbers.len()));
-        numbers.extend(piece.numbers.iter().map(|e| start.value(*e)));
+        numbers.extend(piece.numbers.iter().map(|e| start.evaluate_expression(*e)));
     }
     let frames = model.frames.iter().map(|frame| frame.name.clone()).collect();
     Figure::from_pieces(frames, &pieces, &numbers)

@@ -3,7 +3,7 @@
 use linkwork_compiler::syntax::{BinaryOp, Expr, ExprKind};
 
 /// Formats a number in full precision.
-pub fn number(x: f64) -> String {
+pub fn format_number(x: f64) -> String {
     // Removes the sign of zero.
     let x = x + 0.0;
     if x == x.trunc() && x.abs() < 1e9 { format!("{x}") } else { format!("{x:?}") }
@@ -11,7 +11,7 @@ pub fn number(x: f64) -> String {
 
 /// Formats a number that may be an angle. A literal of more than one revolution is written as a product,
 /// which the compiler accepts as intended.
-pub fn angle(text: &str) -> String {
+pub fn format_angle(text: &str) -> String {
     let turns = text.parse().is_ok_and(|x: f64| x.abs() > std::f64::consts::TAU);
     if turns { format!("1 * {text}") } else { text.to_string() }
 }
@@ -26,22 +26,23 @@ pub enum Role {
 }
 
 /// Returns an expression of coordinates as text; `rename` returns the field names.
-pub fn expression(e: &Expr, rename: &dyn Fn(&str, Role) -> Option<String>) -> String {
-    spelled(e, Role::Coordinate, rename)
+pub fn format_expression(e: &Expr, rename: &dyn Fn(&str, Role) -> Option<String>) -> String {
+    spell_expression(e, Role::Coordinate, rename)
 }
 
 /// Returns a point of a body as text; `rename` returns the field names of bodies.
-pub fn place(e: &Expr, rename: &dyn Fn(&str) -> Option<String>) -> String {
-    spelled(e, Role::Body, &|name, _| rename(name))
+pub fn format_point(e: &Expr, rename: &dyn Fn(&str) -> Option<String>) -> String {
+    spell_expression(e, Role::Body, &|name, _| rename(name))
 }
 
-fn spelled(e: &Expr, role: Role, rename: &dyn Fn(&str, Role) -> Option<String>) -> String {
-    let spell_subexpression = |e: &Expr| spelled(e, role, rename);
-    let spell_in_body_role = |e: &Expr| spelled(e, Role::Body, rename);
+fn spell_expression(e: &Expr, role: Role, rename: &dyn Fn(&str, Role) -> Option<String>) -> String {
+    let spell_subexpression = |e: &Expr| spell_expression(e, role, rename);
+    let spell_in_body_role = |e: &Expr| spell_expression(e, Role::Body, rename);
     let spell_comma_separated =
         |all: &[Expr]| all.iter().map(spell_in_body_role).collect::<Vec<_>>().join(", ");
     match &e.kind {
-        ExprKind::Number(x) => number(*x),
+        ExprKind::Number(x) => format_number(*x),
+        ExprKind::Text(text) => format!("{text:?}"),
         ExprKind::Name(name) => rename(name, role).unwrap_or_else(|| name.clone()),
         ExprKind::Field(of, name) => format!("{}.{}", spell_in_body_role(of), name.text),
         ExprKind::Method(of, name, arguments) => {
@@ -68,23 +69,23 @@ fn spelled(e: &Expr, role: Role, rename: &dyn Fn(&str, Role) -> Option<String>) 
 }
 
 /// Returns the value of a literal expression.
-fn value(e: &Expr) -> Option<f64> {
+fn literal_value(e: &Expr) -> Option<f64> {
     match &e.kind {
         ExprKind::Number(x) => Some(*x),
-        ExprKind::Neg(of) => value(of).map(|x| -x),
+        ExprKind::Neg(of) => literal_value(of).map(|x| -x),
         _ => None,
     }
 }
 
 /// Returns the three values of a literal array.
-fn values(e: &Expr) -> Option<[f64; 3]> {
+fn literal_vector(e: &Expr) -> Option<[f64; 3]> {
     let ExprKind::Array(all) = &e.kind else { return None };
-    all.iter().map(value).collect::<Option<Vec<f64>>>()?.try_into().ok()
+    all.iter().map(literal_value).collect::<Option<Vec<f64>>>()?.try_into().ok()
 }
 
 /// Formats a vector as a sum along the axes.
-pub fn vector(e: &Expr) -> Option<String> {
-    let numbers = values(e)?;
+pub fn format_vector(e: &Expr) -> Option<String> {
+    let numbers = literal_vector(e)?;
     let mut text = String::new();
     for (x, axis) in numbers.into_iter().zip(["x", "y", "z"]).filter(|(x, _)| *x != 0.0) {
         let sign = match (text.is_empty(), x < 0.0) {
@@ -96,35 +97,37 @@ pub fn vector(e: &Expr) -> Option<String> {
         text.push_str(sign);
         match x.abs() {
             1.0 => text.push_str(axis),
-            size => text.push_str(&format!("{} * {axis}", number(size))),
+            size => text.push_str(&format!("{} * {axis}", format_number(size))),
         }
     }
     Some(if text.is_empty() { "0 * x".to_string() } else { text })
 }
 
 /// Formats gravity as a vector.
-pub fn gravity(e: &Expr) -> String {
-    vector(e).unwrap_or_else(|| expression(e, &|_, _| None))
+pub fn format_gravity(e: &Expr) -> String {
+    format_vector(e).unwrap_or_else(|| format_expression(e, &|_, _| None))
 }
 
 /// Formats a direction, normalised to unit length.
-pub fn axis(e: &Expr) -> String {
-    let Some(numbers) = values(e) else { return expression(e, &|_, _| None) };
+pub fn format_axis(e: &Expr) -> String {
+    let Some(numbers) = literal_vector(e) else { return format_expression(e, &|_, _| None) };
     let size = numbers.iter().map(|x| x * x).sum::<f64>().sqrt();
     // Along a coordinate axis, the length is the magnitude of the single nonzero entry.
     let unit = numbers.map(|x| if x.abs() == size { x.signum() } else { x / size });
     let number_expression = |x: f64| Expr { kind: ExprKind::Number(x), place: e.place.clone() };
     let unit = Expr { kind: ExprKind::Array(unit.map(number_expression).to_vec()), place: e.place.clone() };
-    vector(&unit).unwrap_or_default()
+    format_vector(&unit).unwrap_or_default()
 }
 
 /// Returns an inertia as text: as `diagonal(…)` if it is diagonal without negative moments.
-pub fn inertia(e: &Expr, written: &str) -> String {
+pub fn format_inertia(e: &Expr, written: &str) -> String {
     let ExprKind::Array(rows) = &e.kind else { return written.to_string() };
-    let Some(rows) = rows.iter().map(values).collect::<Option<Vec<_>>>() else { return written.to_string() };
+    let Some(rows) = rows.iter().map(literal_vector).collect::<Option<Vec<_>>>() else {
+        return written.to_string();
+    };
     match rows.as_slice() {
         [[xx, 0.0, 0.0], [0.0, yy, 0.0], [0.0, 0.0, zz]] if xx.min(yy.min(*zz)) >= 0.0 => {
-            format!("diagonal({}, {}, {})", number(*xx), number(*yy), number(*zz))
+            format!("diagonal({}, {}, {})", format_number(*xx), format_number(*yy), format_number(*zz))
         }
         _ => written.to_string(),
     }

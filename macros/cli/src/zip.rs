@@ -50,7 +50,7 @@ impl Archive {
     }
 
     /// Returns the bytes of the archive.
-    pub fn bytes(self) -> Vec<u8> {
+    pub fn archive_bytes(self) -> Vec<u8> {
         let start = self.contents.len() as u32;
         let size = self.directory.len() as u32;
         let mut bytes = self.contents;

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// Creates a folder for the files of one test, and returns it.
-fn folder(name: &str) -> PathBuf {
+fn test_folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::create_dir_all(&folder).unwrap();
     folder
 }
 
-fn linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+fn run_linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     let Output { status, stdout, stderr } =
         Command::new(env!("CARGO_BIN_EXE_linkwork")).current_dir(folder).args(arguments).output().unwrap();
     let decode_utf8 = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
@@ -29,36 +29,36 @@ pub struct Pendulum {
 
 #[test]
 fn good_mechanisms_are_in_order() {
-    let here = folder("good");
+    let here = test_folder("good");
     std::fs::write(here.join("pendulum.rs"), PENDULUM).unwrap();
     assert_eq!(
-        linkwork(&here, &["check", "pendulum.rs"]),
+        run_linkwork(&here, &["check", "pendulum.rs"]),
         (0, "pendulum.rs: `Pendulum` has no errors\n".to_string(), String::new())
     );
-    let (status, shown, _) = linkwork(&here, &["show", "pendulum.rs"]);
+    let (status, shown, _) = run_linkwork(&here, &["show", "pendulum.rs"]);
     assert!(status == 0 && shown.contains("theta") && shown.contains("sin(theta)"), "{shown}");
-    let (status, json, _) = linkwork(&here, &["show", "pendulum.rs", "--json"]);
+    let (status, json, _) = run_linkwork(&here, &["show", "pendulum.rs", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert!(status == 0 && json.to_string().contains("\"theta\""), "{json}");
 }
 
 #[test]
 fn mistakes_are_listed_with_their_places() {
-    let here = folder("mistakes");
+    let here = test_folder("mistakes");
     let text = PENDULUM.replace("cos(theta)", "cos(thta)").replace("mass = 1", "mass = -1");
     std::fs::write(here.join("bad.rs"), &text).unwrap();
-    let (status, _, stderr) = linkwork(&here, &["check", "bad.rs"]);
+    let (status, _, stderr) = run_linkwork(&here, &["check", "bad.rs"]);
     assert_eq!(status, 1);
     let line = 1 + text.lines().position(|line| line.contains("thta")).unwrap();
     let column = 1 + text.lines().find_map(|line| line.find("thta")).unwrap();
     assert!(stderr.contains(&format!("bad.rs:{line}:{column}: error:")), "{stderr}");
     assert!(stderr.contains("did you mean `theta`?") && stderr.contains("mass"), "{stderr}");
-    let (status, json, _) = linkwork(&here, &["check", "bad.rs", "--json"]);
+    let (status, json, _) = run_linkwork(&here, &["check", "bad.rs", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     let places: Vec<_> = json["messages"].as_array().unwrap().iter().map(|m| m["line"].as_u64()).collect();
     assert_eq!((status, places), (1, vec![Some(line as u64); 2]));
     // No files are written for a mechanism with errors.
-    let (status, ..) = linkwork(&here, &["export", "c", "bad.rs"]);
+    let (status, ..) = run_linkwork(&here, &["export", "c", "bad.rs"]);
     assert!(status == 1 && !here.join("pendulum.c").exists());
 }
 
@@ -66,22 +66,22 @@ fn mistakes_are_listed_with_their_places() {
 /// fields.
 #[test]
 fn a_derive_above_the_attribute_is_an_error() {
-    let here = folder("derives");
+    let here = test_folder("derives");
     let derive = "#[derive(Clone, Debug)]\n";
     let above = format!("{derive}{}", PENDULUM.trim_start());
     std::fs::write(here.join("above.rs"), &above).unwrap();
-    let (status, _, stderr) = linkwork(&here, &["check", "above.rs"]);
+    let (status, _, stderr) = run_linkwork(&here, &["check", "above.rs"]);
     assert_eq!(status, 1);
     assert!(stderr.contains("above.rs:2:1: error: `#[derive(…)]` is above `#[mechanism]`"), "{stderr}");
     assert!(stderr.contains("= help: write it below"), "{stderr}");
     std::fs::write(here.join("below.rs"), PENDULUM.replace("pub struct", &format!("{derive}pub struct")))
         .unwrap();
-    assert_eq!(linkwork(&here, &["check", "below.rs"]).0, 0);
+    assert_eq!(run_linkwork(&here, &["check", "below.rs"]).0, 0);
 }
 
 #[test]
 fn what_cannot_be_done_is_said() {
-    let here = folder("failures");
+    let here = test_folder("failures");
     std::fs::write(here.join("mujoco.urdf"), "<mujoco><worldbody/></mujoco>").unwrap();
     std::fs::write(here.join("nothing.rs"), "pub struct Plain;").unwrap();
     std::fs::write(here.join("broken.rs"), "pub struct 3;").unwrap();
@@ -144,9 +144,24 @@ fn what_cannot_be_done_is_said() {
         (&["export", "wgsl", "pendulum.rs", "--scalar", "double"], 2, "WGSL has no double precision"),
         (&["export", "cuda", "pendulum.rs", "--prefix", "2x"], 2, "use `--prefix x2x`"),
         (&["export", "wgsl", "pendulum.rs", "--prefix", "class"], 2, "use `--prefix class_`"),
+        (
+            &["export", "cuda", "pendulum.rs", "--with", "arithmetic = reproducible"],
+            1,
+            "kernels have no reproducible arithmetic",
+        ),
+        (
+            &["simulate", "pendulum.rs", "--with", "arithmetic = reproducible"],
+            1,
+            "loaded mechanisms have no reproducible arithmetic",
+        ),
+        (
+            &["export", "c", "pendulum.rs", "--with", "arithmetic = reproducible", "--scalar", "float"],
+            1,
+            "single precision has no reproducible arithmetic in C",
+        ),
         (&["convert", "leg.urdf", "--with", "derivatives"], 2, "write options that request functions"),
     ] {
-        let (found, _, error) = linkwork(&here, arguments);
+        let (found, _, error) = run_linkwork(&here, arguments);
         assert!(found == status && error.contains(stderr), "{arguments:?}: {found}, {error}");
     }
 }
@@ -155,33 +170,33 @@ fn what_cannot_be_done_is_said() {
 /// file is accepted with this option.
 #[test]
 fn advice_names_options_of_the_command() {
-    let here = folder("advice");
+    let here = test_folder("advice");
     let robot = "<robot name='r'><link name='a'/><link name='b'><inertial><mass value='1'/>\
                  <inertia ixx='1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial></link>\
                  <joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint></robot>";
     std::fs::write(here.join("r.urdf"), robot).unwrap();
-    let (status, _, stderr) = linkwork(&here, &["check", "r.urdf"]);
+    let (status, _, stderr) = run_linkwork(&here, &["check", "r.urdf"]);
     assert!(
         status == 1 && stderr.contains("`--with \"inertia = trust\"`") && !stderr.contains("#[mech"),
         "{stderr}"
     );
-    assert_eq!(linkwork(&here, &["check", "r.urdf", "--with", "inertia = trust"]).0, 0);
+    assert_eq!(run_linkwork(&here, &["check", "r.urdf", "--with", "inertia = trust"]).0, 0);
     std::fs::write(here.join("s.urdf"), "<sdf version='1.9'><model name='m'/></sdf>").unwrap();
-    let (status, _, stderr) = linkwork(&here, &["check", "s.urdf"]);
+    let (status, _, stderr) = run_linkwork(&here, &["check", "s.urdf"]);
     assert!(status == 1 && stderr.contains("give it a name that ends in `.sdf`"), "{stderr}");
 }
 
 /// Checks that missing meshes are listed, and that a missing folder is an error.
 #[test]
 fn missing_meshes_are_listed() {
-    let here = folder("meshes");
+    let here = test_folder("meshes");
     let robot = "<robot name='r'><link name='a'><visual><geometry><mesh filename='package://r/a.stl'/></geometry></visual></link>\
                  <link name='b'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>\
                  <joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint></robot>";
     std::fs::write(here.join("r.urdf"), robot).unwrap();
     for more in [&[][..], &["--meshes", "."]] {
         let (status, _, stderr) =
-            linkwork(&here, &[&["view", "r.urdf", "--duration", "0.1"][..], more].concat());
+            run_linkwork(&here, &[&["view", "r.urdf", "--duration", "0.1"][..], more].concat());
         assert!(
             status == 0
                 && stderr.contains("these meshes are not found")
@@ -189,19 +204,19 @@ fn missing_meshes_are_listed() {
             "{stderr}"
         );
     }
-    let (status, _, stderr) = linkwork(&here, &["view", "r.urdf", "--meshes", "nowhere"]);
+    let (status, _, stderr) = run_linkwork(&here, &["view", "r.urdf", "--meshes", "nowhere"]);
     assert!(status == 2 && stderr.contains("`--meshes`: nowhere: "), "{stderr}");
 }
 
 /// Checks the shaders and the functions that are listed as missing for a mechanism with a table.
 #[test]
 fn shaders_are_written_for_straight_line_functions() {
-    let here = folder("shaders");
+    let here = test_folder("shaders");
     let sled = "#[mechanism] pub struct Sled { pub m: f64, pub drag: Table<1>, #[particle(mass = m)] block: Particle, \
         #[joint(ground -> block, along = x)] rail: Sleeve, \
         #[acts(on = rail, value = -drag(rate(rail)))] air: Force }";
     std::fs::write(here.join("sled.rs"), sled).unwrap();
-    let (status, stdout, stderr) = linkwork(&here, &["export", "wgsl", "sled.rs"]);
+    let (status, stdout, stderr) = run_linkwork(&here, &["export", "wgsl", "sled.rs"]);
     assert_eq!((status, stdout.as_str()), (0, "./sled.wgsl\n./sled_wgpu.py\n"), "{stderr}");
     for line in ["inverse_dynamics: it has tables", "rk4_step: it calls other functions"] {
         assert!(stderr.contains(&format!("linkwork: not in WGSL: {line}\n")), "{line} in {stderr}");
@@ -215,15 +230,15 @@ fn shaders_are_written_for_straight_line_functions() {
 /// Checks that syntax errors are reported in the format of other errors.
 #[test]
 fn syntax_errors_are_mistakes_among_others() {
-    let here = folder("syntax");
+    let here = test_folder("syntax");
     std::fs::write(here.join("broken.rs"), "\npub struct {").unwrap();
     std::fs::write(here.join("broken.urdf"), "<robot name='r'>\n<link></robot>").unwrap();
     std::fs::write(here.join("bad.rs"), PENDULUM.replace("cos(theta)", "cos(thta)")).unwrap();
     for (file, line, column) in [("broken.rs", 2, 12), ("broken.urdf", 2, 7), ("bad.rs", 5, 62)] {
-        let (status, _, stderr) = linkwork(&here, &["check", file]);
+        let (status, _, stderr) = run_linkwork(&here, &["check", file]);
         let begin = format!("{file}:{line}:{column}: error: ");
         assert!(status == 1 && stderr.starts_with(&begin), "{stderr}");
-        let (status, json, stderr) = linkwork(&here, &["check", file, "--json"]);
+        let (status, json, stderr) = run_linkwork(&here, &["check", file, "--json"]);
         let json: serde_json::Value = serde_json::from_str(&json).unwrap();
         let found = &json["messages"][0];
         assert_eq!((status, stderr.as_str()), (1, ""), "{json}");
@@ -238,12 +253,12 @@ fn syntax_errors_are_mistakes_among_others() {
 /// links.
 #[test]
 fn documentation_is_for_other_readers_too() {
-    let here = folder("documented");
+    let here = test_folder("documented");
     let about = "/// A *simple* pendulum, as [`Pendulum`](crate::Pendulum), with [`theta`].\n///\n/// - \
                  `theta`, rad\n/// - `length`, m\n";
     std::fs::write(here.join("pendulum.rs"), format!("{about}{}", PENDULUM.trim_start())).unwrap();
     let (status, _, stderr) =
-        linkwork(&here, &["view", "pendulum.rs", "--set", "length=1", "--duration", "0.1"]);
+        run_linkwork(&here, &["view", "pendulum.rs", "--set", "length=1", "--duration", "0.1"]);
     assert_eq!((status, stderr.as_str()), (0, ""));
     let page = std::fs::read_to_string(here.join("Pendulum.html")).unwrap();
     let first = "<p>A <em>simple</em> pendulum, as <code>Pendulum</code>, with <code>theta</code>.</p>";
@@ -252,7 +267,7 @@ fn documentation_is_for_other_readers_too() {
 
     let bowl = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/src/four_bar.rs");
     let sources = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-    let (status, _, stderr) = linkwork(
+    let (status, _, stderr) = run_linkwork(
         &here,
         &["export", "library", bowl, "--struct", "FourBar", "--out", "bar", "--linkwork", sources],
     );
@@ -278,14 +293,14 @@ fn documentation_is_for_other_readers_too() {
 /// otherwise identical. The description contains the limits of the joints.
 #[test]
 fn libraries_contain_the_attribute_or_its_code() {
-    let here = folder("expanded");
+    let here = test_folder("expanded");
     let slider = "#[mechanism] pub struct Slider { #[particle(mass = 2)] block: Particle, \
         #[joint(ground -> block, along = x)] rail: Sleeve, \
         #[limit(on = rail, from = -1, to = 2.5, max_speed = 3)] ends: Limit }";
     std::fs::write(here.join("slider.rs"), slider).unwrap();
     let export_library_files = |more: &[&str]| {
         let (status, _, stderr) =
-            linkwork(&here, &[&["export", "library", "slider.rs", "--out", "slider"], more].concat());
+            run_linkwork(&here, &[&["export", "library", "slider.rs", "--out", "slider"], more].concat());
         assert_eq!((status, stderr.as_str()), (0, ""));
         ["src/lib.rs", "description.json", "include/slider.h", "Cargo.toml"]
             .map(|file| std::fs::read_to_string(here.join("slider").join(file)).unwrap())
@@ -305,13 +320,13 @@ fn libraries_contain_the_attribute_or_its_code() {
 /// does not have are listed.
 #[test]
 fn functions_that_another_language_lacks_are_listed() {
-    let here = folder("forms");
+    let here = test_folder("forms");
     let slider = "#[mechanism] pub struct Slider { pub m: f64, #[particle(mass = m)] block: Particle, \
         #[joint(ground -> block, along = x)] rail: Sleeve, #[limit(on = rail, to = 1)] end: Limit, \
         #[output(2 * rail)] motor_lanes: Scalar, #[output(3 * rail)] heat_into: Scalar, \
         #[output(norm(reaction_force(rail)))] load: Scalar }";
     std::fs::write(here.join("slider.rs"), slider).unwrap();
-    let done = linkwork(&here, &["export", "library", "slider.rs", "--out", "slider"]);
+    let done = run_linkwork(&here, &["export", "library", "slider.rs", "--out", "slider"]);
     assert_eq!((done.0, done.2.as_str()), (0, ""));
     let text = std::fs::read_to_string(here.join("slider/description.json")).unwrap();
     let description: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -321,7 +336,7 @@ fn functions_that_another_language_lacks_are_listed() {
     }
     let all =
         ["export", "c", "slider.rs", "--no-derivatives", "--casadi", "--with", "prepare, batch, drawing"];
-    let (status, _, stderr) = linkwork(&here, &all);
+    let (status, _, stderr) = run_linkwork(&here, &all);
     assert_eq!(status, 0);
     for line in [
         "the functions of `prepare`",
@@ -335,7 +350,7 @@ fn functions_that_another_language_lacks_are_listed() {
 }
 
 /// Returns the text of the first code block of a language in the README.
-fn block(language: &str) -> String {
+fn readme_code_block(language: &str) -> String {
     let guide = include_str!("../README.md");
     let (_, rest) = guide.split_once(&format!("```{language}\n")).unwrap();
     rest.split_once("```").unwrap().0.to_string()
@@ -345,12 +360,12 @@ fn block(language: &str) -> String {
 #[test]
 #[cfg(unix)]
 fn documented_commands_run() {
-    let here = folder("documented_commands");
+    let here = test_folder("documented_commands");
     let _ = std::fs::remove_dir_all(&here);
     std::fs::create_dir_all(&here).unwrap();
     let models = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models");
     std::os::unix::fs::symlink(models, here.join("models")).unwrap();
-    let commands = block("sh");
+    let commands = readme_code_block("sh");
     let commands = commands.lines().map(|line| line.split(['#', '>']).next().unwrap());
     let commands: Vec<Vec<&str>> = commands
         .filter_map(|line| line.strip_prefix("linkwork "))
@@ -362,7 +377,7 @@ fn documented_commands_run() {
             command.retain(|word| !["--duration", "2"].contains(word));
             command.extend(["--duration", "0.05"]);
         }
-        let (status, _, stderr) = linkwork(&here, &command);
+        let (status, _, stderr) = run_linkwork(&here, &command);
         assert_eq!(status, 0, "{command:?}: {stderr}");
     }
 }
@@ -370,10 +385,10 @@ fn documented_commands_run() {
 /// Checks that the C example of the README compiles and succeeds.
 #[test]
 fn the_guide_runs() {
-    let here = folder("guide");
-    std::fs::write(here.join("pendulum.rs"), block("rust,ignore")).unwrap();
-    std::fs::write(here.join("main.c"), block("c")).unwrap();
-    let (status, _, error) = linkwork(&here, &["export", "c", "pendulum.rs"]);
+    let here = test_folder("guide");
+    std::fs::write(here.join("pendulum.rs"), readme_code_block("rust,ignore")).unwrap();
+    std::fs::write(here.join("main.c"), readme_code_block("c")).unwrap();
+    let (status, _, error) = run_linkwork(&here, &["export", "c", "pendulum.rs"]);
     assert_eq!((status, error.as_str()), (0, ""));
     let flags =
         ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O1", "main.c", "pendulum.c", "-lm"];
@@ -388,28 +403,28 @@ fn the_guide_runs() {
 /// Checks that the format of a robot file follows from its extension, or otherwise from its content.
 #[test]
 fn robots_are_read_in_their_formats() {
-    let here = folder("formats");
+    let here = test_folder("formats");
     let model = "<mujoco><worldbody><body name='b'><joint name='j'/><geom size='0.1'/></body></worldbody>\
                  <actuator><motor name='m' joint='j'/></actuator></mujoco>";
     for name in ["arm.xml", "arm.mjcf", "arm.urdf"] {
         std::fs::write(here.join(name), model).unwrap();
     }
     for name in ["arm.xml", "arm.mjcf"] {
-        let (status, shown, _) = linkwork(&here, &["show", name]);
+        let (status, shown, _) = run_linkwork(&here, &["show", name]);
         assert!(status == 0 && shown.contains("m  N·m"), "{shown}");
     }
     let model = "<sdf version='1.9'><model name='m'><link name='a'/><link name='b'/>\
                  <joint name='turn' type='revolute'><parent>a</parent><child>b</child><axis/></joint></model></sdf>";
     for name in ["box.xml", "box.sdf", "box.world"] {
         std::fs::write(here.join(name), model).unwrap();
-        let (status, shown, _) = linkwork(&here, &["show", name]);
+        let (status, shown, _) = run_linkwork(&here, &["show", name]);
         assert!(status == 0 && shown.contains("turn  N·m"), "{shown}");
     }
     let template = "<robot xmlns:xacro='http://www.ros.org/wiki/xacro'><xacro:include filename='a'/></robot>";
     std::fs::write(here.join("arm.urdf.xacro"), template).unwrap();
-    let (status, _, said) = linkwork(&here, &["check", "arm.urdf.xacro"]);
+    let (status, _, said) = run_linkwork(&here, &["check", "arm.urdf.xacro"]);
     assert!(status == 1 && said.contains("expand the file first: `xacro robot.urdf.xacro"), "{said}");
-    let (status, _, said) = linkwork(&here, &["check", "arm.urdf"]);
+    let (status, _, said) = run_linkwork(&here, &["check", "arm.urdf"]);
     assert!(
         status == 1 && said.starts_with("arm.urdf:1:1: error: expected `<robot>`, found `<mujoco>`"),
         "{said}"

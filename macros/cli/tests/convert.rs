@@ -4,14 +4,15 @@ use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{Model, Quantity};
-use linkwork_compiler::{Source, compile, read};
+use linkwork_compiler::{Source, compile, read_source};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Compiles a struct with arguments of the attribute, and passes the result to `test`.
-fn compiled<T>(arguments: &str, item: &str, test: impl FnOnce(&Model<'_>, &Output) -> T) -> T {
+fn compile_and_test<T>(arguments: &str, item: &str, test: impl FnOnce(&Model<'_>, &Output) -> T) -> T {
     let cx = &mut Diagnostics::new();
-    let source: Option<Source> = read(arguments.parse().unwrap(), item.parse().unwrap(), Path::new("/"), cx);
+    let source: Option<Source> =
+        read_source(arguments.parse().unwrap(), item.parse().unwrap(), Path::new("/"), cx);
     let graph = Graph::new();
     let made = source.and_then(|source| compile(&source, &graph, cx));
     let (model, output) = made.unwrap_or_else(|| panic!("{:?}", cx.messages()));
@@ -19,7 +20,7 @@ fn compiled<T>(arguments: &str, item: &str, test: impl FnOnce(&Model<'_>, &Outpu
 }
 
 /// Evaluates a function at a state that depends on the indices of its entries.
-fn run(model: &Model<'_>, output: &Output, function: &str) -> Vec<f64> {
+fn evaluate_at_sample_state(model: &Model<'_>, output: &Output, function: &str) -> Vec<f64> {
     let sample_value = |k: usize, shift: f64| (1.7 * k as f64 + shift).sin();
     let sample_coordinate =
         |k: usize| match model.configuration.get(k).and_then(|name| name.rsplit('.').next()) {
@@ -31,22 +32,24 @@ fn run(model: &Model<'_>, output: &Output, function: &str) -> Vec<f64> {
         };
     let find_function = |name: &str| output.functions.iter().find(|f| f.name == name);
     let evaluate_function = |name: &str, passive: &[f64]| {
-        find_function(name).unwrap().program.run(&|symbol| match Quantity::from_symbol(symbol) {
-            Quantity::Configuration(k) => sample_coordinate(k),
-            Quantity::Velocity(k) => sample_value(k, 0.9),
-            Quantity::Acceleration(k) => sample_value(k, 1.3),
-            Quantity::Force(k) => sample_value(k, 2.1),
-            Quantity::Input(k) => sample_value(k, 0.1),
-            Quantity::PassiveForce(k) => passive[k],
-            other => panic!("{other:?}"),
-        })
+        find_function(name).unwrap().program.interpret_program(
+            &|symbol| match Quantity::from_symbol(symbol) {
+                Quantity::Configuration(k) => sample_coordinate(k),
+                Quantity::Velocity(k) => sample_value(k, 0.9),
+                Quantity::Acceleration(k) => sample_value(k, 1.3),
+                Quantity::Force(k) => sample_value(k, 2.1),
+                Quantity::Input(k) => sample_value(k, 0.1),
+                Quantity::PassiveForce(k) => passive[k],
+                other => panic!("{other:?}"),
+            },
+        )
     };
     // Long passive forces are a separate function, whose results are arguments of the other functions.
     let passive = find_function("__passive_forces").map(|_| evaluate_function("__passive_forces", &[]));
     evaluate_function(function, &passive.unwrap_or_default())
 }
 
-fn converted(file: &Path, with: &str) -> (String, String) {
+fn convert_file(file: &Path, with: &str) -> (String, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_linkwork"));
     let output = command.arg("convert").arg(file).args(["--with", with]).output().unwrap();
     let decode_utf8 = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
@@ -56,26 +59,26 @@ fn converted(file: &Path, with: &str) -> (String, String) {
 }
 
 /// Returns the arguments of the attribute, and the struct.
-fn parts(code: &str) -> (String, String) {
+fn split_attribute_and_struct(code: &str) -> (String, String) {
     let (_, rest) = code.split_once("#[mechanism(").unwrap();
     let (arguments, item) = rest.split_once(")]\n").unwrap();
     (arguments.to_string(), item.to_string())
 }
 
 /// Returns the number of frames except the ground, which is one of the links of a file.
-fn frames(model: &Model<'_>) -> usize {
+fn count_frames(model: &Model<'_>) -> usize {
     model.frames.iter().filter(|frame| frame.name != "ground").count()
 }
 
-fn check(format: &str, file: &Path, with: &str) {
+fn check_conversion(format: &str, file: &Path, with: &str) {
     check_beside(format, file, with, &[]);
 }
 
 /// Compares a struct with its file; `notes` are expected messages in addition to the list of renamed
 /// elements.
 fn check_beside(format: &str, file: &Path, with: &str, notes: &[&str]) {
-    let (code, stderr) = converted(file, with);
-    let (arguments, item) = parts(&code);
+    let (code, stderr) = convert_file(file, with);
+    let (arguments, item) = split_attribute_and_struct(&code);
     let is_expected = |line: &str| {
         line.starts_with("linkwork: names that differ from the file: ")
             || notes.iter().any(|note| line.contains(note))
@@ -84,13 +87,14 @@ fn check_beside(format: &str, file: &Path, with: &str, notes: &[&str]) {
     let given = format!("{format} = {:?}, {with}", file.display().to_string());
     let functions =
         ["mass_matrix", "inverse_dynamics", "forward_dynamics", "generalized_forces", "potential_energy"];
-    let evaluate_all_functions =
-        |model: &Model<'_>, output: &Output| functions.map(|function| run(model, output, function));
-    let expected = compiled(&given, "struct Robot;", |m, o| {
-        (m.nq(), m.nu(), frames(m), m.limits.len(), evaluate_all_functions(m, o))
+    let evaluate_all_functions = |model: &Model<'_>, output: &Output| {
+        functions.map(|function| evaluate_at_sample_state(model, output, function))
+    };
+    let expected = compile_and_test(&given, "struct Robot;", |m, o| {
+        (m.nq(), m.nu(), count_frames(m), m.limits.len(), evaluate_all_functions(m, o))
     });
-    let found = compiled(&arguments, &item, |m, o| {
-        (m.nq(), m.nu(), frames(m), m.limits.len(), evaluate_all_functions(m, o))
+    let found = compile_and_test(&arguments, &item, |m, o| {
+        (m.nq(), m.nu(), count_frames(m), m.limits.len(), evaluate_all_functions(m, o))
     });
     assert_eq!((found.0, found.1), (expected.0, expected.1), "{}", file.display());
     assert_eq!((found.2, found.3), (expected.2, expected.3), "frames and limits of {}", file.display());
@@ -101,13 +105,13 @@ fn check_beside(format: &str, file: &Path, with: &str, notes: &[&str]) {
     }
 }
 
-fn repository() -> PathBuf {
+fn repository_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
 }
 
 #[test]
 fn structs_move_as_their_files() {
-    let urdf = repository().join("models/urdf");
+    let urdf = repository_folder().join("models/urdf");
     for (name, with) in [
         ("ur5", "base = fixed"),
         ("gen3", "base = fixed"),
@@ -117,7 +121,7 @@ fn structs_move_as_their_files() {
         ("anymal_b", "base = free, inertia = trust"),
         ("panda", "mimic = independent"),
     ] {
-        check("urdf", &urdf.join(format!("{name}.urdf")), with);
+        check_conversion("urdf", &urdf.join(format!("{name}.urdf")), with);
     }
 }
 
@@ -156,7 +160,7 @@ fn elements_of_files_become_fields() {
     std::fs::create_dir_all(&folder).unwrap();
     let file = folder.join("crane.xml");
     std::fs::write(&file, CRANE).unwrap();
-    let (code, _) = converted(&file, "");
+    let (code, _) = convert_file(&file, "");
     for part in [
         "t_link: Body",
         "trolley_joint: Sleeve",
@@ -167,11 +171,11 @@ fn elements_of_files_become_fields() {
     ] {
         assert!(code.contains(part), "{part}: {code}");
     }
-    check("mjcf", &file, "");
+    check_conversion("mjcf", &file, "");
 }
 
 /// Writes a file for one test, and returns its path.
-fn written(name: &str, text: &str) -> PathBuf {
+fn write_test_file(name: &str, text: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("structs");
     std::fs::create_dir_all(&folder).unwrap();
     let file = folder.join(name);
@@ -198,18 +202,19 @@ fn robot_files_of_the_tests_become_structs() {
         ("mjcf", "tests/data/mjcf/loops.xml", ""),
         ("mjcf", "tests/data/mjcf/medium.xml", ""),
     ] {
-        let file = repository().join(file);
+        let file = repository_folder().join(file);
         let given = format!("{format} = {:?}, {with}", file.display().to_string());
         let sizes_and_dynamics_values = |model: &Model<'_>, output: &Output| {
             (
                 model.nq(),
                 model.nu(),
-                ["mass_matrix", "bias_forces"].map(|function| run(model, output, function)),
+                ["mass_matrix", "bias_forces"]
+                    .map(|function| evaluate_at_sample_state(model, output, function)),
             )
         };
-        let expected = compiled(&given, "struct Robot;", sizes_and_dynamics_values);
-        let (arguments, item) = parts(&converted(&file, with).0);
-        let found = compiled(&arguments, &item, sizes_and_dynamics_values);
+        let expected = compile_and_test(&given, "struct Robot;", sizes_and_dynamics_values);
+        let (arguments, item) = split_attribute_and_struct(&convert_file(&file, with).0);
+        let found = compile_and_test(&arguments, &item, sizes_and_dynamics_values);
         assert_eq!((found.0, found.1), (expected.0, expected.1), "{}", file.display());
         for (a, b) in found.2.iter().zip(&expected.2) {
             let size = b.iter().fold(1.0, |size: f64, x| size.max(x.abs()));
@@ -227,7 +232,7 @@ fn robot_files_of_the_tests_become_structs() {
 /// means the body, in couplings the joint.
 #[test]
 fn links_and_joints_share_a_name() {
-    let file = written(
+    let file = write_test_file(
         "shared.xml",
         r#"<mujoco><option density="1.2" viscosity="0.1"/><worldbody>
   <site name="o" pos="0 0.2 1"/>
@@ -241,12 +246,13 @@ fn links_and_joints_share_a_name() {
     );
     let given = format!("mjcf = {:?}", file.display().to_string());
     let functions = ["mass_matrix", "bias_forces", "potential_energy", "constraint_residuals"];
-    let evaluate_all_functions =
-        |model: &Model<'_>, output: &Output| functions.map(|function| run(model, output, function));
-    let expected = compiled(&given, "struct Robot;", evaluate_all_functions);
-    let (code, _) = converted(&file, "");
-    let (arguments, item) = parts(&code);
-    for (a, b) in compiled(&arguments, &item, evaluate_all_functions).iter().zip(&expected) {
+    let evaluate_all_functions = |model: &Model<'_>, output: &Output| {
+        functions.map(|function| evaluate_at_sample_state(model, output, function))
+    };
+    let expected = compile_and_test(&given, "struct Robot;", evaluate_all_functions);
+    let (code, _) = convert_file(&file, "");
+    let (arguments, item) = split_attribute_and_struct(&code);
+    for (a, b) in compile_and_test(&arguments, &item, evaluate_all_functions).iter().zip(&expected) {
         assert!(a.len() == b.len() && !a.is_empty(), "{a:?} {b:?}");
         assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9 * b.abs().max(1.0)), "{a:?} {b:?}");
     }
@@ -255,7 +261,7 @@ fn links_and_joints_share_a_name() {
 /// Checks damping that adds energy, gears, elements on several joints, and lengths that do not change.
 #[test]
 fn elements_of_any_sign_and_on_several_joints_become_fields() {
-    let file = written(
+    let file = write_test_file(
         "signs.xml",
         r#"<mujoco><worldbody><site name="o" pos="0 0 1"/><site name="o2" pos="0 1 1"/>
   <body name="b"><inertial pos="0 0 0.1" mass="1" diaginertia="0.01 0.01 0.01"/><joint name="j" axis="0 1 0"/>
@@ -288,7 +294,7 @@ fn elements_of_any_sign_and_on_several_joints_become_fields() {
         )
     };
     for (name, inertia) in [("diagonal.urdf", inertia("-0.1", "0")), ("full.urdf", inertia("-0.1", "-0.2"))] {
-        let file = written(
+        let file = write_test_file(
             name,
             &format!(
                 "<robot name='r'><link name='a'/><link name='b'>{inertia}</link>\
@@ -296,7 +302,7 @@ fn elements_of_any_sign_and_on_several_joints_become_fields() {
                  </joint></robot>"
             ),
         );
-        check("urdf", &file, "inertia = trust");
+        check_conversion("urdf", &file, "inertia = trust");
     }
 }
 
@@ -321,7 +327,7 @@ fn other_names_than_in_the_file_are_reported() {
         joint_element("hand", "Upper-arm", "hand")
     );
     std::fs::write(&file, arm).unwrap();
-    let (code, stderr) = converted(&file, "");
+    let (code, stderr) = convert_file(&file, "");
     let all = [
         ("link `world`", "world_link"),
         ("link `Upper-arm`", "upper_arm"),
@@ -340,7 +346,7 @@ fn other_names_than_in_the_file_are_reported() {
     );
     assert_eq!(stderr, expected);
     // Elements that retain their names are not mentioned.
-    let (code, stderr) = converted(&file, "inputs = none, lock = [\"hand\", \"shoulder\"], base = free");
+    let (code, stderr) = convert_file(&file, "inputs = none, lock = [\"hand\", \"shoulder\"], base = free");
     assert!(!stderr.contains("shoulder") && !code.contains("shoulder` is"), "{stderr}{code}");
 }
 
@@ -352,7 +358,7 @@ fn what_cannot_be_converted_is_reported() {
     };
     let (status, stderr) = run_command_line(&["convert", file!(), "--struct", "None"]);
     assert!(status == Some(2), "{stderr}");
-    let panda = repository().join("models/urdf/panda.urdf");
+    let panda = repository_folder().join("models/urdf/panda.urdf");
     let (status, stderr) = run_command_line(&["convert", panda.to_str().unwrap()]);
     assert!(
         status == Some(0) && stderr.contains("follows `panda_finger_joint1` by a constraint"),
@@ -360,4 +366,45 @@ fn what_cannot_be_converted_is_reported() {
     );
     let (status, stderr) = run_command_line(&["convert", panda.to_str().unwrap(), "--out", "panda.sdf"]);
     assert!(status == Some(2) && stderr.contains("a file that ends in .rs, not panda.sdf"), "{stderr}");
+}
+
+/// Checks that `convert` rejects what `check` rejects, with the same messages: errors that only the whole
+/// mechanism shows, such as limits of a mimic joint and its leader that exclude every value, and a massless
+/// end link.
+#[test]
+fn files_with_errors_of_the_whole_mechanism_are_not_converted() {
+    let inertial = "<inertial><mass value='1'/>\
+        <inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
+    let alone = "<limit lower='-1' upper='1' effort='1' velocity='1'/>";
+    let file = |name: &str, tip: &str, limits: &str| {
+        let joint = |name: &str, parent: &str, child: &str, limits: &str| {
+            format!(
+                "<joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{child}'/>\
+                 {limits}</joint>"
+            )
+        };
+        let joints = joint("j", "base", "a", alone) + &joint("k", "a", "b", limits);
+        let links = format!("<link name='base'/><link name='a'>{inertial}</link><link name='b'>{tip}</link>");
+        write_test_file(name, &format!("<robot name='two'>{links}{joints}</robot>"))
+    };
+    let far = format!("<mimic joint='j' multiplier='2' offset='5'/>{alone}");
+    let near = format!("<mimic joint='j' multiplier='2' offset='2'/>{alone}");
+    for (name, tip, limits, expected) in [
+        ("far.urdf", inertial, far.as_str(), Some("the limits of `j` exclude every value")),
+        ("near.urdf", inertial, &near, None),
+        ("massless.urdf", "", alone, Some("singular")),
+    ] {
+        let file = file(name, tip, limits);
+        let run = |command: &str| {
+            let mut of = Command::new(env!("CARGO_BIN_EXE_linkwork"));
+            let output = of.arg(command).arg(&file).output().unwrap();
+            (output.status.success(), String::from_utf8(output.stderr).unwrap())
+        };
+        let (check, convert) = (run("check"), run("convert"));
+        assert_eq!(check.0, expected.is_none(), "{check:?}");
+        assert_eq!(convert.0, check.0, "{convert:?}");
+        if let Some(expected) = expected {
+            assert!(check.1.contains(expected) && convert.1.contains(expected), "{check:?} {convert:?}");
+        }
+    }
 }

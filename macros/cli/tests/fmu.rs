@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Returns the C compiler of the system, if there is one.
-fn compiler() -> Option<&'static str> {
+fn c_compiler() -> Option<&'static str> {
     let found = Command::new("cc").arg("--version").output().is_ok_and(|output| output.status.success());
     if !found {
         println!("skipped: there is no C compiler");
@@ -15,7 +15,7 @@ fn compiler() -> Option<&'static str> {
 }
 
 /// Runs the command, and returns its standard output or its standard error.
-fn linkwork(arguments: &[&str]) -> Result<String, String> {
+fn run_linkwork(arguments: &[&str]) -> Result<String, String> {
     let output = Command::new(env!("CARGO_BIN_EXE_linkwork"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .args(arguments)
@@ -26,7 +26,7 @@ fn linkwork(arguments: &[&str]) -> Result<String, String> {
 }
 
 /// Returns the paths and contents of an archive whose files are stored without compression.
-fn unpacked(archive: &[u8]) -> Vec<(String, Vec<u8>)> {
+fn unpack_archive(archive: &[u8]) -> Vec<(String, Vec<u8>)> {
     let little_endian_number = |at: usize, length: usize| {
         archive[at..at + length].iter().rev().fold(0, |sum, byte| (sum << 8) | usize::from(*byte))
     };
@@ -51,13 +51,14 @@ struct Fmu {
 impl Fmu {
     /// Exports a mechanism, and compiles it without warnings. Returns `None` without a C compiler.
     fn new(name: &str, arguments: &[&str]) -> Option<Fmu> {
-        let compiler = compiler()?;
+        let compiler = c_compiler()?;
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fmu").join(name);
         fs::create_dir_all(folder.join("sources")).expect("a folder of the tests");
         let archive = folder.join("model.fmu");
         let out = ["--out", archive.to_str().expect("a path in UTF-8"), "--no-binary", "--prefix", name];
-        linkwork(&[&["export", "fmu"], arguments, &out].concat()).unwrap_or_else(|error| panic!("{error}"));
-        let files = unpacked(&fs::read(&archive).expect("the archive is written"));
+        run_linkwork(&[&["export", "fmu"], arguments, &out].concat())
+            .unwrap_or_else(|error| panic!("{error}"));
+        let files = unpack_archive(&fs::read(&archive).expect("the archive is written"));
         for (path, bytes) in &files {
             fs::write(folder.join(path), bytes).expect("a file of the tests");
         }
@@ -77,7 +78,7 @@ impl Fmu {
     }
 
     /// Runs the compiled importer, and returns the lines that it prints.
-    fn lines(&self, kind: &str, numbers: [f64; 3]) -> Vec<String> {
+    fn importer_lines(&self, kind: &str, numbers: [f64; 3]) -> Vec<String> {
         let (_, rest) = self.description.split_once("instantiationToken=\"").expect("a token");
         let token = rest.split('"').next().unwrap_or_default();
         let output = Command::new(&self.program)
@@ -91,20 +92,20 @@ impl Fmu {
     }
 
     /// Returns rows of numbers that the importer prints.
-    fn rows(&self, kind: &str, numbers: [f64; 3]) -> Vec<Vec<f64>> {
+    fn importer_rows(&self, kind: &str, numbers: [f64; 3]) -> Vec<Vec<f64>> {
         let parse_number = |word: &str| word.parse().unwrap_or_else(|_| panic!("expected a number: {word}"));
         let parse_numbers_of_line = |line: &String| line.split_whitespace().map(parse_number).collect();
-        self.lines(kind, numbers).iter().map(parse_numbers_of_line).collect()
+        self.importer_lines(kind, numbers).iter().map(parse_numbers_of_line).collect()
     }
 }
 
 /// Returns the states of a motion of `linkwork simulate`, without the columns of inputs.
-fn simulated(arguments: &[&str], stop: f64, samples: usize) -> Vec<Vec<f64>> {
+fn simulate_states(arguments: &[&str], stop: f64, samples: usize) -> Vec<Vec<f64>> {
     let (duration, every) = (stop.to_string(), (stop / samples as f64).to_string());
     let options =
         ["--duration", &duration, "--every", &every, "--tolerance", "1e-11", "--method", "dormand-prince"];
-    let text =
-        linkwork(&[&["simulate"], arguments, &options].concat()).unwrap_or_else(|error| panic!("{error}"));
+    let text = run_linkwork(&[&["simulate"], arguments, &options].concat())
+        .unwrap_or_else(|error| panic!("{error}"));
     let mut lines = text.lines();
     let head = lines.next().expect("a line of names");
     let count = head.split(',').filter(|name| !name.starts_with("u.")).count();
@@ -112,7 +113,7 @@ fn simulated(arguments: &[&str], stop: f64, samples: usize) -> Vec<Vec<f64>> {
 }
 
 /// Compares the rows of states of two motions.
-fn compare(name: &str, found: &[Vec<f64>], expected: &[Vec<f64>], tolerance: f64) {
+fn compare_states(name: &str, found: &[Vec<f64>], expected: &[Vec<f64>], tolerance: f64) {
     assert_eq!(found.len(), expected.len(), "{name}");
     for (found, expected) in found.iter().zip(expected) {
         assert_eq!(found.len(), expected.len(), "{name}");
@@ -123,17 +124,17 @@ fn compare(name: &str, found: &[Vec<f64>], expected: &[Vec<f64>], tolerance: f64
 }
 
 /// Simulates a mechanism in both modes, and compares the motions with that of the library.
-fn agrees(name: &str, arguments: &[&str], stop: f64, steps: f64) -> Option<Fmu> {
+fn check_both_modes(name: &str, arguments: &[&str], stop: f64, steps: f64) -> Option<Fmu> {
     let fmu = Fmu::new(name, arguments)?;
-    let expected = simulated(arguments, stop, 10);
-    compare(name, &fmu.rows("co-simulation", [stop, 10.0, 0.0]), &expected, 1e-8);
-    compare(name, &fmu.rows("exchange", [stop, 10.0, steps]), &expected, 1e-6);
+    let expected = simulate_states(arguments, stop, 10);
+    compare_states(name, &fmu.importer_rows("co-simulation", [stop, 10.0, 0.0]), &expected, 1e-8);
+    compare_states(name, &fmu.importer_rows("exchange", [stop, 10.0, steps]), &expected, 1e-6);
     Some(fmu)
 }
 
 /// Checks that directional and adjoint derivatives are equal, and equal to central differences.
-fn differentiates(fmu: &Fmu, numbers: [f64; 3], count: usize) {
-    let rows = fmu.rows("derivatives", numbers);
+fn check_derivatives(fmu: &Fmu, numbers: [f64; 3], count: usize) {
+    let rows = fmu.importer_rows("derivatives", numbers);
     assert_eq!(rows.len(), count);
     for row in rows {
         assert_eq!(row[0], row[1], "directional and adjoint");
@@ -142,7 +143,7 @@ fn differentiates(fmu: &Fmu, numbers: [f64; 3], count: usize) {
 }
 
 /// Joins names and values to options of the command.
-fn set(values: &'static [&'static str]) -> Vec<&'static str> {
+fn set_options(values: &'static [&'static str]) -> Vec<&'static str> {
     values.iter().flat_map(|value| ["--set", value]).collect()
 }
 
@@ -159,22 +160,22 @@ fn cart_pole_moves_as_in_rust_with_derivatives() {
     ];
     let values: Vec<&str> = values.iter().flat_map(|value| ["--set", value]).collect();
     let arguments = [&["../../models/src/cart_pole.rs"], &values[..]].concat();
-    let Some(fmu) = agrees("cart_pole", &arguments, 2.0, 100.0) else { return };
+    let Some(fmu) = check_both_modes("cart_pole", &arguments, 2.0, 100.0) else { return };
     // Rates of four states and two energies, by four states, one input and four parameters.
-    differentiates(&fmu, [1.0, 4.0, 2.0], 6 * 9);
+    check_derivatives(&fmu, [1.0, 4.0, 2.0], 6 * 9);
     let begin = r#"name="v.hinge" valueReference="4" causality="output" variability="continuous""#;
     let variable = format!(r#"{begin} initial="exact" start="0.0" unit="rad/s""#);
     assert!(fmu.description.contains(&variable), "{}", fmu.description);
     assert!(fmu.description.contains("<Unit name=\"rad/s\"><BaseUnit s=\"-1\" rad=\"1\"/></Unit>"));
-    let restored = fmu.lines("states", [0.0; 3]);
+    let restored = fmu.importer_lines("states", [0.0; 3]);
     assert_eq!((&restored[0], &restored[0]), (&restored[1], &restored[2]), "after restoring the state");
     assert_eq!(restored[3..], ["3 fmi3DeserializeFMUState: the bytes are no state of this model", "3"]);
 }
 
 #[test]
 fn arm_and_top_move_as_in_rust() {
-    agrees("ur5", &["../../models/urdf/ur5.urdf", "--set", "q.elbow_joint=0.4"], 0.5, 200.0);
-    let values = set(&[
+    check_both_modes("ur5", &["../../models/urdf/ur5.urdf", "--set", "q.elbow_joint=0.4"], 0.5, 200.0);
+    let values = set_options(&[
         "g=9.81",
         "mass=1",
         "height=0.2",
@@ -183,9 +184,10 @@ fn arm_and_top_move_as_in_rust() {
         "q.tip.qx=0.2",
         "v.tip.wz=20",
     ]);
-    let top = agrees("top", &[&["../../models/src/heavy_top.rs"], &values[..]].concat(), 1.0, 400.0);
+    let top =
+        check_both_modes("top", &[&["../../models/src/heavy_top.rs"], &values[..]].concat(), 1.0, 400.0);
     // A ball joint: four entries of a quaternion, three velocities, five parameters, two energies.
-    top.iter().for_each(|fmu| differentiates(fmu, [0.0, 5.0, 2.0], 9 * 12));
+    top.iter().for_each(|fmu| check_derivatives(fmu, [0.0, 5.0, 2.0], 9 * 12));
 }
 
 /// The boat of the guide has a state of first order; a table has its values in the sources.
@@ -196,13 +198,13 @@ fn states_of_first_order_and_tables_are_in_the_sources() {
     // Linear: 2 N s/m.
     fs::write(&folder, "-5,-10\n0,0\n5,10\n").expect("a file of the tests");
     let table = format!("drag={},extrapolated", folder.display());
-    let values = set(&["mass=4", "lag=0.5", "x.thrust=1", "u.throttle=3"]);
+    let values = set_options(&["mass=4", "lag=0.5", "x.thrust=1", "u.throttle=3"]);
     let arguments =
         [&["tests/fmu/mechanisms.rs", "--struct", "Boat", "--table", &table], &values[..]].concat();
-    let Some(fmu) = agrees("boat", &arguments, 1.0, 50.0) else { return };
-    differentiates(&fmu, [1.0, 2.0, 3.0], 6 * 6);
+    let Some(fmu) = check_both_modes("boat", &arguments, 1.0, 50.0) else { return };
+    check_derivatives(&fmu, [1.0, 2.0, 3.0], 6 * 6);
     // m v' = f - 2 v and f' = (3 - f) / lag, whose rates -1/2 and -2 differ.
-    let last = fmu.rows("co-simulation", [1.0, 10.0, 0.0]).pop().expect("rows");
+    let last = fmu.importer_rows("co-simulation", [1.0, 10.0, 0.0]).pop().expect("rows");
     let speed = 1.5 + (1.0 / 3.0) * (-2.0_f64).exp() - (1.5 + 1.0 / 3.0) * (-0.5_f64).exp();
     assert!(
         (last[2] - speed).abs() < 1e-8 && (last[3] - (3.0 - 2.0 * (-2.0_f64).exp())).abs() < 1e-8,
@@ -212,7 +214,7 @@ fn states_of_first_order_and_tables_are_in_the_sources() {
 
 #[test]
 fn four_bar_keeps_its_loop_closed() {
-    let values = set(&[
+    let values = set_options(&[
         "g=9.81",
         "density=1",
         "a=0.3",
@@ -223,13 +225,13 @@ fn four_bar_keeps_its_loop_closed() {
         "v.input=2",
         "u.motor=0.3",
     ]);
-    agrees("four_bar", &[&["../../models/src/four_bar.rs"], &values[..]].concat(), 1.0, 100.0);
+    check_both_modes("four_bar", &[&["../../models/src/four_bar.rs"], &values[..]].concat(), 1.0, 100.0);
 }
 
 /// A ball that falls from 1 m bounces with 0.7 of its speed, and comes to rest.
 #[test]
 fn ball_bounces_by_its_closed_form() {
-    let values = set(&["bounce=0.7", "q.height=1.1"]);
+    let values = set_options(&["bounce=0.7", "q.height=1.1"]);
     let arguments = [&["tests/fmu/mechanisms.rs", "--struct", "BouncingBall"], &values[..]].concat();
     let Some(fmu) = Fmu::new("ball", &arguments) else { return };
     let height_of_bouncing_ball = |t: f64| {
@@ -249,7 +251,7 @@ fn ball_bounces_by_its_closed_form() {
         0.1
     };
     for (kind, steps) in [("co-simulation", 0.0), ("exchange", 10.0)] {
-        let rows = fmu.rows(kind, [4.0, 40.0, steps]);
+        let rows = fmu.importer_rows(kind, [4.0, 40.0, steps]);
         assert_eq!(rows.len(), 41);
         for row in &rows {
             assert!(
@@ -266,12 +268,12 @@ fn ball_bounces_by_its_closed_form() {
 /// that exchange their velocities.
 #[test]
 fn stops_open_and_balls_collide_by_closed_forms() {
-    let values = set(&["strength=1", "q.rail=-1", "v.rail=0.7"]);
+    let values = set_options(&["strength=1", "q.rail=-1", "v.rail=0.7"]);
     let arguments = [&["tests/fmu/mechanisms.rs", "--struct", "Door"], &values[..]].concat();
     let Some(fmu) = Fmu::new("door", &arguments) else { return };
     let start = std::f64::consts::FRAC_PI_4;
     for (kind, steps) in [("co-simulation", 0.0), ("exchange", 50.0)] {
-        for row in fmu.rows(kind, [2.0, 10.0, steps]) {
+        for row in fmu.importer_rows(kind, [2.0, 10.0, steps]) {
             let t = row[0];
             let opened = if t > start { (t - start) / 2.0 + (2.0 * t).cos() / 4.0 } else { 0.0 };
             // The surfaces meet after 0.8 m.
@@ -286,12 +288,12 @@ fn stops_open_and_balls_collide_by_closed_forms() {
 
 #[test]
 fn wrong_calls_and_values_are_errors_with_messages() {
-    let values = set(&["cart_mass=1", "pole_mass=0.1", "pole_length=1", "rail_damping=0.1"]);
+    let values = set_options(&["cart_mass=1", "pole_mass=0.1", "pole_length=1", "rail_damping=0.1"]);
     let Some(fmu) = Fmu::new("wrong", &[&["../../models/src/cart_pole.rs"], &values[..]].concat()) else {
         return;
     };
     // The value reference 11 of the pole's mass follows time, 4 states, 4 rates, 1 input and the cart's mass.
-    let found = fmu.lines("errors", [0.0, 11.0, 0.0]);
+    let found = fmu.importer_lines("errors", [0.0, 11.0, 0.0]);
     let expected = [
         "3 fmi3Instantiate: the instantiation token is not that of modelDescription.xml",
         "3 fmi3InstantiateCoSimulation: there is no Event Mode and no intermediate update",
@@ -341,7 +343,7 @@ fn command_rejects_what_an_fmu_cannot_have() {
             "cannot run the compiler `no-such-compiler`",
         ),
     ] {
-        let error = linkwork(&[&["export", "fmu"], &arguments[..]].concat()).expect_err("it is rejected");
+        let error = run_linkwork(&[&["export", "fmu"], &arguments[..]].concat()).expect_err("it is rejected");
         assert!(error.contains(message), "{error}");
     }
 }
@@ -352,14 +354,14 @@ fn command_rejects_what_an_fmu_cannot_have() {
 fn fmpy_validates_and_simulates() {
     let python = std::env::var("LINKWORK_PYTHON").unwrap_or_else(|_| "python3".to_string());
     let has = Command::new(&python).args(["-c", "import fmpy"]).output().is_ok_and(|o| o.status.success());
-    if !has || compiler().is_none() {
+    if !has || c_compiler().is_none() {
         println!("skipped: there is no FMPy (LINKWORK_PYTHON names a Python that has it)");
         return;
     }
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("fmu");
     fs::create_dir_all(&folder).expect("a folder of the tests");
-    let four_bar = set(&["g=9.81", "density=1", "a=0.3", "b=1", "c=0.8", "d=0.9", "q.input=1"]);
-    let top = set(&[
+    let four_bar = set_options(&["g=9.81", "density=1", "a=0.3", "b=1", "c=0.8", "d=0.9", "q.input=1"]);
+    let top = set_options(&[
         "g=9.81",
         "mass=1",
         "height=0.2",
@@ -368,8 +370,9 @@ fn fmpy_validates_and_simulates() {
         "q.tip.qx=0.2",
         "v.tip.wz=20",
     ]);
-    let cart = set(&["cart_mass=1", "pole_mass=0.1", "pole_length=1", "rail_damping=0.1", "q.hinge=0.3"]);
-    let ball = set(&["bounce=0.7", "q.height=1.1"]);
+    let cart =
+        set_options(&["cart_mass=1", "pole_mass=0.1", "pole_length=1", "rail_damping=0.1", "q.hinge=0.3"]);
+    let ball = set_options(&["bounce=0.7", "q.height=1.1"]);
     let all: [(&str, &[&str], &[&str]); 5] = [
         ("cart_pole", &["../../models/src/cart_pole.rs"], &cart),
         ("four_bar", &["../../models/src/four_bar.rs"], &four_bar),
@@ -381,7 +384,7 @@ fn fmpy_validates_and_simulates() {
     for (name, file, values) in all {
         let path = folder.join(format!("{name}.fmu")).to_str().expect("a path in UTF-8").to_string();
         let arguments = [&["export", "fmu", "--out", &path], file, values].concat();
-        linkwork(&arguments).unwrap_or_else(|error| panic!("{error}"));
+        run_linkwork(&arguments).unwrap_or_else(|error| panic!("{error}"));
         paths.push(path);
     }
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fmu/fmpy_check.py");

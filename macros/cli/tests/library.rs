@@ -2,7 +2,7 @@
 //! generates.
 #![cfg(unix)]
 
-use linkwork_programs::cargo;
+use linkwork_programs::run_cargo;
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -25,7 +25,7 @@ fn a_program_in_c_moves_a_bead_on_a_wire() {
     // The versions are those of the other programs, so that all share the compiler.
     std::fs::copy(own.join("../../Cargo.lock"), folder.join("Cargo.lock")).unwrap();
     let package = folder.to_str().expect("a path of this machine");
-    is_done("the library is built", &cargo(&["build"], package, env!("CARGO_TARGET_TMPDIR")));
+    is_done("the library is built", &run_cargo(&["build"], package, env!("CARGO_TARGET_TMPDIR")));
 
     for (library, name) in [("libbead.a", "static"), ("libbead.so", "shared")] {
         let (library, program) = (target.join("packages/release").join(library), target.join(name));

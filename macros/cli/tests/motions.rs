@@ -15,13 +15,13 @@ use std::process::Command;
 
 const FLAIL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/motions/flail.rs");
 
-fn folder(name: &str) -> PathBuf {
+fn test_folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::create_dir_all(&folder).unwrap();
     folder
 }
 
-fn linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+fn run_linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     let output =
         Command::new(env!("CARGO_BIN_EXE_linkwork")).current_dir(folder).args(arguments).output().unwrap();
     let decode_utf8 = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
@@ -29,14 +29,14 @@ fn linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
 }
 
 /// Returns the numbers of a log, line by line.
-fn rows(log: &str) -> Vec<Vec<f64>> {
+fn rows_of_log(log: &str) -> Vec<Vec<f64>> {
     log.lines().skip(1).map(|line| line.split(',').map(|x| x.parse().unwrap()).collect()).collect()
 }
 
 /// Checks that the command's simulation agrees with generated code and a fixed-step method.
 #[test]
 fn programs_and_generated_code_move_alike() {
-    let here = folder("alike");
+    let here = test_folder("alike");
     std::fs::write(here.join("thrust.csv"), "t,u.thrust,remark\n0,0,1\n1,40,2\n2,10,3\n").unwrap();
     let thrust_at_time = |t: f64| if t < 1.0 { 40.0 * t } else { 40.0 - 30.0 * (t - 1.0) };
     let set =
@@ -45,7 +45,7 @@ fn programs_and_generated_code_move_alike() {
         vec!["simulate", FLAIL, "--inputs", "thrust.csv", "--duration", "2", "--every", "0.5"];
     arguments.extend(set);
     arguments.extend(["--tolerance", "1e-11"]);
-    let (status, log, stderr) = linkwork(&here, &arguments);
+    let (status, log, stderr) = run_linkwork(&here, &arguments);
     assert_eq!((status, stderr.as_str()), (0, ""));
     assert!(log.starts_with("t,q.flight.x,"), "{log}");
 
@@ -55,7 +55,7 @@ fn programs_and_generated_code_move_alike() {
     let motion = simulate(&flail).from(q, v).inputs(|t, _, _| [thrust_at_time(t)].into());
     let motion = motion.method(Rk4::step(5e-4)).duration(2.0).sample_every(0.5);
     let samples: Vec<_> = motion.collect::<Result<_, _>>().unwrap();
-    let rows = rows(&log);
+    let rows = rows_of_log(&log);
     assert_eq!(rows.len(), 5);
     for (row, sample) in rows.iter().zip(&samples) {
         let other = std::iter::once(&sample.t).chain(&sample.q).chain(&sample.v);
@@ -72,7 +72,7 @@ const JUGGLER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mechanisms/spe
 /// ground axes and combinations of rates. A speed that is a multiple of a rate is not confused with the rate.
 #[test]
 fn declared_speeds_move_configurations() {
-    let here = folder("speeds");
+    let here = test_folder("speeds");
     let begin = [0.3, -0.2, 1.5, 0.4, -1.0, 2.0, 0.7, -0.6];
     let names = ["ux", "uy", "uz", "wx", "wy", "wz", "swing", "bend"];
     let mut set =
@@ -81,14 +81,14 @@ fn declared_speeds_move_configurations() {
     let mut arguments =
         vec!["simulate", JUGGLER, "--duration", "1", "--every", "0.25", "--tolerance", "1e-11"];
     arguments.extend(set.iter().map(String::as_str));
-    let (status, log, stderr) = linkwork(&here, &arguments);
+    let (status, log, stderr) = run_linkwork(&here, &arguments);
     assert_eq!((status, stderr.as_str()), (0, ""));
     let juggler = Juggler { axial: 0.25 };
     let (mut q, v) = (juggler.neutral(), SVector::<f64, 8>::from(begin));
     q[8] = 0.4;
     let motion = simulate(&juggler).from(q, v).method(Rk4::step(5e-4)).duration(1.0).sample_every(0.25);
     let samples: Vec<_> = motion.collect::<Result<_, _>>().unwrap();
-    for (row, sample) in rows(&log).iter().zip(&samples) {
+    for (row, sample) in rows_of_log(&log).iter().zip(&samples) {
         let other = std::iter::once(&sample.t).chain(&sample.q).chain(&sample.v);
         for (a, b) in row.iter().zip(other) {
             assert!((a - b).abs() < 1e-8, "{row:?} {:?} {:?}", sample.q, sample.v);
@@ -106,8 +106,9 @@ pub struct Rotor {
 }
 ";
     std::fs::write(here.join("rotor.rs"), rotor).unwrap();
-    let (status, log, _) = linkwork(&here, &["simulate", "rotor.rs", "--set", "v.fast=3", "--duration", "2"]);
-    let end = rows(&log).pop().unwrap();
+    let (status, log, _) =
+        run_linkwork(&here, &["simulate", "rotor.rs", "--set", "v.fast=3", "--duration", "2"]);
+    let end = rows_of_log(&log).pop().unwrap();
     assert!(status == 0 && (end[1] - 1.5).abs() < 1e-9 && (end[2] - 3.0).abs() < 1e-12, "{end:?}");
 }
 
@@ -115,7 +116,7 @@ pub struct Rotor {
 /// a lag of 0.5 s. Logs contain them, and a page is made from a log.
 #[test]
 fn states_of_first_order_are_integrated() {
-    let here = folder("states");
+    let here = test_folder("states");
     let sled = "
 #[mechanism]
 pub struct Sled {
@@ -134,10 +135,10 @@ pub struct Sled {
     std::fs::write(here.join("sled.rs"), sled).unwrap();
     let simulate = ["simulate", "sled.rs", "--set", "lag=0.5", "--set", "u.throttle=6", "--duration", "2"];
     for (set, start) in [(&[][..], 0.0), (&["--set", "x.thrust=2"], 2.0), (&["--set", "thrust=2"], 2.0)] {
-        let (status, log, stderr) = linkwork(&here, &[&simulate[..], set].concat());
+        let (status, log, stderr) = run_linkwork(&here, &[&simulate[..], set].concat());
         assert_eq!((status, stderr.as_str()), (0, ""));
         assert!(log.starts_with("t,q.rail,v.rail,x.thrust,u.throttle\r\n"), "{log}");
-        for row in rows(&log) {
+        for row in rows_of_log(&log) {
             let late = 1.0 - (-row[0] / 0.5).exp();
             let thrust = start + (6.0 - start) * late;
             let velocity = (6.0 * row[0] - (6.0 - start) * 0.5 * late) / 2.0;
@@ -145,27 +146,28 @@ pub struct Sled {
         }
     }
     let out = [&simulate[..], &["--out", "sled.csv"]].concat();
-    assert_eq!(linkwork(&here, &out).0, 0);
+    assert_eq!(run_linkwork(&here, &out).0, 0);
     let view = ["view", "sled.rs", "--set", "lag=0.5", "--motion", "sled.csv"];
-    assert_eq!(linkwork(&here, &view), (0, "Sled.html\n".to_string(), String::new()));
+    assert_eq!(run_linkwork(&here, &view), (0, "Sled.html\n".to_string(), String::new()));
     // A log with some of the inputs, or with an input that `--set` gives too.
     let two = sled
         .replace("throttle: Input,", "throttle: Input,\n    brake: Input,")
         .replace("thrust)]", "thrust - brake)]");
     std::fs::write(here.join("two.rs"), two).unwrap();
     std::fs::write(here.join("one.csv"), "t,q.rail,u.brake\n0,0,1\n1,0,1\n").unwrap();
-    let (status, _, stderr) = linkwork(&here, &["view", "two.rs", "--set", "lag=1", "--motion", "one.csv"]);
+    let (status, _, stderr) =
+        run_linkwork(&here, &["view", "two.rs", "--set", "lag=1", "--motion", "one.csv"]);
     assert!(status == 2 && stderr.contains("one.csv: there is no column `u.throttle`"), "{stderr}");
     let both = ["simulate", "two.rs", "--set", "lag=1", "--set", "u.brake=2", "--inputs", "one.csv"];
-    let (status, _, stderr) = linkwork(&here, &both);
+    let (status, _, stderr) = run_linkwork(&here, &both);
     assert!(status == 2 && stderr.contains("`u.brake` is a column here and given by `--set`"), "{stderr}");
     let log = [&simulate[..], &["--out", "sled.mcap"]].concat();
-    assert_eq!(linkwork(&here, &log).0, 0);
-    let states = messages(&std::fs::read(here.join("sled.mcap")).unwrap());
+    assert_eq!(run_linkwork(&here, &log).0, 0);
+    let states = messages_of_mcap(&std::fs::read(here.join("sled.mcap")).unwrap());
     let last = states.iter().rfind(|message| message.get("v").is_some()).unwrap();
     assert!((last["v"]["thrust"].as_f64().unwrap() - 6.0 * (1.0 - (-4.0_f64).exp())).abs() < 1e-6, "{last}");
     let (status, _, stderr) =
-        linkwork(&here, &["simulate", "sled.rs", "--set", "lag=1", "--set", "x.thrst=1"]);
+        run_linkwork(&here, &["simulate", "sled.rs", "--set", "lag=1", "--set", "x.thrst=1"]);
     assert!(
         status == 2 && stderr.contains("there is no `x.thrst`, but lag, q.rail, v.rail, x.thrust"),
         "{stderr}"
@@ -176,7 +178,7 @@ pub struct Sled {
 /// deflection of the spring of 10⁶ N m/rad under its weight.
 #[test]
 fn stiff_mechanisms_are_integrated_by_an_implicit_method() {
-    let here = folder("stiff");
+    let here = test_folder("stiff");
     let arm = "
 #[mechanism(gravity = -9.81 * y)]
 pub struct Arm {
@@ -200,9 +202,9 @@ pub struct Arm {
 ";
     std::fs::write(here.join("arm.rs"), arm).unwrap();
     let (status, log, stderr) =
-        linkwork(&here, &["simulate", "arm.rs", "--duration", "2", "--set", "q.wrist=0.1"]);
+        run_linkwork(&here, &["simulate", "arm.rs", "--duration", "2", "--set", "q.wrist=0.1"]);
     assert!(status == 0 && stderr.contains("the motion is stiff: from 0.0"), "{stderr}");
-    let end = rows(&log).pop().unwrap();
+    let end = rows_of_log(&log).pop().unwrap();
     // Torque of the weight divided by the stiffness, with a relative error of 10⁻⁵ from the lever arm at
     // angle zero.
     let bend = -9.81 * (0.5 + 0.01 * 1.05) / 1e6;
@@ -212,15 +214,16 @@ pub struct Arm {
 /// Checks that a page is made from a log, and from a simulated motion.
 #[test]
 fn pages_show_motions() {
-    let here = folder("pages");
+    let here = test_folder("pages");
     let (status, path, stderr) =
-        linkwork(&here, &["view", FLAIL, "--set", "handle=0.5", "--duration", "1", "--out", "one.html"]);
+        run_linkwork(&here, &["view", FLAIL, "--set", "handle=0.5", "--duration", "1", "--out", "one.html"]);
     assert_eq!((status, path.as_str(), stderr.as_str()), (0, "one.html\n", ""));
     let page = std::fs::read_to_string(here.join("one.html")).unwrap();
     assert!(page.contains("\"Cuboid\"") && page.contains("\"count\":61"), "{}", &page[..2000]);
     let log = ["simulate", FLAIL, "--set", "handle=0.5", "--duration", "1", "--out", "log.csv"];
-    assert_eq!(linkwork(&here, &log), (0, String::new(), String::new()));
-    let (status, _, stderr) = linkwork(&here, &["view", FLAIL, "--set", "handle=0.5", "--motion", "log.csv"]);
+    assert_eq!(run_linkwork(&here, &log), (0, String::new(), String::new()));
+    let (status, _, stderr) =
+        run_linkwork(&here, &["view", FLAIL, "--set", "handle=0.5", "--motion", "log.csv"]);
     assert_eq!((status, stderr.as_str()), (0, ""));
     // Both pages are equal up to the last digits.
     let again = std::fs::read_to_string(here.join("Flail.html")).unwrap();
@@ -246,7 +249,7 @@ pub struct Cart {
     std::fs::write(here.join("push.csv"), "t,u.push\n0,0\n1,2\n").unwrap();
     for (inputs, plots) in [(&[][..], 0), (&["--inputs", "push.csv"], 1)] {
         let view = [&["view", "cart.rs", "--duration", "1"][..], inputs].concat();
-        assert_eq!(linkwork(&here, &view).0, 0);
+        assert_eq!(run_linkwork(&here, &view).0, 0);
         let page = std::fs::read_to_string(here.join("Cart.html")).unwrap();
         let count_in_page = |text: &str| page.matches(text).count();
         assert_eq!((count_in_page("[\"Coordinates\","), count_in_page("[\"Inputs\",\"N\",")), (2, plots));
@@ -254,7 +257,7 @@ pub struct Cart {
 }
 
 /// Returns the messages of an MCAP file; a record begins with its kind and the length of its content.
-fn messages(file: &[u8]) -> Vec<serde_json::Value> {
+fn messages_of_mcap(file: &[u8]) -> Vec<serde_json::Value> {
     let (mut rest, mut found) = (&file[8..file.len() - 8], Vec::new());
     while let [kind, length @ ..] = rest {
         let (length, after) = length.split_first_chunk().unwrap();
@@ -269,15 +272,15 @@ fn messages(file: &[u8]) -> Vec<serde_json::Value> {
 /// code.
 #[test]
 fn logs_hold_what_tables_hold() {
-    let here = folder("logs");
+    let here = test_folder("logs");
     let simulate_to_file = |out: &str| {
         let (set, every) =
             (["--set", "handle=0.5", "--set", "v.chain.wy=-3"], ["--duration", "0.4", "--every", "0.2"]);
         let log = [&["simulate", FLAIL][..], &set, &every, &["--out", out]].concat();
-        assert_eq!(linkwork(&here, &log), (0, String::new(), String::new()));
+        assert_eq!(run_linkwork(&here, &log), (0, String::new(), String::new()));
         std::fs::read(here.join(out)).unwrap()
     };
-    let table = rows(&String::from_utf8(simulate_to_file("log.csv")).unwrap());
+    let table = rows_of_log(&String::from_utf8(simulate_to_file("log.csv")).unwrap());
     let sample_from_row = |row: &Vec<f64>| {
         let (q, v) = (SVector::from_column_slice(&row[1..12]), SVector::from_column_slice(&row[12..21]));
         linkwork::simulate::Sample::<f64, 11, 9, 1> {
@@ -290,8 +293,8 @@ fn logs_hold_what_tables_hold() {
         }
     };
     let samples: Vec<_> = table.iter().map(sample_from_row).collect();
-    let expected = messages(&linkwork_view::mcap(&Flail { handle: 0.5 }, &samples).unwrap());
-    let found = messages(&simulate_to_file("log.mcap"));
+    let expected = messages_of_mcap(&linkwork_view::mcap(&Flail { handle: 0.5 }, &samples).unwrap());
+    let found = messages_of_mcap(&simulate_to_file("log.mcap"));
     assert_eq!((found.len(), expected.len()), (9, 9));
     for (found, expected) in found.iter().zip(&expected) {
         let Some(transforms) = found["transforms"].as_array() else {
@@ -331,14 +334,14 @@ pub struct Ball {
 /// overlap at the beginning are separated; and that without its contacts it falls by `g t² / 2`.
 #[test]
 fn contacts_carry_bodies() {
-    let here = folder("contacts");
+    let here = test_folder("contacts");
     std::fs::write(here.join("ball.rs"), BALL).unwrap();
     let drop = ["simulate", "ball.rs", "--set", "q.pose.z=0.5905", "--duration", "1", "--every", "0.1"];
     let time_stepping = ["time-stepping", "time-stepping-midpoint", "time-stepping-leapfrog"];
     for method in ["automatic", "event-driven"].into_iter().chain(time_stepping) {
-        let (status, log, stderr) = linkwork(&here, &[&drop[..], &["--method", method]].concat());
+        let (status, log, stderr) = run_linkwork(&here, &[&drop[..], &["--method", method]].concat());
         assert_eq!((status, stderr.as_str()), (0, ""), "{method}");
-        let rows = rows(&log);
+        let rows = rows_of_log(&log);
         assert_eq!(rows.len(), 11);
         // It lands after 0.3162 s, without restitution.
         for row in &rows {
@@ -347,18 +350,19 @@ fn contacts_carry_bodies() {
         }
         assert!((rows[10][3] - 0.1).abs() < 1e-6 && rows[10][10].abs() < 1e-9, "{method}: {:?}", rows[10]);
     }
-    let (status, log, stderr) = linkwork(&here, &["simulate", "ball.rs", "--duration", "0.1"]);
+    let (status, log, stderr) = run_linkwork(&here, &["simulate", "ball.rs", "--duration", "0.1"]);
     assert!(status == 0 && stderr.contains("surfaces overlap at the beginning"), "{stderr}");
-    assert!((rows(&log)[0][3] - 0.1).abs() < 1e-9);
-    let (status, _, stderr) = linkwork(&here, &["view", "ball.rs", "--set", "q.pose.z=1", "--duration", "1"]);
+    assert!((rows_of_log(&log)[0][3] - 0.1).abs() < 1e-9);
+    let (status, _, stderr) =
+        run_linkwork(&here, &["view", "ball.rs", "--set", "q.pose.z=1", "--duration", "1"]);
     assert_eq!((status, stderr.as_str()), (0, ""));
     assert!(std::fs::read_to_string(here.join("Ball.html")).unwrap().contains("\"count\":61,"));
-    let (status, _, stderr) = linkwork(&here, &[&drop[..], &["--method", "rk4"]].concat());
+    let (status, _, stderr) = run_linkwork(&here, &[&drop[..], &["--method", "rk4"]].concat());
     assert!(status == 2 && stderr.contains("`Ball` has contacts"), "{stderr}");
-    let (status, _, stderr) = linkwork(&here, &[&drop[..], &["--method", "rk5"]].concat());
+    let (status, _, stderr) = run_linkwork(&here, &[&drop[..], &["--method", "rk5"]].concat());
     assert!(status == 2 && stderr.contains("possible values"), "{stderr}");
-    let (_, log, _) = linkwork(&here, &["simulate", "ball.rs", "--without-contacts", "--duration", "2"]);
-    for row in rows(&log) {
+    let (_, log, _) = run_linkwork(&here, &["simulate", "ball.rs", "--without-contacts", "--duration", "2"]);
+    for row in rows_of_log(&log) {
         assert!((row[3] + 9.81 / 2.0 * row[0] * row[0]).abs() < 1e-7, "{row:?}");
     }
 }
@@ -366,7 +370,7 @@ fn contacts_carry_bodies() {
 /// Checks the methods of smooth motions on a pendulum of small amplitude, whose period is known, and steps.
 #[test]
 fn methods_and_steps_are_chosen() {
-    let here = folder("methods");
+    let here = test_folder("methods");
     let pendulum = "
 #[mechanism(gravity = -9.81 * y)]
 pub struct Pendulum {
@@ -388,20 +392,21 @@ pub struct Pendulum {
         ("rosenbrock", 1e-4),
         ("semi-implicit-euler", 1e-2),
     ] {
-        let (status, log, stderr) = linkwork(&here, &[&swing[..], &["--method", method]].concat());
+        let (status, log, stderr) = run_linkwork(&here, &[&swing[..], &["--method", method]].concat());
         assert_eq!((status, stderr.as_str()), (0, ""), "{method}");
-        for row in rows(&log) {
+        for row in rows_of_log(&log) {
             let exact = 1e-4 * (frequency * row[0]).cos();
             let tolerance: f64 = tolerance;
             assert!((row[1] - exact).abs() < 1e-4 * tolerance + 2e-8, "{method}: {row:?}");
         }
     }
-    let (status, coarse, _) = linkwork(&here, &[&swing[..], &["--method", "rk4", "--step", "0.25"]].concat());
-    let end = rows(&coarse).pop().unwrap();
+    let (status, coarse, _) =
+        run_linkwork(&here, &[&swing[..], &["--method", "rk4", "--step", "0.25"]].concat());
+    let end = rows_of_log(&coarse).pop().unwrap();
     let off = (end[1] - 1e-4 * (2.0 * frequency).cos()).abs();
     assert!(status == 0 && off > 1e-8 && off < 1e-5, "{off}");
     let wrong = [&swing[..], &["--method", "rodas", "--step", "0.1"]].concat();
-    let (status, _, stderr) = linkwork(&here, &wrong);
+    let (status, _, stderr) = run_linkwork(&here, &wrong);
     assert!(status == 2 && stderr.contains("the method rodas chooses its steps"), "{stderr}");
 }
 
@@ -431,7 +436,7 @@ pub struct Closed {
 /// without a motor the energy is constant.
 #[test]
 fn loops_stay_closed() {
-    let here = folder("closed");
+    let here = test_folder("closed");
     std::fs::write(here.join("closed.rs"), CLOSED).unwrap();
     let begin =
         ["--set", "q.input=1.4017", "--set", "v.input=2", "--set", "q.output=2.0835", "--set", "u.motor=0"];
@@ -440,12 +445,12 @@ fn loops_stay_closed() {
         &begin,
     ]
     .concat();
-    let (status, log, stderr) = linkwork(&here, &arguments);
+    let (status, log, stderr) = run_linkwork(&here, &arguments);
     // The given angles close the loop only up to their digits, which is reported.
     assert!(status == 0 && stderr.contains("the given values do not satisfy the constraints"), "{stderr}");
     assert!(stderr.contains("the motion begins near them, at q."), "{stderr}");
     let m = linkwork_models::FourBar { g: 9.81, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
-    let rows = rows(&log);
+    let rows = rows_of_log(&log);
     assert_eq!(rows.len(), 9);
     let state_of_row = |row: &[f64]| -> (SVector<f64, 3>, SVector<f64, 3>) {
         (SVector::from_column_slice(&row[1..4]), SVector::from_column_slice(&row[4..7]))
@@ -469,7 +474,7 @@ fn loops_stay_closed() {
     }
     // One angle and one velocity are preserved, and the constraints determine the others.
     let one = ["simulate", "closed.rs", "--duration", "0.1", "--set", "q.input=0.3", "--set", "v.output=2"];
-    let (status, log, stderr) = linkwork(&here, &one);
+    let (status, log, stderr) = run_linkwork(&here, &one);
     assert!(
         status == 0
             && stderr.contains(
@@ -481,23 +486,23 @@ fn loops_stay_closed() {
         stderr.contains("v.input = ") && !stderr.contains("q.input") && !stderr.contains("v.output"),
         "{stderr}"
     );
-    let (at, rate) = state_of_row(&self::rows(&log)[0]);
+    let (at, rate) = state_of_row(&self::rows_of_log(&log)[0]);
     assert_eq!((at[0], rate[2]), (0.3, 2.0));
     assert!(m.constraint_residuals(&at).norm() < 1e-11 && m.constraint_rates(&at, &rate).norm() < 1e-11);
     // The same angle in the other assembly mode.
     let guessed = [&one[..], &["--guess", "q.output=2"]].concat();
-    let (status, log, stderr) = linkwork(&here, &guessed);
+    let (status, log, stderr) = run_linkwork(&here, &guessed);
     assert!(status == 0 && stderr.contains("the given values are kept"), "{stderr}");
-    let (other, _) = state_of_row(&self::rows(&log)[0]);
+    let (other, _) = state_of_row(&self::rows_of_log(&log)[0]);
     assert!(other[0] == 0.3 && other[2] > 1.0 && at[2] < 0.0, "{other} {at}");
     assert!(m.constraint_residuals(&other).norm() < 1e-11);
     // Angles that contradict the constraints are rejected.
     let wrong = ["simulate", "closed.rs", "--set", "q.input=1.2", "--set", "q.output=1.9"];
-    let (status, log, stderr) = linkwork(&here, &wrong);
+    let (status, log, stderr) = run_linkwork(&here, &wrong);
     assert!(status == 2 && log.is_empty() && stderr.contains("or the nearest ones: q.input = "), "{stderr}");
     // The singular stretched configuration is replaced by a nearby one, which is reported; the page shows the
     // motion.
-    let (status, _, stderr) = linkwork(&here, &["view", "closed.rs", "--duration", "1"]);
+    let (status, _, stderr) = run_linkwork(&here, &["view", "closed.rs", "--duration", "1"]);
     assert!(status == 0 && stderr.contains("the motion begins near it, at q."), "{stderr}");
     assert!(std::fs::read_to_string(here.join("Closed.html")).unwrap().contains("\"count\":61"));
 }
@@ -533,15 +538,15 @@ pub struct Swing {
 /// rejected.
 #[test]
 fn beginnings_move_what_constraints_reach() {
-    let here = folder("swing");
+    let here = test_folder("swing");
     std::fs::write(here.join("swing.rs"), SWING).unwrap();
     let short = ["simulate", "swing.rs", "--duration", "0.1", "--set", "rope=2"];
     for angle in ["0.6", "-1.5", "2.5"] {
         let given = format!("q.left_hook={angle}");
         let (status, log, stderr) =
-            linkwork(&here, &[&short[..], &["--set", "child=25", "--set", &given]].concat());
+            run_linkwork(&here, &[&short[..], &["--set", "child=25", "--set", &given]].concat());
         assert!(status == 0 && stderr.contains("the given values are kept"), "{stderr}");
-        let begin = &rows(&log)[0];
+        let begin = &rows_of_log(&log)[0];
         let angle: f64 = angle.parse().unwrap();
         let off = begin[1..5].iter().zip([angle, angle, -angle, 0.0]).map(|(is, wanted)| (is - wanted).abs());
         assert!(off.fold(0.0, f64::max) < 1e-11, "{begin:?}");
@@ -556,7 +561,7 @@ fn beginnings_move_what_constraints_reach() {
         (["child=25", "rop=2"], "did you mean `rope`?"),
     ] {
         let arguments = ["simulate", "swing.rs", "--set", figures[0], "--set", figures[1]];
-        let (status, log, stderr) = linkwork(&here, &arguments);
+        let (status, log, stderr) = run_linkwork(&here, &arguments);
         assert!(status == 2 && log.is_empty() && stderr.contains(why), "{stderr}");
     }
 }
@@ -564,15 +569,16 @@ fn beginnings_move_what_constraints_reach() {
 /// Checks the errors for a mechanism that cannot be assembled, and for missing values of tables.
 #[test]
 fn what_cannot_be_assembled_is_reported() {
-    let here = folder("apart");
+    let here = test_folder("apart");
     let apart = CLOSED
         .replace("ground.at(3 * x)", "ground.at(base * x)")
         .replace("Closed {", "Closed {\n    pub base: f64,");
     std::fs::write(here.join("apart.rs"), apart).unwrap();
-    let (status, out, stderr) = linkwork(&here, &["simulate", "apart.rs", "--set", "base=30"]);
+    let (status, out, stderr) = run_linkwork(&here, &["simulate", "apart.rs", "--set", "base=30"]);
     assert!(status == 2 && out.is_empty() && stderr.contains("`Closed` cannot be assembled"), "{stderr}");
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/mechanisms/mod.rs");
-    let (status, out, stderr) = linkwork(&here, &["simulate", file, "--struct", "Wing", "--set", "mass=1"]);
+    let (status, out, stderr) =
+        run_linkwork(&here, &["simulate", file, "--struct", "Wing", "--set", "mass=1"]);
     assert!(
         status == 2 && out.is_empty() && stderr.contains("--table lift=FILE --table drag=FILE"),
         "{stderr}"
@@ -583,7 +589,7 @@ fn what_cannot_be_assembled_is_reported() {
 /// oscillates with the expected frequency.
 #[test]
 fn tables_are_read_from_files() {
-    let here = folder("tables");
+    let here = test_folder("tables");
     let spring = "
 #[mechanism]
 pub struct Slider {
@@ -611,10 +617,10 @@ pub struct Slider {
         "1e-11",
     ];
     let table = ["--table", "potential=spring.csv,smooth"];
-    let (status, log, stderr) = linkwork(&here, &[&arguments[..], &table].concat());
+    let (status, log, stderr) = run_linkwork(&here, &[&arguments[..], &table].concat());
     assert_eq!((status, stderr.as_str()), (0, ""));
     // Potential 4 x², mass 2 kg: 2 rad/s.
-    for row in rows(&log) {
+    for row in rows_of_log(&log) {
         assert!((row[1] - (2.0 * row[0]).cos()).abs() < 1e-8, "{row:?}");
     }
     for (table, part) in [
@@ -624,14 +630,14 @@ pub struct Slider {
         (Some("potential=slider.rs"), "slider.rs: line 3: expected numbers"),
     ] {
         let table: Vec<&str> = table.iter().flat_map(|table| ["--table", table]).collect();
-        let (status, out, stderr) = linkwork(&here, &[&arguments[..], &table].concat());
+        let (status, out, stderr) = run_linkwork(&here, &[&arguments[..], &table].concat());
         assert!(status == 2 && out.is_empty() && stderr.contains(part), "{stderr}");
     }
 }
 
 #[test]
 fn what_cannot_be_done_is_reported() {
-    let here = folder("refused");
+    let here = test_folder("refused");
     std::fs::write(here.join("bad.csv"), "t,u.thrsut\n0,1\n").unwrap();
     std::fs::write(here.join("plain.csv"), "t,thrust\n0,1\n").unwrap();
     for (arguments, part) in [
@@ -647,7 +653,8 @@ fn what_cannot_be_done_is_reported() {
         (vec!["--set", "handle=0.5", "--inputs", "plain.csv"], "no column of an input: expected u.thrust"),
         (vec!["--set", "handle=0.5", "--set", "q.chain.qw=0"], "is zero"),
     ] {
-        let (status, out, stderr) = linkwork(&here, &[vec!["simulate", FLAIL], arguments.clone()].concat());
+        let (status, out, stderr) =
+            run_linkwork(&here, &[vec!["simulate", FLAIL], arguments.clone()].concat());
         assert!(status == 2 && out.is_empty() && stderr.contains(part), "{arguments:?}: {stderr}");
     }
 }
@@ -680,12 +687,12 @@ pub struct Driven {
 /// motion.
 #[test]
 fn driven_mechanisms_follow_time() {
-    let here = folder("driven");
+    let here = test_folder("driven");
     std::fs::write(here.join("driven.rs"), DRIVEN).unwrap();
     let simulate = ["simulate", "driven.rs", "--set", "speed=7", "--duration", "1", "--every", "0.125"];
-    let (status, log, _) = linkwork(&here, &simulate);
+    let (status, log, _) = run_linkwork(&here, &simulate);
     assert_eq!(status, 0);
-    let rows = rows(&log);
+    let rows = rows_of_log(&log);
     assert_eq!(rows.len(), 9);
     for row in rows {
         let (sine, cosine) = (7.0 * row[0]).sin_cos();
@@ -693,15 +700,15 @@ fn driven_mechanisms_follow_time() {
         assert!((row[2] - piston).abs() < 1e-8, "{row:?}");
     }
     for command in [&["check", "driven.rs"][..], &["show", "driven.rs"], &["export", "c", "driven.rs"]] {
-        assert_eq!(linkwork(&here, command).0, 0, "{command:?}");
+        assert_eq!(run_linkwork(&here, command).0, 0, "{command:?}");
     }
-    assert_eq!(linkwork(&here, &["view", "driven.rs", "--set", "speed=7", "--duration", "1"]).0, 0);
+    assert_eq!(run_linkwork(&here, &["view", "driven.rs", "--set", "speed=7", "--duration", "1"]).0, 0);
     // A locked piston contradicts the prescribed rotation of the crank.
     let twice = DRIVEN
         .replace("#[output(crank)]\n    loads: FreeBody", "#[constraint(cylinder = 0.13)] stop: Holonomic");
     std::fs::write(here.join("twice.rs"), twice).unwrap();
     let simulate = ["simulate", "twice.rs", "--set", "speed=7", "--duration", "1"];
-    let (status, _, stderr) = linkwork(&here, &simulate);
+    let (status, _, stderr) = run_linkwork(&here, &simulate);
     assert!(status != 0 && stderr.contains("cannot be assembled"), "{stderr}");
 }
 
@@ -709,17 +716,20 @@ fn driven_mechanisms_follow_time() {
 /// determine the rates are reported at the beginning and during the motion.
 #[test]
 fn speeds_of_driven_mechanisms_may_be_singular() {
-    let here = folder("driven_speeds");
+    let here = test_folder("driven_speeds");
     let simulate_driven_with_speeds = |speeds: &str| {
         let with = DRIVEN.replace("#[output(crank)]\n    loads: FreeBody,", speeds);
         std::fs::write(here.join("driven.rs"), with).unwrap();
-        linkwork(&here, &["simulate", "driven.rs", "--set", "speed=7", "--duration", "1", "--every", "0.125"])
+        run_linkwork(
+            &here,
+            &["simulate", "driven.rs", "--set", "speed=7", "--duration", "1", "--every", "0.125"],
+        )
     };
     let (status, log, stderr) = simulate_driven_with_speeds(
         "#[speed(3 * rate(big_end))] a: Speed, #[speed(rate(cylinder) + 0.1 * rate(big_end))] b: Speed,",
     );
     assert_eq!(status, 0, "{stderr}");
-    for row in rows(&log) {
+    for row in rows_of_log(&log) {
         let (sine, cosine) = (7.0 * row[0]).sin_cos();
         let piston = 0.04 * cosine + (0.13_f64.powi(2) - (0.04 * sine).powi(2)).sqrt();
         assert!((row[2] - piston).abs() < 1e-8, "{row:?}");
@@ -787,7 +797,7 @@ struct Leg {
 /// assembly mode is printed.
 #[test]
 fn legs_are_assembled_within_half_a_turn() {
-    let here = folder("leg");
+    let here = test_folder("leg");
     std::fs::write(here.join("leg.rs"), LEG).unwrap();
     for (given, wanted) in [
         ("q.knee=2.787", [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.787]),
@@ -797,9 +807,9 @@ fn legs_are_assembled_within_half_a_turn() {
         ("q.shaft=-0.308", [-0.308, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
     ] {
         let simulate = ["simulate", "leg.rs", "--set", given, "--duration", "0.01", "--every", "0.01"];
-        let (status, log, stderr) = linkwork(&here, &simulate);
+        let (status, log, stderr) = run_linkwork(&here, &simulate);
         assert!(status == 0 && stderr.contains("this is assembly mode "), "{given}: {stderr}");
-        let first = &rows(&log)[0];
+        let first = &rows_of_log(&log)[0];
         for (angle, wanted) in first[1..8].iter().zip(wanted) {
             assert!((angle - wanted).abs() < std::f64::consts::PI + 1e-9, "{given}: {first:?}");
         }

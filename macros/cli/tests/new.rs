@@ -7,14 +7,14 @@ mod starter;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-fn folder(name: &str) -> PathBuf {
+fn test_folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).unwrap();
     folder
 }
 
-fn linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+fn run_linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     let output =
         Command::new(env!("CARGO_BIN_EXE_linkwork")).current_dir(folder).args(arguments).output().unwrap();
     let decode_utf8 = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
@@ -24,7 +24,7 @@ fn linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
 /// Checks the program of the project: one pole falls, and the other one is kept upright.
 #[test]
 fn the_program_does_what_it_says() {
-    let page = starter::page().unwrap().html();
+    let page = starter::cart_pole_page().unwrap().html();
     assert!(page.contains("It falls") && page.contains("It is kept upright"));
     let cart_pole = starter::CartPole { pole_length: 1.0 };
     // At a positive angle, the acceleration increases the angle: the upright pole is unstable.
@@ -34,8 +34,8 @@ fn the_program_does_what_it_says() {
 
 #[test]
 fn projects_are_made_once() {
-    let here = folder("new");
-    let (status, stderr, _) = linkwork(&here, &["new", "my-arm"]);
+    let here = test_folder("new");
+    let (status, stderr, _) = run_linkwork(&here, &["new", "my-arm"]);
     assert!(status == 0 && stderr.contains("cargo run"), "{stderr}");
     let main = std::fs::read_to_string(here.join("my-arm/src/main.rs")).unwrap();
     assert_eq!(main, include_str!("../src/starter/main.rs"));
@@ -54,11 +54,11 @@ fn projects_are_made_once() {
     assert_eq!(read["packages"][0]["name"], "my-arm");
 
     // With `--linkwork FOLDER`, the manifest names the sources in that folder.
-    let (status, _, stderr) = linkwork(&here, &["new", "own", "--linkwork", root.to_str().unwrap()]);
+    let (status, _, stderr) = run_linkwork(&here, &["new", "own", "--linkwork", root.to_str().unwrap()]);
     assert_eq!(status, 0, "{stderr}");
     let own = std::fs::read_to_string(here.join("own/Cargo.toml")).unwrap();
     assert_eq!(own.replace("\"own\"", "\"my-arm\""), manifest);
-    let (status, _, stderr) = linkwork(&here, &["new", "other", "--linkwork", "nowhere"]);
+    let (status, _, stderr) = run_linkwork(&here, &["new", "other", "--linkwork", "nowhere"]);
     assert!(status == 2 && stderr.contains("`--linkwork`: "), "{stderr}");
 
     for (name, part) in [
@@ -67,20 +67,20 @@ fn projects_are_made_once() {
         ("fn", "is not a name"),
         ("std", "hide"),
     ] {
-        let (status, _, stderr) = linkwork(&here, &["new", name]);
+        let (status, _, stderr) = run_linkwork(&here, &["new", name]);
         assert!(status == 2 && stderr.contains(part), "{name}: {stderr}");
     }
 }
 
 #[test]
 fn shells_complete_all_commands() {
-    let here = folder("completions");
+    let here = test_folder("completions");
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
-        let (status, text, _) = linkwork(&here, &["completions", shell]);
+        let (status, text, _) = run_linkwork(&here, &["completions", shell]);
         let all = ["check", "show", "simulate", "view", "convert", "export", "new", "without-contacts"];
         assert!(status == 0 && all.iter().all(|word| text.contains(word)), "{shell}");
     }
-    assert_eq!(linkwork(&here, &["completions", "tcsh"]).0, 2);
+    assert_eq!(run_linkwork(&here, &["completions", "tcsh"]).0, 2);
 }
 
 /// Checks that the command exits silently if its standard output is closed after the first bytes, or its
@@ -89,7 +89,7 @@ fn shells_complete_all_commands() {
 fn closed_pipes_end_quietly() {
     use std::io::Read;
     use std::process::Stdio;
-    let here = folder("pipes");
+    let here = test_folder("pipes");
     std::fs::write(
         here.join("bad.rs"),
         "#[mechanism]\npub struct Bad {\n    #[body(mas = 1)]\n    b: Body,\n}\n",

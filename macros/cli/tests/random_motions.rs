@@ -12,13 +12,13 @@ use std::process::Command;
 struct Random(u64);
 
 impl Random {
-    fn bits(&mut self) -> u64 {
+    fn random_bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         self.0 >> 33
     }
 
     fn index_below(&mut self, n: u64) -> u64 {
-        self.bits() % n
+        self.random_bits() % n
     }
 
     /// Returns a number between bounds, rounded to three decimals.
@@ -28,11 +28,11 @@ impl Random {
     }
 }
 
-fn cases() -> u64 {
+fn case_count() -> u64 {
     std::env::var("LINKWORK_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(6)
 }
 
-fn folder(name: &str) -> PathBuf {
+fn test_folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     std::fs::create_dir_all(&folder).unwrap();
     folder
@@ -45,13 +45,13 @@ struct Log {
 }
 
 impl Log {
-    fn last(&self, name: &str) -> f64 {
+    fn last_value(&self, name: &str) -> f64 {
         let column = self.names.iter().position(|known| known == name);
         self.rows[self.rows.len() - 1][column.unwrap_or_else(|| panic!("no `{name}` in {:?}", self.names))]
     }
 }
 
-fn simulated(here: &Path, name: &str, text: &str, set: &[String], more: &[&str]) -> Log {
+fn simulate_to_log(here: &Path, name: &str, text: &str, set: &[String], more: &[&str]) -> Log {
     let file = format!("{name}.rs");
     std::fs::write(here.join(&file), text).unwrap();
     let command = std::env::var_os("LINKWORK_COMMAND").unwrap_or(env!("CARGO_BIN_EXE_linkwork").into());
@@ -68,7 +68,7 @@ fn simulated(here: &Path, name: &str, text: &str, set: &[String], more: &[&str])
 }
 
 /// Returns a chain of bodies on pins and sleeves with springs, or a slider-crank, with its coordinates.
-fn linkage(random: &mut Random) -> (String, Vec<String>, bool) {
+fn random_linkage(random: &mut Random) -> (String, Vec<String>, bool) {
     let mut text = String::new();
     if random.index_below(4) == 0 {
         let (r, l) = (random.number_between(0.2, 0.5), random.number_between(0.9, 1.5));
@@ -102,17 +102,17 @@ fn linkage(random: &mut Random) -> (String, Vec<String>, bool) {
     (text, (0..n).map(|k| format!("j{k}")).collect(), false)
 }
 
-fn mechanism(body: &str) -> String {
+fn mechanism_source(body: &str) -> String {
     format!("use linkwork::prelude::*;\n#[mechanism(gravity = -9.81 * y)]\npub struct Random {{\n{body}}}\n")
 }
 
 /// Checks that a mechanism with declared generalized speeds has the same motion as without them.
 #[test]
 fn declared_speeds_lead_to_the_same_motion() {
-    let here = folder("random_speeds");
-    for case in 0..cases() {
+    let here = test_folder("random_speeds");
+    for case in 0..case_count() {
         let random = &mut Random(2 * case + 1);
-        let (body, joints, loops) = linkage(random);
+        let (body, joints, loops) = random_linkage(random);
         let mut with = body.clone();
         let (mut begin, mut of_speeds, mut of_rates) = (Vec::new(), Vec::new(), Vec::new());
         // A loop starts in its assembled configuration; one velocity is free.
@@ -140,11 +140,11 @@ fn declared_speeds_lead_to_the_same_motion() {
         }
         let more = ["--duration", "1"];
         let [a, b] = [(with, of_speeds), (body, of_rates)].map(|(body, set)| {
-            simulated(&here, "speeds", &mechanism(&body), &[begin.clone(), set].concat(), &more)
+            simulate_to_log(&here, "speeds", &mechanism_source(&body), &[begin.clone(), set].concat(), &more)
         });
         for joint in &joints {
             let name = format!("q.{joint}");
-            let (a, b) = (a.last(&name), b.last(&name));
+            let (a, b) = (a.last_value(&name), b.last_value(&name));
             assert!((a - b).abs() < 1e-6 * (1.0 + b.abs()), "case {case}: {name} is {a}, not {b}");
         }
     }
@@ -154,10 +154,10 @@ fn declared_speeds_lead_to_the_same_motion() {
 /// force equal to the rate of the state.
 #[test]
 fn states_move_as_velocities_do() {
-    let here = folder("random_states");
-    for case in 0..cases() {
+    let here = test_folder("random_states");
+    for case in 0..case_count() {
         let random = &mut Random(2 * case + 2);
-        let (linkage, joints, loops) = linkage(random);
+        let (linkage, joints, loops) = random_linkage(random);
         let j = &joints[0];
         // Parameters have inferred units.
         let parameters = ["lag", "lift", "drag", "wave", "scale", "gain"];
@@ -204,11 +204,23 @@ fn states_move_as_velocities_do() {
             [begin.clone(), values.collect(), own.to_vec()].concat()
         };
         let more = ["--duration", "1"];
-        let a = simulated(&here, "states", &mechanism(&of_state), &options_with_values("x.level"), &more);
-        let b = simulated(&here, "states", &mechanism(&of_rail), &options_with_values("v.rail"), &more);
+        let a = simulate_to_log(
+            &here,
+            "states",
+            &mechanism_source(&of_state),
+            &options_with_values("x.level"),
+            &more,
+        );
+        let b = simulate_to_log(
+            &here,
+            "states",
+            &mechanism_source(&of_rail),
+            &options_with_values("v.rail"),
+            &more,
+        );
         let names = joints.iter().map(|joint| (format!("q.{joint}"), format!("q.{joint}")));
         for (name, other) in names.chain([("x.level".to_string(), "v.rail".to_string())]) {
-            let (a, b) = (a.last(&name), b.last(&other));
+            let (a, b) = (a.last_value(&name), b.last_value(&other));
             assert!((a - b).abs() < 1e-6 * (1.0 + b.abs()), "case {case}: {name} is {a}, not {b}");
         }
     }
@@ -218,12 +230,12 @@ fn states_move_as_velocities_do() {
 /// velocity and position are integrals of the table.
 #[test]
 fn inputs_are_followed_exactly() {
-    let here = folder("random_inputs");
-    let cart = mechanism(
+    let here = test_folder("random_inputs");
+    let cart = mechanism_source(
         "    #[body(mass = 1)]\n    cart: Body,\n    \
          #[joint(ground -> cart, along = x)]\n    rail: Sleeve,\n    #[acts(on = rail)]\n    push: Force,\n",
     );
-    for case in 0..cases() {
+    for case in 0..case_count() {
         let random = &mut Random(3 * case + 5);
         let mut rows = vec![(0.0, random.number_between(-5.0, 5.0))];
         while rows.len() < 12 {
@@ -247,8 +259,8 @@ fn inputs_are_followed_exactly() {
             v += (a + b) * h / 2.0;
         }
         let more = ["--inputs", "push.csv", "--duration", &end.to_string()];
-        let log = simulated(&here, "inputs", &cart, &[], &more);
-        let (is, goes) = (log.last("q.rail"), log.last("v.rail"));
+        let log = simulate_to_log(&here, "inputs", &cart, &[], &more);
+        let (is, goes) = (log.last_value("q.rail"), log.last_value("v.rail"));
         assert!((is - x).abs() < 1e-8 * (1.0 + x.abs()), "case {case}: {is}, not {x}");
         assert!((goes - v).abs() < 1e-8 * (1.0 + v.abs()), "case {case}: {goes}, not {v}");
     }
@@ -258,21 +270,21 @@ fn inputs_are_followed_exactly() {
 /// the closed form of an overdamped oscillator with large `c` and `k`.
 #[test]
 fn stiff_springs_are_integrated() {
-    let here = folder("random_stiff");
-    for case in 0..cases() {
+    let here = test_folder("random_stiff");
+    for case in 0..case_count() {
         let random = &mut Random(5 * case + 7);
         let (mass, push) = (random.number_between(0.5, 2.0), random.number_between(-50.0, 50.0));
         let fast = 10_f64.powf(random.number_between(3.0, 6.0)).round();
         let slow = random.number_between(0.5, 20.0);
         // m x″ + m (fast + slow) x′ + m fast slow x = push.
         let (c, k) = (mass * (fast + slow), mass * fast * slow);
-        let cart = mechanism(&format!(
+        let cart = mechanism_source(&format!(
             "    #[body(mass = {mass})]\n    cart: Body,\n    #[joint(ground -> cart, along = x)]\n    rail: Sleeve,
     #[acts(on = rail, stiffness = {k})]\n    spring: Spring,\n    #[acts(on = rail, damping = {c})]\n    damper: Dashpot,\n    #[acts(on = rail)]\n    push: Force,\n"
         ));
         let begin = random.number_between(-1.0, 1.0);
         let set = [format!("q.rail={begin}"), format!("u.push={push}")];
-        let log = simulated(&here, "stiff", &cart, &set, &["--duration", "2"]);
+        let log = simulate_to_log(&here, "stiff", &cart, &set, &["--duration", "2"]);
         let rest = push / k;
         for row in &log.rows {
             let (t, x) = (row[0], row[1]);

@@ -13,7 +13,7 @@ use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::{derive, read};
+use linkwork_compiler::{derive, read_source};
 use std::io::{BufRead, Write};
 use std::path::Path;
 use std::process::ExitCode;
@@ -31,7 +31,7 @@ const FUNCTIONS: [&str; 6] = [
 type Failure = Box<dyn std::error::Error>;
 
 fn main() -> ExitCode {
-    match run() {
+    match evaluate_mechanism() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             eprintln!("{failure}");
@@ -40,7 +40,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn run() -> Result<(), Failure> {
+fn evaluate_mechanism() -> Result<(), Failure> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let [format, file, options @ ..] = words.as_slice() else {
         return Err("expected a format and a file".into());
@@ -48,7 +48,7 @@ fn run() -> Result<(), Failure> {
     let more: String = options.iter().map(|option| format!(", {option}")).collect();
     let arguments = format!("{format} = {file:?}{more}").parse()?;
     let mut cx = Diagnostics::new();
-    let source = read(arguments, "pub struct Robot;".parse()?, Path::new("/"), &mut cx);
+    let source = read_source(arguments, "pub struct Robot;".parse()?, Path::new("/"), &mut cx);
     let failure_from_diagnostics = |cx: &Diagnostics| Failure::from(cx.messages().join("\n"));
     let source = source.filter(|_| cx.is_empty()).ok_or_else(|| failure_from_diagnostics(&cx))?;
     let description = &source.mechanism.description;
@@ -78,7 +78,7 @@ fn run() -> Result<(), Failure> {
                 _ => f64::NAN,
             };
             let found = derived.functions.iter().find(|function| function.name == name);
-            found.map(|function| function.program.run(&value_of_symbol)).unwrap_or_default()
+            found.map(|function| function.program.interpret_program(&value_of_symbol)).unwrap_or_default()
         };
         // If the passive forces are long, the other functions call them.
         let passive = function_values("__passive_forces", &[]);

@@ -18,7 +18,7 @@ use linkwork_compiler::lower::{Counts, Op, Program, pipeline};
 use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::passes::Passes;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::{compile, derive_with, expand, read};
+use linkwork_compiler::{compile, derive_with, expand, read_source};
 use proc_macro2::TokenStream;
 use quote::ToTokens;
 use std::cell::RefCell;
@@ -40,7 +40,7 @@ struct Input {
 }
 
 fn main() -> ExitCode {
-    match run() {
+    match run_expansion() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             eprintln!("expand: {failure}");
@@ -49,12 +49,12 @@ fn main() -> ExitCode {
     }
 }
 
-fn run() -> Result<(), Failure> {
+fn run_expansion() -> Result<(), Failure> {
     let (mut file, mut mode, mut name, mut options) = (None, "--rust", None, Vec::new());
     let (mut pass, mut function) = (None, None);
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     if let Some(("--every", files)) = arguments.split_first().map(|(first, files)| (first.as_str(), files)) {
-        return every(files);
+        return print_generated_code(files);
     }
     let mut words = arguments.iter();
     while let Some(word) = words.next() {
@@ -84,17 +84,17 @@ fn run() -> Result<(), Failure> {
         return print_after(&input, pass, function.ok_or("`--after` needs `--function NAME`")?);
     }
     match mode {
-        "--counts" => counts(&input),
-        "--time" => time(&input),
-        _ => rust(&input),
+        "--counts" => print_operation_counts(&input),
+        "--time" => print_stage_times(&input),
+        _ => print_formatted_rust(&input),
     }
 }
 
 /// Returns the struct of a Rust file; paths in it are relative to the package.
 fn from_rust(path: &Path, name: Option<&str>) -> Result<Input, Failure> {
-    let all = structs(path)?;
+    let all = mechanism_structs(path)?;
     let mut named = all.into_iter().filter(|item| name.is_none_or(|name| item.ident == name));
-    input(path, named.next().ok_or("the file has no such struct with `#[mechanism]`")?)
+    split_attribute(path, named.next().ok_or("the file has no such struct with `#[mechanism]`")?)
 }
 
 fn is_mechanism(attribute: &syn::Attribute) -> bool {
@@ -102,7 +102,7 @@ fn is_mechanism(attribute: &syn::Attribute) -> bool {
 }
 
 /// Returns the mechanisms of a Rust file, including those in its inline modules.
-fn structs(path: &Path) -> Result<Vec<syn::ItemStruct>, Failure> {
+fn mechanism_structs(path: &Path) -> Result<Vec<syn::ItemStruct>, Failure> {
     let mut todo = syn::parse_file(&std::fs::read_to_string(path)?)?.items;
     let mut found = Vec::new();
     while !todo.is_empty() {
@@ -120,7 +120,7 @@ fn structs(path: &Path) -> Result<Vec<syn::ItemStruct>, Failure> {
 }
 
 /// Returns a struct without its attribute, together with the attribute's arguments.
-fn input(path: &Path, mut item: syn::ItemStruct) -> Result<Input, Failure> {
+fn split_attribute(path: &Path, mut item: syn::ItemStruct) -> Result<Input, Failure> {
     let mut arguments = TokenStream::new();
     item.attrs.retain(|attribute| {
         if is_mechanism(attribute)
@@ -154,13 +154,13 @@ impl Input {
 }
 
 /// Prints the unformatted generated code of every mechanism of these files, without and with all options.
-fn every(files: &[String]) -> Result<(), Failure> {
+fn print_generated_code(files: &[String]) -> Result<(), Failure> {
     const WORDS: [&str; 7] =
         ["derivatives", "centroidal", "regressor", "sensitivities", "packed", "prepare", "batch"];
     for file in files {
-        for item in structs(Path::new(file))? {
+        for item in mechanism_structs(Path::new(file))? {
             println!("===== {file}: {}", item.ident);
-            let mut input = input(Path::new(file), item)?;
+            let mut input = split_attribute(Path::new(file), item)?;
             let plain = input.expand();
             println!("{}\n{}", plain.tokens, plain.text);
             let given: Vec<String> = input.arguments.clone().into_iter().map(|t| t.to_string()).collect();
@@ -175,23 +175,23 @@ fn every(files: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-fn rust(input: &Input) -> Result<(), Failure> {
+fn print_formatted_rust(input: &Input) -> Result<(), Failure> {
     println!("{}", prettyplease::unparse(&syn::parse2(input.expand().into_tokens()?)?));
     Ok(())
 }
 
 /// Reports the errors of a mechanism that does not compile.
-fn checked<T>(found: Option<T>, cx: &Diagnostics) -> Result<T, Failure> {
+fn result_or_errors<T>(found: Option<T>, cx: &Diagnostics) -> Result<T, Failure> {
     found.ok_or_else(|| cx.messages().join("\n").into())
 }
 
-fn counts(input: &Input) -> Result<(), Failure> {
+fn print_operation_counts(input: &Input) -> Result<(), Failure> {
     let cx = &mut Diagnostics::new();
-    let source = read(input.arguments.clone(), input.item.clone(), &input.folder, cx);
-    let source = checked(source, cx)?;
+    let source = read_source(input.arguments.clone(), input.item.clone(), &input.folder, cx);
+    let source = result_or_errors(source, cx)?;
     let graph = Graph::new();
     let output = compile(&source, &graph, cx);
-    let (model, output) = checked(output, cx)?;
+    let (model, output) = result_or_errors(output, cx)?;
     println!(
         "{}: {} configuration numbers, {} velocities, {} inputs, {} links, {} frames; {} nodes in the \
          graph\n",
@@ -208,25 +208,25 @@ fn counts(input: &Input) -> Result<(), Failure> {
         "function", "total", "mul", "add", "div", "fused", "calls"
     );
     for f in &output.functions {
-        row(&f.name, [&f.program]);
+        print_count_row(&f.name, [&f.program]);
         if let Some(program) = &f.program.simd {
-            row("  in lanes", [&**program]);
+            print_count_row("  in lanes", [&**program]);
         }
     }
     let links = &output.links;
-    row("links: placement", links.iter().map(|l| &l.placement));
-    row("links: twist", links.iter().map(|l| &l.twist));
-    row("links: acceleration", links.iter().map(|l| &l.acceleration));
-    row("links: columns", links.iter().map(|l| &l.columns));
+    print_count_row("links: placement", links.iter().map(|l| &l.placement));
+    print_count_row("links: twist", links.iter().map(|l| &l.twist));
+    print_count_row("links: acceleration", links.iter().map(|l| &l.acceleration));
+    print_count_row("links: columns", links.iter().map(|l| &l.columns));
     let frames = &output.frames;
-    row("frames: placement", frames.iter().map(|f| &f.placement));
-    row("frames: twist", frames.iter().map(|f| &f.twist));
-    row("frames: acceleration", frames.iter().map(|f| &f.acceleration));
+    print_count_row("frames: placement", frames.iter().map(|f| &f.placement));
+    print_count_row("frames: twist", frames.iter().map(|f| &f.twist));
+    print_count_row("frames: acceleration", frames.iter().map(|f| &f.acceleration));
     println!("\ntotal = mul + add + div; fused: the same with a product and its sum as one instruction");
     Ok(())
 }
 
-fn row<'a>(name: &str, programs: impl IntoIterator<Item = &'a Program>) {
+fn print_count_row<'a>(name: &str, programs: impl IntoIterator<Item = &'a Program>) {
     let (mut sum, mut instructions) = (Counts::default(), 0);
     for program in programs {
         let c = program.counts;
@@ -241,7 +241,7 @@ fn row<'a>(name: &str, programs: impl IntoIterator<Item = &'a Program>) {
     }
     println!(
         "{name:24}{:>7}{:>7}{:>7}{:>7}{:>7}{:>7}",
-        sum.total(),
+        sum.total_operations(),
         sum.mul,
         sum.add,
         sum.div,
@@ -259,17 +259,17 @@ fn print_after(input: &Input, pass: &str, function: &str) -> Result<(), Failure>
             println!(
                 "{function}, {pass}: {} instructions, {} operations",
                 program.instructions.len(),
-                c.total()
+                c.total_operations()
             );
-            println!("{}", program.text(&symbol_name));
+            println!("{}", program.program_text(&symbol_name));
         }
     };
     let cx = &mut Diagnostics::new();
-    let source = read(input.arguments.clone(), input.item.clone(), &input.folder, cx);
-    let source = checked(source, cx)?;
+    let source = read_source(input.arguments.clone(), input.item.clone(), &input.folder, cx);
+    let source = result_or_errors(source, cx)?;
     let graph = Graph::new();
     let output = pipeline::with_observer(Box::new(print_after_pass), || compile(&source, &graph, cx));
-    checked(output, cx).map(|_| ())
+    result_or_errors(output, cx).map(|_| ())
 }
 
 /// Returns the name of a symbol: `q0`, `v1`, `p2` for a parameter, …
@@ -295,21 +295,21 @@ struct Stopwatch {
 
 impl Stopwatch {
     /// Records the duration of a stage in one run; the minimum over all runs is kept.
-    fn least(&mut self, stage: &str, elapsed: Duration) {
+    fn record_least_duration(&mut self, stage: &str, elapsed: Duration) {
         match self.stages.iter_mut().find(|(name, _)| name == stage) {
             Some((_, least)) => *least = elapsed.min(*least),
             None => self.stages.push((stage.to_string(), elapsed)),
         }
     }
 
-    fn measure<T>(&mut self, stage: &str, f: impl FnOnce() -> T) -> T {
+    fn measure_stage<T>(&mut self, stage: &str, f: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let result = f();
-        self.least(stage, start.elapsed());
+        self.record_least_duration(stage, start.elapsed());
         result
     }
 
-    fn find(&self, stage: &str) -> Duration {
+    fn duration_of_stage(&self, stage: &str) -> Duration {
         let found = self.stages.iter().find(|(name, _)| name == stage);
         found.map_or(Duration::ZERO, |(_, time)| *time)
     }
@@ -317,21 +317,21 @@ impl Stopwatch {
 
 /// Prints the time of every stage, and within `derive` that of every pass of lowering, over all functions and
 /// all their candidate programs.
-fn time(input: &Input) -> Result<(), Failure> {
+fn print_stage_times(input: &Input) -> Result<(), Failure> {
     let (mut watch, mut passes) = (Stopwatch::default(), Stopwatch::default());
     for _ in 0..REPEATS {
         one_run(input, &mut watch, &mut passes)?;
     }
     let lowered: Duration = passes.stages.iter().map(|(_, time)| *time).sum();
-    let known = ["read", "model", "derive"].map(|stage| watch.find(stage)).into_iter().sum();
-    let whole = watch.find("whole expansion");
+    let known = ["read", "model", "derive"].map(|stage| watch.duration_of_stage(stage)).into_iter().sum();
+    let whole = watch.duration_of_stage("whole expansion");
     let print_stage_time =
         |stage: &str, time: Duration| println!("{stage:32}{:>10.2}", time.as_secs_f64() * 1e3);
     println!("{:32}{:>10}", "stage", "ms");
-    print_stage_time("read", watch.find("read"));
-    print_stage_time("model", watch.find("model"));
-    print_stage_time("derive", watch.find("derive"));
-    print_stage_time("  expressions (the rest)", watch.find("derive").saturating_sub(lowered));
+    print_stage_time("read", watch.duration_of_stage("read"));
+    print_stage_time("model", watch.duration_of_stage("model"));
+    print_stage_time("derive", watch.duration_of_stage("derive"));
+    print_stage_time("  expressions (the rest)", watch.duration_of_stage("derive").saturating_sub(lowered));
     for (pass, time) in &passes.stages {
         print_stage_time(&format!("  {pass}"), *time);
     }
@@ -342,13 +342,14 @@ fn time(input: &Input) -> Result<(), Failure> {
 
 fn one_run(input: &Input, watch: &mut Stopwatch, passes: &mut Stopwatch) -> Result<(), Failure> {
     let cx = &mut Diagnostics::new();
-    watch.measure("whole expansion", || input.expand());
-    let source =
-        watch.measure("read", || read(input.arguments.clone(), input.item.clone(), &input.folder, cx));
-    let source = checked(source, cx)?;
+    watch.measure_stage("whole expansion", || input.expand());
+    let source = watch.measure_stage("read", || {
+        read_source(input.arguments.clone(), input.item.clone(), &input.folder, cx)
+    });
+    let source = result_or_errors(source, cx)?;
     let graph = Graph::new();
-    let model = watch.measure("model", || build_model(&source.mechanism.description, &graph, cx));
-    let model = checked(model, cx)?;
+    let model = watch.measure_stage("model", || build_model(&source.mechanism.description, &graph, cx));
+    let model = result_or_errors(model, cx)?;
     let sums = Rc::new(RefCell::new(Vec::<(String, Duration)>::new()));
     let noted = Rc::clone(&sums);
     let record_pass_time = move |_: &str, pass: &str, _: &Program, time: Duration| {
@@ -360,11 +361,11 @@ fn one_run(input: &Input, watch: &mut Stopwatch, passes: &mut Stopwatch) -> Resu
     };
     let output = pipeline::with_observer(Box::new(record_pass_time), || {
         let derive_all_functions = || derive_with(&model, source.mechanism.requests, Passes::default(), cx);
-        watch.measure("derive", derive_all_functions)
+        watch.measure_stage("derive", derive_all_functions)
     });
-    checked(output, cx)?;
+    result_or_errors(output, cx)?;
     for (pass, time) in sums.borrow().iter() {
-        passes.least(pass, *time);
+        passes.record_least_duration(pass, *time);
     }
     Ok(())
 }

@@ -54,13 +54,19 @@ struct Mutator<'a> {
 impl Mutator<'_> {
     /// Returns an expression that selects `original` or `instead` by the mutant's number; `None` if this
     /// mutant is omitted.
-    fn choice(&mut self, at: Span, shown: &dyn ToTokens, original: &Expr, instead: &Expr) -> Option<Expr> {
+    fn mutant_choice(
+        &mut self,
+        at: Span,
+        shown: &dyn ToTokens,
+        original: &Expr,
+        instead: &Expr,
+    ) -> Option<Expr> {
         let number = self.next;
         self.next += 1;
         if self.left_out.contains(&number) {
             return None;
         }
-        let (line, before, after) = (at.start().line, short(shown), short(instead));
+        let (line, before, after) = (at.start().line, shortened_tokens(shown), shortened_tokens(instead));
         println!("{number}\t{}:{line}\t{before}\t{after}", self.file.display());
         Some(parse_quote!((if crate::mutant::is(#number) { #instead } else { #original })))
     }
@@ -71,7 +77,7 @@ impl Mutator<'_> {
     }
 
     /// Returns the mutant of an expression whose subexpressions are unchanged.
-    fn changed(expr: &Expr) -> Option<Expr> {
+    fn mutant_of_expression(expr: &Expr) -> Option<Expr> {
         let mut instead = expr.clone();
         match &mut instead {
             Expr::Binary(binary) => {
@@ -99,15 +105,15 @@ impl Mutator<'_> {
                 return Some((*call.receiver).clone());
             }
             Expr::MethodCall(call) => {
-                call.method = syn::Ident::new(other(&call.method.to_string())?, call.method.span())
+                call.method = syn::Ident::new(confusable_name(&call.method.to_string())?, call.method.span())
             }
             Expr::Field(field) => {
                 let syn::Member::Named(name) = &mut field.member else { return None };
-                *name = syn::Ident::new(other(&name.to_string())?, name.span());
+                *name = syn::Ident::new(confusable_name(&name.to_string())?, name.span());
             }
             Expr::Path(path) => {
                 let name = path.path.get_ident()?;
-                path.path = syn::Ident::new(other(&name.to_string())?, name.span()).into();
+                path.path = syn::Ident::new(confusable_name(&name.to_string())?, name.span()).into();
             }
             _ => return None,
         }
@@ -116,7 +122,7 @@ impl Mutator<'_> {
 }
 
 /// Returns the names that a file imports from `machine`.
-fn limits(file: &syn::File) -> Vec<String> {
+fn imported_machine_limits(file: &syn::File) -> Vec<String> {
     let of_machine = |item: &syn::Item| match item {
         syn::Item::Use(item) => {
             let text = item.tree.to_token_stream().to_string();
@@ -131,7 +137,7 @@ fn limits(file: &syn::File) -> Vec<String> {
 }
 
 /// Returns a function name that could be confused with this one.
-fn other(name: &str) -> Option<&'static str> {
+fn confusable_name(name: &str) -> Option<&'static str> {
     Some(match name {
         "nq" => "nv",
         "nv" => "nq",
@@ -157,7 +163,7 @@ fn has_let(expr: &Expr) -> bool {
 }
 
 /// Returns the first 100 characters of the tokens on one line.
-fn short(tokens: &dyn ToTokens) -> String {
+fn shortened_tokens(tokens: &dyn ToTokens) -> String {
     let text = tokens.to_token_stream().to_string().split_whitespace().collect::<Vec<_>>().join(" ");
     text.chars().take(100).collect()
 }
@@ -169,7 +175,7 @@ impl VisitMut for Mutator<'_> {
         {
             return;
         }
-        let (original, instead) = (expr.clone(), Self::changed(expr));
+        let (original, instead) = (expr.clone(), Self::mutant_of_expression(expr));
         match expr {
             // Assigned places, called functions and conditions with `let` remain unchanged.
             Expr::Call(call) => call.args.iter_mut().for_each(|argument| self.visit_expr_mut(argument)),
@@ -178,7 +184,7 @@ impl VisitMut for Mutator<'_> {
             _ => visit_mut::visit_expr_mut(self, expr),
         }
         if let Some(instead) = instead
-            && let Some(both) = self.choice(original.span(), &original, expr, &instead)
+            && let Some(both) = self.mutant_choice(original.span(), &original, expr, &instead)
         {
             *expr = both;
         }
@@ -194,9 +200,10 @@ impl VisitMut for Mutator<'_> {
                 self.visit_expr_mut(guard);
             }
             self.visit_expr_mut(body);
-            let next = bodies.get(k + 1).filter(|next| short(*next) != short(&bodies[k]));
+            let next =
+                bodies.get(k + 1).filter(|next| shortened_tokens(*next) != shortened_tokens(&bodies[k]));
             if let Some(next) = next
-                && let Some(both) = self.choice(pat.span(), &quote!(#pat =>), body, next)
+                && let Some(both) = self.mutant_choice(pat.span(), &quote!(#pat =>), body, next)
             {
                 **body = both;
             }
@@ -246,7 +253,7 @@ impl VisitMut for Mutator<'_> {
 }
 
 /// Adds all Rust files at a path to `found`, in sorted order.
-fn sources(path: &Path, found: &mut Vec<PathBuf>) {
+fn collect_rust_files(path: &Path, found: &mut Vec<PathBuf>) {
     if path.is_file() {
         found.push(path.to_path_buf());
         return;
@@ -257,7 +264,7 @@ fn sources(path: &Path, found: &mut Vec<PathBuf>) {
     entries
         .iter()
         .filter(|entry| entry.is_dir() || entry.extension().is_some_and(|end| end == "rs"))
-        .for_each(|entry| sources(entry, found));
+        .for_each(|entry| collect_rust_files(entry, found));
 }
 
 fn main() {
@@ -265,13 +272,13 @@ fn main() {
     let copy = PathBuf::from(arguments.next().expect("the copy to write into"));
     let left_out: Vec<usize> = arguments.map(|number| number.parse().expect("a number")).collect();
     let mut files = Vec::new();
-    ROOMS.iter().for_each(|room| sources(&copy.join(room), &mut files));
+    ROOMS.iter().for_each(|room| collect_rust_files(&copy.join(room), &mut files));
     let mut next = 0;
     for path in files {
         let text = std::fs::read_to_string(&path).expect("a file of Rust");
         let mut parsed = syn::parse_file(&text).expect("Rust");
         let file = path.strip_prefix(&copy).expect("a file of the copy").to_path_buf();
-        let limits = limits(&parsed);
+        let limits = imported_machine_limits(&parsed);
         let mut mutator = Mutator { file, limits, next, left_out: &left_out };
         mutator.visit_file_mut(&mut parsed);
         next = mutator.next;

@@ -28,7 +28,7 @@ fn is_derive(attribute: &syn::Attribute) -> bool {
 
 impl DeclaredStruct {
     /// Reads a struct; `None` if it has no `#[mechanism]` attribute.
-    fn read(mut item: syn::ItemStruct) -> Option<DeclaredStruct> {
+    fn read_struct(mut item: syn::ItemStruct) -> Option<DeclaredStruct> {
         let attribute = item.attrs.iter().position(is_mechanism)?;
         let derive = item.attrs.iter().position(is_derive).filter(|derive| *derive < attribute);
         let derive_above = derive.map(|_| item.attrs[attribute].span());
@@ -51,7 +51,7 @@ impl DeclaredStruct {
         let name = type_name(path);
         let ident = syn::Ident::new(&name, Span::call_site());
         let written = path.to_string_lossy().into_owned();
-        let format = syn::Ident::new(format_of(path, text).word(), Span::call_site());
+        let format = syn::Ident::new(format_of(path, text).format_option(), Span::call_site());
         DeclaredStruct {
             name,
             arguments: quote::quote!(#format = #written),
@@ -78,13 +78,13 @@ impl DeclaredStruct {
 /// # Errors
 ///
 /// The text is not a Rust file.
-pub fn declarations(text: &str) -> syn::Result<Vec<DeclaredStruct>> {
+pub fn mechanism_declarations(text: &str) -> syn::Result<Vec<DeclaredStruct>> {
     let mut found = Vec::new();
     let mut todo = syn::parse_file(text)?.items;
     while !todo.is_empty() {
         for item in std::mem::take(&mut todo) {
             match item {
-                syn::Item::Struct(item) => found.extend(DeclaredStruct::read(item)),
+                syn::Item::Struct(item) => found.extend(DeclaredStruct::read_struct(item)),
                 syn::Item::Mod(module) => {
                     todo.extend(module.content.into_iter().flat_map(|(_, items)| items));
                 }

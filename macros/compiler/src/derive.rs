@@ -58,60 +58,70 @@ pub fn derive_with<'g>(
     let passes = remaining_passes(passes, requests.skipped);
     let speeds = InSpeeds::new(model).map(Rc::new);
     let model = speeds.as_ref().map_or(model, |speeds| &speeds.native);
-    let joints = kinematics::joints(model);
+    let joints = kinematics::joints_of_model(model);
     if let Some((what, help)) = speeds.as_ref().and_then(|s| self::speeds::unsupported_option(s, requests)) {
-        cx.error(model.place.clone(), what).help(help);
+        cx.report_error(model.place.clone(), what).add_help(help);
         return None;
     }
     if model.kinematic {
         if !matches!(requests.equations, Printed::Readable | Printed::Structure) {
-            cx.error(model.place.clone(), "without inertia there are no equations of motion to print")
-                .help("remove `equations` or `inertia = none`");
+            cx.report_error(model.place.clone(), "without inertia there are no equations of motion to print")
+                .add_help("remove `equations` or `inertia = none`");
             return None;
         }
         // The configuration space, frames, constraints, the forces of inputs, and outputs.
         let asked = Requests { drawing: requests.drawing, ..Requests::default() };
         let own = (model, speeds.as_ref());
-        let functions = functions(own, asked, passes, &joints, &Extras::default(), Specialisation::None);
-        let constants = drawing(model, requests);
-        return sound(model, Output { constants, ..steps(model, &joints, functions) }, cx);
+        let functions =
+            derive_functions(own, asked, passes, &joints, &Extras::default(), Specialisation::None);
+        let constants = drawing_constants(model, requests);
+        return check_derived_output(
+            model,
+            Output { constants, ..output_with_steps(model, &joints, functions) },
+            cx,
+        );
     }
     let mass = crba::mass_matrix(model, &joints);
-    if !singular::check(model, &joints, &mass, cx) || !singular::check_effective(model, &joints, &mass, cx) {
+    if !singular::check_mass_matrix(model, &joints, &mass, cx)
+        || !singular::check_effective(model, &joints, &mass, cx)
+    {
         return None;
     }
     if let ([force, ..], Some(what)) = (model.acceleration_forces.as_slice(), without_momentum(requests)) {
-        cx.error(force.place.clone(), format!("a force that depends on accelerations excludes {what}"))
-            .help("remove the option that requests them, or these terms of the force");
+        cx.report_error(
+            force.place.clone(),
+            format!("a force that depends on accelerations excludes {what}"),
+        )
+        .add_help("remove the option that requests them, or these terms of the force");
         return None;
     }
     if let Some(what) = too_long(model, requests) {
-        cx.error(model.place.clone(), format!("{what} would be too long")).help(
+        cx.report_error(model.place.clone(), format!("{what} would be too long")).add_help(
             "the generated code has no loops, and a line for each of them: request it for a smaller \
              mechanism",
         );
         return None;
     }
-    let cyclic = cyclic(model, requests, &joints, cx)?;
+    let cyclic = requested_cyclic_coordinates(model, requests, &joints, cx)?;
     let extras = Extras {
         identification: requests.regressor.then(|| Identification::new(model, &joints)),
         entries: requests.packed.then(|| match &speeds {
-            Some(speeds) => entries(&speeds.metric(&mass)),
-            None => entries(&mass),
+            Some(speeds) => nonzero_mass_entries(&speeds.transform_mass_matrix(&mass)),
+            None => nonzero_mass_entries(&mass),
         }),
         hamilton: (requests.hamilton && !has_massless(model))
             .then(|| hamilton::derive(model, &joints, &mass)),
         routh: cyclic.clone().filter(|_| requests.routh).map(|c| routh::derive(model, &joints, &mass, c)),
         conserved: requests
             .conserved
-            .then(|| in_speeds(conserved::conserved(model, &joints), speeds.as_deref())),
+            .then(|| in_speeds(conserved::conserved_quantities(model, &joints), speeds.as_deref())),
     };
     let own = (model, speeds.as_ref());
     let functions_with_specialisation =
-        |specialisation| functions(own, requests, passes, &joints, &extras, specialisation);
+        |specialisation| derive_functions(own, requests, passes, &joints, &extras, specialisation);
     let constrained = !model.constraints.is_empty();
-    if constrained && mechanics::constraints::products(model, &mass) > MOST_PRODUCTS {
-        cx.error(model.place.clone(), "too many constraints of this mechanism are coupled").help(
+    if constrained && mechanics::constraints::elimination_product_count(model, &mass) > MOST_PRODUCTS {
+        cx.report_error(model.place.clone(), "too many constraints of this mechanism are coupled").add_help(
             "the generated code has no loops and would be too long: connect the bodies by shorter chains of \
              joints",
         );
@@ -119,47 +129,51 @@ pub fn derive_with<'g>(
     }
     let functions = functions_with_specialisation(Specialisation::None);
     let prepared = requests.prepare.then(|| {
-        prepared::prepared(model.graph, functions_with_specialisation(Specialisation::ByParameters))
+        prepared::extract_prepared_values(
+            model.graph,
+            functions_with_specialisation(Specialisation::ByParameters),
+        )
     });
-    let mut constants = extras.identification.map_or_else(Vec::new, |i| i.names());
-    constants.extend(extras.entries.map(|entries| Constant::entries(&entries)));
+    let mut constants = extras.identification.map_or_else(Vec::new, |i| i.name_constants());
+    constants.extend(extras.entries.map(|entries| Constant::packed_entry_constant(&entries)));
     if let Some(kept) = &extras.conserved {
         let names: Vec<String> = kept.iter().map(|c| c.name.clone()).collect();
-        constants.push(Constant::conserved(&names));
+        constants.push(Constant::conserved_name_constant(&names));
     }
-    constants.extend(extras.routh.as_ref().map(|routh| Constant::cyclic(&routh.cyclic)));
+    constants.extend(extras.routh.as_ref().map(|routh| Constant::cyclic_coordinate_constant(&routh.cyclic)));
     if requests.sensitivities {
-        constants.push(Constant::parameters(&model.parameters));
+        constants.push(Constant::parameter_name_constant(&model.parameters));
     }
-    constants.extend(drawing(model, requests));
+    constants.extend(drawing_constants(model, requests));
     let linear = linear_equations(model, &joints, &mass, cx)?;
     constants.extend(Constant::linear_equations(&linear));
-    let equations = printed((model, speeds.as_deref()), &joints, &mass, (requests.equations, cyclic), cx)?;
+    let equations =
+        printed_equations((model, speeds.as_deref()), &joints, &mass, (requests.equations, cyclic), cx)?;
     let output = Output {
         equations,
         linear_equations: linear.into_iter().map(|(_, written)| written).collect(),
         prepared,
         constants,
-        ..steps(model, &joints, functions)
+        ..output_with_steps(model, &joints, functions)
     };
-    sound(model, output, cx)
+    check_derived_output(model, output, cx)
 }
 
 /// Writes the values of conserved quantities in generalized speeds, if the mechanism defines any.
 fn in_speeds<'g>(mut kept: Vec<Conserved<'g>>, speeds: Option<&InSpeeds<'g>>) -> Vec<Conserved<'g>> {
     if let Some(speeds) = speeds {
-        kept.iter_mut().for_each(|c| c.value = speeds.written(&[c.value])[0]);
+        kept.iter_mut().for_each(|c| c.value = speeds.express_in_speeds(&[c.value])[0]);
     }
     kept
 }
 
 /// Returns the associated constant that the option `drawing` adds, if the option is set.
-fn drawing(model: &Model<'_>, requests: Requests) -> Vec<Constant> {
-    requests.drawing.then(|| Constant::drawing(&model.drawing)).into_iter().collect()
+fn drawing_constants(model: &Model<'_>, requests: Requests) -> Vec<Constant> {
+    requests.drawing.then(|| Constant::drawing_constant(&model.drawing)).into_iter().collect()
 }
 
 /// Builds the output from the functions, and adds the steps that compute link and frame placements.
-fn steps<'g>(model: &Model<'g>, joints: &[Joint<'g>], functions: Vec<Function>) -> Output {
+fn output_with_steps<'g>(model: &Model<'g>, joints: &[Joint<'g>], functions: Vec<Function>) -> Output {
     Output {
         functions,
         links: joints.iter().map(|joint| link_steps(model, joint)).collect(),
@@ -174,28 +188,28 @@ fn steps<'g>(model: &Model<'g>, joints: &[Joint<'g>], functions: Vec<Function>) 
 
 /// Checks the derived output: all coefficients must be finite, no expression may be NaN, and the number of
 /// values of each program must match its result. Returns `None` with the error in `cx` otherwise.
-fn sound(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Output> {
+fn check_derived_output(model: &Model<'_>, output: Output, cx: &mut Diagnostics) -> Option<Output> {
     if !output.all_functions().all(|f| f.program.is_finite()) {
-        cx.error(model.place.clone(), "the values of this mechanism are too large")
-            .help("a product of masses, lengths or forces in its equations is not a finite number");
+        cx.report_error(model.place.clone(), "the values of this mechanism are too large")
+            .add_help("a product of masses, lengths or forces in its equations is not a finite number");
         return None;
     }
-    if let Some(what) = output.undefined() {
-        cx.error(
+    if let Some(what) = output.undefined_operation() {
+        cx.report_error(
             model.place.clone(),
             format!("the equations of this mechanism contain `{what}`, which is not a number"),
         )
-        .help(
+        .add_help(
             "an expression divides by zero, or takes the root of a negative number, in every configuration",
         );
         return None;
     }
-    if let Some(name) = output.misfit() {
-        cx.error(
+    if let Some(name) = output.misfitting_function() {
+        cx.report_error(
             model.place.clone(),
             format!("internal error: the program of `{name}` does not match its arguments or its result"),
         )
-        .help("this is an error of the compiler: please report it with the declaration of the mechanism");
+        .add_help("this is an error of the compiler: please report it with the declaration of the mechanism");
         return None;
     }
     Some(output)
@@ -262,7 +276,7 @@ struct Extras<'a, 'g> {
 
 /// Returns the cyclic coordinates if Routh's equations are requested. The outer `None` means that there are
 /// none, or that the mechanism has constraints, with the error in `cx`.
-fn cyclic<'g>(
+fn requested_cyclic_coordinates<'g>(
     model: &Model<'g>,
     requests: Requests,
     joints: &[Joint<'g>],
@@ -271,7 +285,7 @@ fn cyclic<'g>(
     if !requests.routh && requests.equations != Printed::Routh {
         return Some(None);
     }
-    let (what, help) = match routh::cyclic(model, joints) {
+    let (what, help) = match routh::cyclic_coordinates(model, joints) {
         _ if !model.constraints.is_empty() => (
             "Routh's equations require a mechanism without constraints",
             "remove the option; `conserved` finds the momenta that the constraints conserve",
@@ -283,7 +297,7 @@ fn cyclic<'g>(
         ),
         found => return Some(Some(found)),
     };
-    cx.error(model.place.clone(), what).help(help);
+    cx.report_error(model.place.clone(), what).add_help(help);
     None
 }
 
@@ -294,8 +308,9 @@ fn has_massless(model: &Model<'_>) -> bool {
 }
 
 impl<'g> Extras<'_, 'g> {
-    fn facts(&self, model: &Model<'g>, requests: Requests) -> Facts {
-        let [bodies, base] = self.identification.as_ref().map(Identification::counts).unwrap_or_default();
+    fn facts_of_model(&self, model: &Model<'g>, requests: Requests) -> Facts {
+        let [bodies, base] =
+            self.identification.as_ref().map(Identification::body_and_parameter_counts).unwrap_or_default();
         let entries = self.entries.clone().unwrap_or_default();
         let passive = model.passive.as_ref().map(|passive| passive.derivatives.len());
         let conserved = self.conserved.as_ref().map(Vec::len).unwrap_or_default();
@@ -305,14 +320,14 @@ impl<'g> Extras<'_, 'g> {
 }
 
 /// Returns row and column of the entries of the lower triangle that are not always zero, column by column.
-fn entries(mass: &crba::Matrix<'_>) -> Vec<(usize, usize)> {
+fn nonzero_mass_entries(mass: &crba::Matrix<'_>) -> Vec<(usize, usize)> {
     let n = mass.len();
     let all = (0..n).flat_map(|j| (j..n).map(move |i| (i, j)));
     all.filter(|(i, j)| !mass[*i][*j].is_zero()).collect()
 }
 
 /// Derives all functions with their programs.
-fn functions<'g>(
+fn derive_functions<'g>(
     (model, speeds): (&Model<'g>, Option<&Rc<InSpeeds<'g>>>),
     requests: Requests,
     passes: Passes,
@@ -325,35 +340,40 @@ fn functions<'g>(
         None => passive::with_given_forces(model, requests.derivatives),
     };
     let model = speeds.map_or(given.as_ref().unwrap_or(model), |speeds| &speeds.model);
-    let facts = extras.facts(model, requests);
+    let facts = extras.facts_of_model(model, requests);
     let passes = Passes { free_parameters: specialisation == Specialisation::ByParameters, ..passes };
     let derivation = Derivation::new(model, joints, speeds, passes, specialisation, &facts);
     let functions = derivation.derive(catalogue::before_outputs(&facts), Vec::new());
-    let functions = derivation.derive(outputs::declared(model, &facts), functions);
+    let functions = derivation.derive(outputs::declared_output_functions(model, &facts), functions);
     let by_variants = facts.requests.derivatives && speeds.is_none();
-    let variants = if by_variants { derivatives::variants(model, passes) } else { Vec::new() };
+    let variants = if by_variants { derivatives::model_variants(model, passes) } else { Vec::new() };
     let derivatives = Derivatives::new(model, &variants, passes, specialisation);
     // The structure of the derivatives of a large mechanism is known only at this point.
-    let calls = derivatives.as_ref().is_some_and(Derivatives::calls);
+    let calls = derivatives.as_ref().is_some_and(Derivatives::calls_other_functions);
     let calls_linear = derivatives.as_ref().is_some_and(Derivatives::calls_linear);
     let facts = Facts { calls, calls_linear, ..facts.clone() };
     let derivation = derivation.with_option_data(&facts, extras, derivatives.as_ref());
     let mut functions = derivation.derive(catalogue::after_outputs(&facts), functions);
-    finish(&mut functions);
+    finish_lowering(&mut functions, requests.reproducible);
     functions
 }
 
-/// Applies the last passes of lowering, which consider whole programs.
-fn finish(functions: &mut [Function]) {
+/// Applies the last passes of lowering, which consider whole programs. In reproducible arithmetic, a program
+/// computes the same bits as its variant with lanes.
+fn finish_lowering(functions: &mut [Function], reproducible: bool) {
     for f in functions {
-        pipeline::begin(&f.name);
+        pipeline::begin_function(&f.name);
         f.program = std::mem::take(&mut f.program).run_passes(pipeline::FINISH);
+        if let Some(simd) = f.program.simd.take_if(|_| reproducible) {
+            let program = simd.without_lanes().run_passes(&[pipeline::SCHEDULE]);
+            f.program = Program { simd: Some(simd), ..program };
+        }
     }
 }
 
 /// Returns the equations of motion as plain text, one line per equation. The text is empty if the equations
 /// are too long to be readable.
-pub fn equations(model: &Model<'_>) -> String {
+pub fn equations_as_text(model: &Model<'_>) -> String {
     written_alone(model).plain
 }
 
@@ -365,13 +385,13 @@ pub fn equations_latex(model: &Model<'_>) -> String {
 fn written_alone(model: &Model<'_>) -> Written {
     let speeds = InSpeeds::new(model);
     let model = speeds.as_ref().map_or(model, |speeds| &speeds.native);
-    let joints = kinematics::joints(model);
-    written((model, speeds.as_ref()), &joints, &crba::mass_matrix(model, &joints))
+    let joints = kinematics::joints_of_model(model);
+    written_equations((model, speeds.as_ref()), &joints, &crba::mass_matrix(model, &joints))
 }
 
 /// Returns the requested form of the equations of motion. Readable equations are empty if they would be too
 /// long; other forms return `None` with the error in `cx`.
-fn printed<'g>(
+fn printed_equations<'g>(
     (model, speeds): (&Model<'g>, Option<&InSpeeds<'g>>),
     joints: &[Joint<'g>],
     mass: &crba::Matrix<'g>,
@@ -379,11 +399,11 @@ fn printed<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Written> {
     let mut refuse = |what: &str, help: &str| {
-        cx.error(model.place.clone(), what.to_string()).help(help);
+        cx.report_error(model.place.clone(), what.to_string()).add_help(help);
         None
     };
     match printed {
-        Printed::Readable => Some(written((model, speeds), joints, mass)),
+        Printed::Readable => Some(written_equations((model, speeds), joints, mass)),
         Printed::Structure => Some(Written::default()),
         Printed::Kane if model.constraints.iter().any(|c| !c.friction.is_empty()) => refuse(
             "the equations of a slipping contact contain its normal force, which is a multiplier",
@@ -391,7 +411,7 @@ fn printed<'g>(
         ),
         Printed::Kane if !model.constraints.is_empty() => {
             let named = speeds.map_or(model, |speeds| &speeds.model);
-            match kane::kane(model, joints, speeds) {
+            match kane::kane_equations(model, joints, speeds) {
                 Ok(found) => Some(kane::written_kane(named, &found)),
                 Err(kane::KaneFailure::Choice) => refuse(
                     "no velocities of this mechanism are determined by the others through its constraints in \
@@ -409,7 +429,7 @@ fn printed<'g>(
         Printed::Lagrange | Printed::Kane => {
             let equations = equations::derive(model, joints, mass, speeds, &Limits::ASKED);
             let named = speeds.map_or(model, |speeds| &speeds.model);
-            equations.map(|e| equations::written(named, &e)).or_else(|| {
+            equations.map(|e| equations::format_equations(named, &e)).or_else(|| {
                 refuse(
                     "the equations of this mechanism have thousands of terms, or more symbols and functions \
                      than are expanded",
@@ -419,7 +439,7 @@ fn printed<'g>(
             })
         }
         Printed::Routh => {
-            let reduced = cyclic.and_then(|cyclic| reduced::reduced(model, joints, mass, cyclic));
+            let reduced = cyclic.and_then(|cyclic| reduced::routh_equations(model, joints, mass, cyclic));
             reduced.map(|r| reduced::written_reduced(model, &r)).or_else(|| {
                 refuse(
                     "Routh's equations of this mechanism are too long: more than three cyclic coordinates \
@@ -440,7 +460,7 @@ fn printed<'g>(
              generates the functions in speeds as well",
         ),
         Printed::Hamilton => {
-            let canonical = equations::canonical(model, joints, mass);
+            let canonical = equations::canonical_equations(model, joints, mass);
             canonical.map(|c| equations::written_canonical(model, &c)).or_else(|| {
                 refuse(
                     "Hamilton's equations of this mechanism are too long: more than three velocities are \
@@ -463,13 +483,13 @@ fn linear_equations<'g>(
 ) -> Option<Vec<(String, Written)>> {
     let mut all = Vec::new();
     for at in &model.equilibria {
-        let found = linear::linear(model, joints, mass, at, cx);
+        let found = linear::derive_linear_equations(model, joints, mass, at, cx);
         all.extend(found.map(|found| (at.name.clone(), linear::written_linear(model, at, &found))));
     }
     (all.len() == model.equilibria.len()).then_some(all)
 }
 
-fn written<'g>(
+fn written_equations<'g>(
     (model, speeds): (&Model<'g>, Option<&InSpeeds<'g>>),
     joints: &[Joint<'g>],
     mass: &crba::Matrix<'g>,
@@ -479,27 +499,31 @@ fn written<'g>(
     let named = speeds.map_or(model, |speeds| &speeds.model);
     let inertia_equations =
         || equations::derive_inertia(model, joints, mass, &limits).filter(|_| speeds.is_none());
-    equations.or_else(inertia_equations).map_or_else(Written::default, |e| equations::written(named, &e))
+    equations
+        .or_else(inertia_equations)
+        .map_or_else(Written::default, |e| equations::format_equations(named, &e))
 }
 
 /// Lowers the outputs of one step of the recursion from link to link.
-fn part(outputs: &[Expr<'_>]) -> Program {
+fn lower_recursion_step(outputs: &[Expr<'_>]) -> Program {
     lower(outputs).run_passes(pipeline::PART)
 }
 
 fn link_steps<'g>(model: &Model<'g>, joint: &Joint<'g>) -> LinkSteps {
-    let v = mechanics::velocities(model);
-    let a = mechanics::accelerations(model);
+    let v = mechanics::velocity_symbols(model);
+    let a = mechanics::acceleration_symbols(model);
     let columns: Vec<Expr<'g>> =
-        frames::jacobian_columns(model, joint).iter().flat_map(frames::flat).collect();
+        frames::jacobian_columns(model, joint).iter().flat_map(frames::spatial_components).collect();
     LinkSteps {
         parent: joint.parent.map(|p| p.0),
         velocities: joint.dofs.iter().map(|d| d.index).collect(),
         driven: joint.drift.is_some(),
-        placement: part(&frames::link_placement(model, joint).flat()),
-        twist: part(&frames::flat(&frames::link_twist(model, joint, &v))),
-        acceleration: part(&frames::flat(&frames::link_acceleration(model, joint, &v, &a))),
-        columns: part(&columns),
+        placement: lower_recursion_step(&frames::link_placement(model, joint).rotation_and_position()),
+        twist: lower_recursion_step(&frames::spatial_components(&frames::link_twist(model, joint, &v))),
+        acceleration: lower_recursion_step(&frames::spatial_components(&frames::link_acceleration(
+            model, joint, &v, &a,
+        ))),
+        columns: lower_recursion_step(&columns),
     }
 }
 
@@ -508,8 +532,10 @@ fn frame_steps<'g>(model: &Model<'g>, frame: &crate::mechanism::NamedFrame<'g>) 
         name: frame.name.clone(),
         link: frame.link.map(|l| l.0),
         is_link: frame.pose.rotation.is_identity() && frame.pose.translation.is_zero(),
-        placement: part(&frames::frame_placement(model, frame).flat()),
-        twist: part(&frames::flat(&frames::frame_twist(model, frame))),
-        acceleration: part(&frames::flat(&frames::frame_acceleration(model, frame))),
+        placement: lower_recursion_step(&frames::frame_placement(model, frame).rotation_and_position()),
+        twist: lower_recursion_step(&frames::spatial_components(&frames::frame_twist(model, frame))),
+        acceleration: lower_recursion_step(&frames::spatial_components(&frames::frame_acceleration(
+            model, frame,
+        ))),
     }
 }

@@ -18,7 +18,7 @@ pub struct Place {
 
 impl Place {
     /// Returns the range from the start of `self` to the end of `end`.
-    pub fn join(&self, end: &Place) -> Place {
+    pub fn extend_to(&self, end: &Place) -> Place {
         Place { end: end.end, ..self.clone() }
     }
 }
@@ -56,7 +56,7 @@ impl Diagnostic {
     }
 
     /// Adds a note: related information on the error.
-    pub fn note(&mut self, text: impl Into<String>) -> &mut Diagnostic {
+    pub fn add_note(&mut self, text: impl Into<String>) -> &mut Diagnostic {
         self.notes.push(text.into());
         self
     }
@@ -67,31 +67,31 @@ impl Diagnostic {
     }
 
     /// Adds a help line, which says how to correct the error.
-    pub fn help(&mut self, text: impl Into<String>) -> &mut Diagnostic {
+    pub fn add_help(&mut self, text: impl Into<String>) -> &mut Diagnostic {
         self.help.push(text.into());
         self
     }
 
     /// Adds "did you mean" for the candidate nearest to `name`. Without a near candidate, adds the list of
     /// candidates if there are at most eight.
-    pub fn suggest<'a>(
+    pub fn suggest_name<'a>(
         &mut self,
         name: &str,
         candidates: impl IntoIterator<Item = &'a str>,
     ) -> &mut Diagnostic {
         let candidates: Vec<&str> = candidates.into_iter().collect();
-        if let Some(best) = nearest(name, &candidates) {
-            return self.help(format!("did you mean `{best}`?"));
+        if let Some(best) = nearest_candidate(name, &candidates) {
+            return self.add_help(format!("did you mean `{best}`?"));
         }
         if !candidates.is_empty() && candidates.len() <= 8 {
             let list: Vec<String> = candidates.iter().map(|c| format!("`{c}`")).collect();
-            return self.help(format!("expected {}", one_of(&list)));
+            return self.add_help(format!("expected {}", one_of(&list)));
         }
         self
     }
 
     /// Returns the source position of the error.
-    pub fn place(&self) -> &Place {
+    pub fn source_position(&self) -> &Place {
         &self.place
     }
 
@@ -111,12 +111,12 @@ impl Diagnostic {
     }
 
     /// Returns a `compile_error!` at the tokens of the error.
-    pub fn tokens(&self) -> TokenStream {
-        compile_error(&self.place, &self.text())
+    pub fn compile_error_tokens(&self) -> TokenStream {
+        compile_error(&self.place, &self.complete_message())
     }
 
     /// Returns the complete text for the user: position in the imported file, message, notes and help.
-    pub fn text(&self) -> String {
+    pub fn complete_message(&self) -> String {
         let mut text = match &self.place.file {
             Some(at) => format!("{}:{}:{}: {}", at.file, at.line, at.column, self.message),
             None => self.message.clone(),
@@ -153,7 +153,7 @@ impl Diagnostics {
     }
 
     /// Creates a list that is never printed. Callers use it to test whether something is an error.
-    pub fn unread() -> Diagnostics {
+    pub fn discarded_diagnostics() -> Diagnostics {
         Diagnostics { unread: true, ..Diagnostics::default() }
     }
 
@@ -169,19 +169,19 @@ impl Diagnostics {
 
     /// Reports an error and returns it for notes and help. The message is in lower case without a full stop,
     /// with the user's identifiers in backticks.
-    pub fn error(&mut self, place: impl Into<Place>, message: impl Into<String>) -> &mut Diagnostic {
+    pub fn report_error(&mut self, place: impl Into<Place>, message: impl Into<String>) -> &mut Diagnostic {
         self.add(Diagnostic::new(place, message));
         self.errors.last_mut().unwrap_or_else(|| unreachable!())
     }
 
     /// Reports the errors of a [`syn::Error`], with the help of [`syn_error`].
-    pub fn syn(&mut self, error: syn::Error) {
+    pub fn report_syn_error(&mut self, error: syn::Error) {
         for one in error {
             let text = one.to_string();
             let (message, help) = text.split_once(HELP).unwrap_or((&text, ""));
-            let diagnostic = self.error(one.span(), message);
+            let diagnostic = self.report_error(one.span(), message);
             if !help.is_empty() {
-                diagnostic.help(help);
+                diagnostic.add_help(help);
             }
         }
     }
@@ -192,7 +192,7 @@ impl Diagnostics {
     }
 
     /// Moves all errors of another list to the end of this list.
-    pub fn append(&mut self, mut other: Diagnostics) {
+    pub fn append_errors(&mut self, mut other: Diagnostics) {
         self.errors.append(&mut other.errors);
     }
 
@@ -210,7 +210,7 @@ impl Diagnostics {
 
     /// Returns the errors in order. Of errors that differ only in the index of a list element, only the first
     /// is returned.
-    pub fn distinct(&self) -> impl Iterator<Item = &Diagnostic> {
+    pub fn distinct_errors(&self) -> impl Iterator<Item = &Diagnostic> {
         let mut said = std::collections::BTreeSet::new();
         self.errors
             .iter()
@@ -233,12 +233,12 @@ impl Diagnostics {
 
     /// Returns the complete texts of the errors in order.
     pub fn messages(&self) -> Vec<String> {
-        self.distinct().map(Diagnostic::text).collect()
+        self.distinct_errors().map(Diagnostic::complete_message).collect()
     }
 
     /// Returns one `compile_error!` per error, at its tokens.
     pub fn into_tokens(self) -> TokenStream {
-        self.distinct().flat_map(Diagnostic::tokens).collect()
+        self.distinct_errors().flat_map(Diagnostic::compile_error_tokens).collect()
     }
 }
 
@@ -256,15 +256,15 @@ fn compile_error(place: &Place, message: &str) -> TokenStream {
 
 /// Joins the items as `a`, `a or b`, `a, b or c`.
 pub fn one_of(list: &[String]) -> String {
-    joined(list, "or")
+    join_with_word(list, "or")
 }
 
 /// Joins the items as `a`, `a and b`, `a, b and c`.
 pub fn all_of(list: &[String]) -> String {
-    joined(list, "and")
+    join_with_word(list, "and")
 }
 
-fn joined(list: &[String], word: &str) -> String {
+fn join_with_word(list: &[String], word: &str) -> String {
     match list {
         [] => String::new(),
         [one] => one.clone(),
@@ -276,7 +276,7 @@ fn joined(list: &[String], word: &str) -> String {
 /// typing error. Names that differ only in case have distance zero, and at least one character must remain
 /// unchanged. Without a near candidate, returns the only candidate that contains `name` as a word:
 /// `elbow_joint` for `elbow`.
-pub fn nearest<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
+pub fn nearest_candidate<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
     let length = name.chars().count();
     let limit = (length / 3).clamp(1, 3);
     let mut longer =
@@ -320,16 +320,16 @@ mod tests {
 
     #[test]
     fn a_slip_finds_its_name_and_a_stranger_does_not() {
-        assert_eq!(nearest("Sleve", &["Pin", "Sleeve", "Slot"]), Some("Sleeve"));
-        assert_eq!(nearest("cart_mas", &["cart_mass", "pole_mass"]), Some("cart_mass"));
-        assert_eq!(nearest("abuot", &["about", "along"]), Some("about"));
-        assert_eq!(nearest("pin", &["Pin", "Sleeve"]), Some("Pin"));
-        assert_eq!(nearest("spaceship", &["Pin", "Sleeve"]), None);
-        assert_eq!(nearest("m1", &["m2", "M1"]), Some("M1"));
-        assert_eq!(nearest("Z", &["x", "y", "z"]), Some("z"));
-        assert_eq!(nearest("w", &["x", "y", "z"]), None);
-        assert_eq!(nearest("j", &["j1", "j2"]), Some("j1"));
-        assert_eq!(nearest("elbow", &["shoulder_joint", "elbow_joint"]), Some("elbow_joint"));
-        assert_eq!(nearest("joint", &["shoulder_joint", "elbow_joint"]), None);
+        assert_eq!(nearest_candidate("Sleve", &["Pin", "Sleeve", "Slot"]), Some("Sleeve"));
+        assert_eq!(nearest_candidate("cart_mas", &["cart_mass", "pole_mass"]), Some("cart_mass"));
+        assert_eq!(nearest_candidate("abuot", &["about", "along"]), Some("about"));
+        assert_eq!(nearest_candidate("pin", &["Pin", "Sleeve"]), Some("Pin"));
+        assert_eq!(nearest_candidate("spaceship", &["Pin", "Sleeve"]), None);
+        assert_eq!(nearest_candidate("m1", &["m2", "M1"]), Some("M1"));
+        assert_eq!(nearest_candidate("Z", &["x", "y", "z"]), Some("z"));
+        assert_eq!(nearest_candidate("w", &["x", "y", "z"]), None);
+        assert_eq!(nearest_candidate("j", &["j1", "j2"]), Some("j1"));
+        assert_eq!(nearest_candidate("elbow", &["shoulder_joint", "elbow_joint"]), Some("elbow_joint"));
+        assert_eq!(nearest_candidate("joint", &["shoulder_joint", "elbow_joint"]), None);
     }
 }

@@ -32,9 +32,9 @@ use source::can_be_a_function;
 use std::path::Path;
 use syntax::{Description, Mechanism};
 
-pub use declarations::{DeclaredStruct, declarations};
-pub use derive::{derive, derive_with, equations, equations_latex};
-pub use source::{Source, read};
+pub use declarations::{DeclaredStruct, mechanism_declarations};
+pub use derive::{derive, derive_with, equations_as_text, equations_latex};
+pub use source::{Source, read_source};
 pub use syntax::second_definition;
 
 /// Compiles `#[mechanism(arguments)] item` to the generated code. Each error is reported as one
@@ -43,8 +43,8 @@ pub use syntax::second_definition;
 pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
     let mut cx = Diagnostics::new();
     // rustc already reports missing and wrong commas of the struct.
-    let item = syntax::separate(&item).map_or(item, |(separated, _)| separated);
-    let Some(source) = read(arguments, item, folder, &mut cx) else {
+    let item = syntax::insert_missing_commas(&item).map_or(item, |(separated, _)| separated);
+    let Some(source) = read_source(arguments, item, folder, &mut cx) else {
         return Emitted { tokens: cx.into_tokens(), text: String::new() };
     };
     let graph = Graph::new();
@@ -55,7 +55,7 @@ pub fn expand(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitt
     // If an imported file could not be read, even the sizes of the mechanism are unknown. An interface with
     // guessed sizes would only cause errors that follow from the first one.
     if !source.imported {
-        return emit_error_type(&source, cx.distinct().map(Diagnostic::tokens));
+        return emit_error_type(&source, cx.distinct_errors().map(Diagnostic::compile_error_tokens));
     }
     let mut emitted = source.emit_failed();
     emitted.tokens.extend(cx.into_tokens());
@@ -76,17 +76,17 @@ fn emit_error_type(source: &Source, mut errors: impl Iterator<Item = TokenStream
 /// struct's grammar.
 pub fn expand_below_a_derive(arguments: TokenStream, item: TokenStream, folder: &Path) -> Emitted {
     let mut cx = Diagnostics::new();
-    let Some(source) = read(arguments, item, folder, &mut cx) else {
+    let Some(source) = read_source(arguments, item, folder, &mut cx) else {
         return Emitted { tokens: cx.into_tokens(), text: String::new() };
     };
     let error = derive_above(proc_macro2::Span::call_site());
-    emit_error_type(&source, [error.tokens(), cx.into_tokens()].into_iter())
+    emit_error_type(&source, [error.compile_error_tokens(), cx.into_tokens()].into_iter())
 }
 
 /// Returns the error for a `#[derive(…)]` above the attribute; `attribute` is the span of `#[mechanism]`.
 pub fn derive_above(attribute: proc_macro2::Span) -> Diagnostic {
     let mut error = Diagnostic::new(attribute, "`#[derive(…)]` is above `#[mechanism]`");
-    error.help("write it below, where it sees the struct without the elements");
+    error.add_help("write it below, where it sees the struct without the elements");
     error
 }
 
@@ -98,11 +98,15 @@ pub fn export_c(
     cx: &mut Diagnostics,
 ) -> Option<export::c::Files> {
     let graph = Graph::new();
-    let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
+    // Reproducible programs without lanes compute the same bits as those with lanes.
+    let reproducible = source.mechanism.requests.reproducible;
+    let passes = passes::Passes { lanes: reproducible, ..passes::Passes::default() };
     let (model, output) = compile_with(source, &graph, passes, cx)?;
     let tables = source.mechanism.shell.table_names();
-    let options = &export::c::Options { left_out: rust_only(source), ..options.clone() };
-    export::c::write(&model, &output, &tables, options).map_err(|unfit| report_unfit(&model, unfit, cx)).ok()
+    let options = &export::c::Options { left_out: rust_only(source), reproducible, ..options.clone() };
+    export::c::export_c_source(&model, &output, &tables, options)
+        .map_err(|unfit| report_unfit(&model, unfit, cx))
+        .ok()
 }
 
 /// Compiles a tree mechanism to kernels in CUDA, and to functions that launch them. Returns `None` with the
@@ -116,7 +120,7 @@ pub fn export_cuda(
     let (model, output) = compile_for_registers(source, &graph, cx)?;
     let tables = source.mechanism.shell.table_names();
     let options = &export::c::Options { left_out: rust_only(source), ..options.clone() };
-    export::cuda::write(&model, &output, &tables, options)
+    export::cuda::export_cuda_kernels(&model, &output, &tables, options)
         .map_err(|unfit| report_unfit(&model, unfit, cx))
         .ok()
 }
@@ -129,7 +133,7 @@ pub fn export_wgsl(source: &Source, prefix: &str, cx: &mut Diagnostics) -> Optio
     let tables = source.mechanism.shell.table_names();
     let prefix = prefix.to_string();
     let options = export::c::Options { prefix, left_out: rust_only(source), ..Default::default() };
-    export::wgsl::write(&model, &output, &tables, &options)
+    export::wgsl::export_wgsl_shaders(&model, &output, &tables, &options)
         .map_err(|unfit| report_unfit(&model, unfit, cx))
         .ok()
 }
@@ -142,16 +146,17 @@ pub fn export_fmu(
     start: &export::fmu::StartValues,
     cx: &mut Diagnostics,
 ) -> Option<export::fmu::FmuFiles> {
+    reject_reproducible(source, "FMUs", cx)?;
     let graph = Graph::new();
     let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
     let (model, output) = compile_with(source, &graph, passes, cx)?;
-    if let Some((what, help)) = export::fmu::obstacle(&model, &output) {
-        cx.error(model.place.clone(), what).help(help);
+    if let Some((what, help)) = export::fmu::export_obstacle(&model, &output) {
+        cx.report_error(model.place.clone(), what).add_help(help);
         return None;
     }
     let tables = source.mechanism.shell.table_names();
     let options = export::c::Options { prefix: prefix.to_string(), ..Default::default() };
-    export::fmu::write(&model, &output, &tables, &options, start)
+    export::fmu::export_fmu(&model, &output, &tables, &options, start)
         .map_err(|unfit| report_unfit(&model, unfit, cx))
         .ok()
 }
@@ -163,15 +168,29 @@ fn compile_for_registers<'g>(
     graph: &'g Graph,
     cx: &mut Diagnostics,
 ) -> Option<(mechanism::Model<'g>, derive::Output)> {
+    reject_reproducible(source, "kernels", cx)?;
     let passes = passes::Passes { lanes: false, ..passes::Passes::default() };
     let (model, mut output) = compile_with(source, graph, passes, cx)?;
     check_tree(&model, &output, cx)?;
     for function in &mut output.functions {
-        let arrays = function.shape.arrays();
+        let arrays = function.shape.result_arrays();
         let lengths: Vec<usize> = arrays.iter().map(|(_, rows, columns)| rows * columns).collect();
         function.program = std::mem::take(&mut function.program).with_few_live_values(&lengths);
     }
     Some((model, output))
+}
+
+/// Rejects mechanisms with reproducible arithmetic, which the target, a plural, does not have.
+pub fn reject_reproducible(source: &Source, target: &str, cx: &mut Diagnostics) -> Option<()> {
+    if !source.mechanism.requests.reproducible {
+        return Some(());
+    }
+    let place = source.mechanism.description.name.place.clone();
+    cx.report_error(place, format!("{target} have no reproducible arithmetic")).add_help(
+        "remove `arithmetic = reproducible`, or compile the mechanism in Rust or with `linkwork export c`: \
+         both have the same bits on every machine",
+    );
+    None
 }
 
 /// Rejects mechanisms with constraints or contacts, whose functions need solvers.
@@ -182,12 +201,14 @@ fn check_tree(model: &mechanism::Model<'_>, output: &derive::Output, cx: &mut Di
         (_, false) => "contacts",
         _ => return Some(()),
     };
-    cx.error(model.place.clone(), format!("kernels support only trees, and this mechanism has {what}")).help(
-        format!(
-            "`linkwork export library` writes all functions with {what} for CPUs, `linkwork export c` those \
+    cx.report_error(
+        model.place.clone(),
+        format!("kernels support only trees, and this mechanism has {what}"),
+    )
+    .add_help(format!(
+        "`linkwork export library` writes all functions with {what} for CPUs, `linkwork export c` those \
              that need no solver; without the {what} there are kernels of all functions"
-        ),
-    );
+    ));
     None
 }
 
@@ -216,6 +237,10 @@ fn report_unfit(model: &mechanism::Model<'_>, unfit: export::c::Unfit, cx: &mut 
             "CasADi has no functions of single precision".to_string(),
             "export them in double precision".to_string(),
         ),
+        export::c::Unfit::Irreproducible(what) => (
+            format!("{what} has no reproducible arithmetic in C"),
+            "remove it or `arithmetic = reproducible`; functions in Rust are reproducible".to_string(),
+        ),
         export::c::Unfit::CasadiSpeeds => (
             "functions for CasADi have no declared speeds".to_string(),
             "they take configuration and velocity for a state whose rate is `(v, a)`, and speeds are not the \
@@ -231,13 +256,13 @@ fn report_unfit(model: &mechanism::Model<'_>, unfit: export::c::Unfit, cx: &mut 
             "please report this with the declaration of the mechanism".to_string(),
         ),
     };
-    cx.error(model.place.clone(), what).help(help);
+    cx.report_error(model.place.clone(), what).add_help(help);
 }
 
 /// Returns the messages of all errors in a mechanism; the list is empty if the mechanism is valid.
-pub fn check(arguments: TokenStream, item: TokenStream, folder: &Path) -> Vec<String> {
+pub fn check_mechanism(arguments: TokenStream, item: TokenStream, folder: &Path) -> Vec<String> {
     let mut cx = Diagnostics::new();
-    if let Some(source) = read(arguments, item, folder, &mut cx) {
+    if let Some(source) = read_source(arguments, item, folder, &mut cx) {
         compile(&source, &Graph::new(), &mut cx);
     }
     cx.messages()
@@ -267,11 +292,11 @@ pub fn compile_with<'g>(
     if graph.is_full() {
         // The other errors result from truncated expressions.
         *cx = Diagnostics::new();
-        cx.error(
+        cx.report_error(
             source.mechanism.description.name.place.clone(),
             "the equations of this mechanism would be too long",
         )
-        .help(
+        .add_help(
             "the generated code has no loops and would have millions of operations: remove options that \
              request derivatives, or use shorter chains of joints and fewer elements",
         );
@@ -289,7 +314,7 @@ fn model_and_functions<'g>(
     let model = resolve::build_model(&source.mechanism.description, graph, cx)?;
     let requests = source.mechanism.requests;
     let mut output = derive_with(&model, requests, passes, cx)?;
-    describe(&mut output, &source.mechanism);
+    insert_user_documentation(&mut output, &source.mechanism);
     let description = &source.mechanism.description;
     let good = check_rates(description, &output.functions, cx);
     let good =
@@ -307,7 +332,7 @@ pub fn check_rest(source: &Source, graph: &Graph, cx: &mut Diagnostics) {
 }
 
 /// Inserts the user's documentation of each output before the generated documentation of its functions.
-fn describe(output: &mut derive::Output, mechanism: &Mechanism) {
+fn insert_user_documentation(output: &mut derive::Output, mechanism: &Mechanism) {
     let outputs = &mechanism.description.outputs;
     let notes = mechanism.shell.notes.iter().filter(|(name, _)| outputs.iter().any(|o| o.name.text == *name));
     let prepared = output.prepared.iter_mut().flat_map(|prepared| &mut prepared.functions);
@@ -330,11 +355,11 @@ fn check_rates(description: &Description, functions: &[derive::Function], cx: &m
         if let Some(written) = written
             && rate.is_none_or(|f| f.arguments.contains(&catalogue::Argument::A))
         {
-            cx.error(
+            cx.report_error(
                 written.value.place.clone(),
                 "the rate of a state cannot depend on accelerations or reactions",
             )
-            .help("accelerations follow from the state: write the force that causes them instead");
+            .add_help("accelerations follow from the state: write the force that causes them instead");
         }
     }
     cx.len() == before
@@ -368,37 +393,41 @@ fn check_outputs(
     let is_taken = |name: &str| {
         let other = outputs.iter().map(|output| output.name.text.as_str());
         let mut in_lanes = other.filter(|_| facts.requests.batch).map(|other| format!("{other}_lanes"));
-        catalogue::has(name, facts) || in_lanes.any(|other| other == name)
+        catalogue::has_function(name, facts) || in_lanes.any(|other| other == name)
     };
     for name in outputs.iter().map(|output| &output.name) {
         let text = &name.text;
         if let Some(((suffix, what, _), other)) = find_origin_output(text) {
-            cx.error(name.place.clone(), format!("`{text}` {what} of the output `{other}`"))
-                .help(format!("each output has a function of its name and one of its name with `{suffix}`"));
+            cx.report_error(name.place.clone(), format!("`{text}` {what} of the output `{other}`")).add_help(
+                format!("each output has a function of its name and one of its name with `{suffix}`"),
+            );
         } else if description.inertias == syntax::Inertias::None && functions.iter().all(|f| f.name != *text)
         {
-            cx.error(
+            cx.report_error(
                 name.place.clone(),
                 format!("the output `{text}` names a reaction, which needs inertia"),
             )
-            .help("remove it, or `inertia = none`: without inertia there are no dynamics");
+            .add_help("remove it, or `inertia = none`: without inertia there are no dynamics");
         } else if !can_be_a_function(text) {
-            cx.error(name.place.clone(), format!("a function of a mechanism cannot be called `{text}`"))
-                .help(
-                    "keywords, names of its constants and names that begin with two underscores are reserved",
-                );
+            cx.report_error(
+                name.place.clone(),
+                format!("a function of a mechanism cannot be called `{text}`"),
+            )
+            .add_help(
+                "keywords, names of its constants and names that begin with two underscores are reserved",
+            );
         } else if is_taken(text) {
-            cx.error(
+            cx.report_error(
                 name.place.clone(),
                 format!("the name `{text}` is taken: every mechanism has this function"),
             )
-            .help("choose another name for the output");
+            .add_help("choose another name for the output");
         } else if let Some(other) = names_of_derivatives(text).find(|other| is_taken(other)) {
-            cx.error(
+            cx.report_error(
                 name.place.clone(),
                 format!("the name `{text}` is taken: every mechanism has `{other}`"),
             )
-            .help("choose another name for the output");
+            .add_help("choose another name for the output");
         }
     }
     cx.is_empty()

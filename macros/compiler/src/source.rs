@@ -20,7 +20,7 @@ pub struct Source {
 
 /// Parses the struct and imports its file. Returns `None` if the item is not a struct that can be analysed
 /// further.
-pub fn read(
+pub fn read_source(
     arguments: TokenStream,
     item: TokenStream,
     folder: &Path,
@@ -36,9 +36,9 @@ pub fn read(
         let path = folder.join(&options.path.text);
         let text = import::read_file(&path, options, cx);
         files.extend(text.is_some().then_some(path));
-        if let Some(imported) = text.and_then(|text| import::import(&text, folder, options, cx)) {
+        if let Some(imported) = text.and_then(|text| import::import_file(&text, folder, options, cx)) {
             files.extend(imported.files.iter().cloned());
-            merge(&mut mechanism, imported, cx);
+            merge_imported_file(&mut mechanism, imported, cx);
         }
     }
     files.extend(import::read_hulls(&mut mechanism.description, folder, cx));
@@ -47,8 +47,8 @@ pub fn read(
 
 /// Merges the mechanism of an imported file into the description. Elements of the file precede those of the
 /// struct.
-fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnostics) {
-    let Mechanism { description, shell, .. } = mechanism;
+fn merge_imported_file(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnostics) {
+    let Mechanism { description, shell, requests, .. } = mechanism;
     // All of it: a part that is not named here does not compile.
     let import::Imported {
         bodies,
@@ -59,6 +59,7 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
         gravity,
         limits,
         fields,
+        rates,
         is_ground,
         contacts,
         collisions,
@@ -69,31 +70,47 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
     } = imported;
     for field in &fields {
         if let Some(own) = description.parameters.iter().find(|own| own.text == field.ident) {
-            cx.error(own.place.clone(), format!("the name `{}` is used twice", own.text)).help(format!(
-                "the field for the inertial parameters of `{}` has this name: choose another",
-                field.of
-            ));
+            cx.report_error(own.place.clone(), format!("the name `{}` is used twice", own.text)).add_help(
+                format!("the field for values of `{}` in the file has this name: choose another", field.of),
+            );
         }
     }
     for field in &fields {
         let place = description.name.place.clone();
         let name_at_place = |text| syntax::Name { text, place: place.clone() };
-        description.parameters.extend(field.members().into_iter().map(name_at_place));
+        if let Some((text, rate)) = rates.iter().find(|(text, _)| *text == field.ident) {
+            description.states.push((name_at_place(text.clone()), description.parameters.len()));
+            description.outputs.push(syntax::Definition {
+                name: name_at_place(format!("{text}{}", syntax::RATE_OF_STATE)),
+                rank: syntax::Rank::Scalar,
+                value: rate.clone(),
+                resolved_in: None,
+            });
+        }
+        description.parameters.extend(field.member_accesses().into_iter().map(name_at_place));
         description.file_units.extend(&field.units);
     }
+    requests.file_parameters |= !rates.is_empty();
+    requests.sensitivities |= requests.derivatives && !rates.is_empty();
     shell.file_fields = fields;
     let own_bodies = std::mem::replace(&mut description.bodies, bodies);
     let own_joints = std::mem::replace(&mut description.joints, joints);
     for own in &own_bodies {
         if description.bodies.iter().any(|b| b.name.text == own.name.text) {
-            cx.error(own.name.place.clone(), format!("the file already has a link `{}`", own.name.text))
-                .help("choose another name, or use the link by its name without declaring it");
+            cx.report_error(
+                own.name.place.clone(),
+                format!("the file already has a link `{}`", own.name.text),
+            )
+            .add_help("choose another name, or use the link by its name without declaring it");
         }
     }
     for own in &own_joints {
         if description.joints.iter().any(|b| b.name.text == own.name.text) {
-            cx.error(own.name.place.clone(), format!("the file already has a joint `{}`", own.name.text))
-                .help("choose another name, or use the joint by its name without declaring it");
+            cx.report_error(
+                own.name.place.clone(),
+                format!("the file already has a joint `{}`", own.name.text),
+            )
+            .add_help("choose another name, or use the joint by its name without declaring it");
         }
     }
     description.bodies.extend(own_bodies);
@@ -111,30 +128,30 @@ fn merge(mechanism: &mut Mechanism, imported: import::Imported, cx: &mut Diagnos
     description.ground_frame = is_ground;
     if description.gravity.is_none() {
         let place = description.name.place.clone();
-        let default_gravity = || syntax::Expr::vector([0.0, 0.0, -9.81], &place);
+        let default_gravity = || syntax::Expr::vector_at([0.0, 0.0, -9.81], &place);
         description.gravity = Some(gravity.unwrap_or_else(default_gravity));
     }
 }
 
 impl Source {
     /// Returns the fields that are tables, with the number of variables of each.
-    pub fn tables(&self) -> Vec<(String, usize)> {
+    pub fn tables_with_variable_counts(&self) -> Vec<(String, usize)> {
         let tables = &self.mechanism.description.tables;
         tables.iter().map(|table| (table.name.text.clone(), table.variables)).collect()
     }
 
     /// Returns one line per joint with its type and the bodies that it connects.
-    pub fn structure(&self) -> Vec<String> {
+    pub fn joint_structure_lines(&self) -> Vec<String> {
         self.mechanism.description.joints.iter().map(structure_line).collect()
     }
 
     /// Emits the code of the compiled mechanism.
     pub fn emit(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Emitted {
-        emit::emit_mechanism(&self.interface(m, output), output)
+        emit::emit_mechanism(&self.public_interface(m, output), output)
     }
 
     /// Returns the public interface of the compiled mechanism.
-    fn interface(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Interface<'_> {
+    fn public_interface(&self, m: &mechanism::Model<'_>, output: &derive::Output) -> Interface<'_> {
         let bare = self.bare_interface();
         let base = output.constants.iter().find(|constant| constant.name == "BASE_PARAMETERS");
         let base = base.map_or(0, |constant| constant.list.len());
@@ -154,7 +171,7 @@ impl Source {
             contacts: emit::UnilateralContact::from_model(m),
             limits: emit::CoordinateLimits::from_model(m),
             figures: emit::ParameterCondition::from_model(m),
-            absent: emit::absent(&facts, &output.functions, &bare.outputs),
+            absent: emit::absent_items(&facts, &output.functions, &bare.outputs),
             facts,
             ..bare
         }
@@ -170,7 +187,7 @@ impl Source {
             velocities: Vec::new(),
             inputs: Vec::new(),
             frames: Vec::new(),
-            structure: self.structure(),
+            structure: self.joint_structure_lines(),
             constraints: Constraints::default(),
             contacts: Vec::new(),
             limits: Vec::new(),
@@ -190,50 +207,56 @@ impl Source {
 
     /// Emits the interface of a mechanism that failed to compile, as far as it can be guessed.
     pub(crate) fn emit_failed(&self) -> Emitted {
-        let outline = resolve::outline(&self.mechanism.description);
-        let facts = self.guess(&outline);
+        let outline = resolve::outline_of_description(&self.mechanism.description);
+        let facts = self.guess_facts(&outline);
         let mut functions = catalogue::before_outputs(&facts);
         for output in outline.outputs.iter().filter(|output| can_be_a_function(&output.name)) {
-            if output.has_contact_forces && !catalogue::has(&output.name, &facts) {
-                functions.push(catalogue::touched(&output.name, output.size, &facts));
+            if output.has_contact_forces && !catalogue::has_function(&output.name, &facts) {
+                functions.push(catalogue::contact_force_function(&output.name, output.size, &facts));
                 continue;
             }
-            for f in catalogue::output(&output.name, output.size, output.uses, &facts) {
+            for f in catalogue::output_functions(&output.name, output.size, output.uses, &facts) {
                 // The name of an output may be invalid.
-                if !catalogue::has(&f.name, &facts) && functions.iter().all(|known| known.name != f.name) {
+                if !catalogue::has_function(&f.name, &facts)
+                    && functions.iter().all(|known| known.name != f.name)
+                {
                     functions.push(f);
                 }
             }
         }
         functions.extend(catalogue::after_outputs(&facts));
-        let functions: Vec<derive::Function> = functions.into_iter().map(derive::Function::stub).collect();
+        let functions: Vec<derive::Function> =
+            functions.into_iter().map(derive::Function::empty_function).collect();
         let mut constants = Vec::new();
         if facts.requests.regressor {
-            constants.extend(derive::Constant::regressor(&outline.bodies, &vec![String::new(); facts.base]));
+            constants.extend(derive::Constant::regressor_name_constants(
+                &outline.bodies,
+                &vec![String::new(); facts.base],
+            ));
         }
         if facts.requests.sensitivities {
             let parameters: Vec<String> =
                 self.mechanism.description.parameters.iter().map(|p| p.text.clone()).collect();
-            constants.push(derive::Constant::parameters(&parameters));
+            constants.push(derive::Constant::parameter_name_constant(&parameters));
         }
         if facts.requests.conserved {
-            constants.push(derive::Constant::conserved(&vec![String::new(); facts.conserved]));
+            constants.push(derive::Constant::conserved_name_constant(&vec![String::new(); facts.conserved]));
         }
         if facts.requests.routh {
-            constants.push(derive::Constant::cyclic(&[]));
+            constants.push(derive::Constant::cyclic_coordinate_constant(&[]));
         }
         let equilibria = self.mechanism.description.equilibria.iter();
         let unknown: Vec<_> = equilibria.map(|e| (e.name.text.clone(), Default::default())).collect();
         constants.extend(derive::Constant::linear_equations(&unknown));
         if facts.requests.drawing {
-            constants.push(derive::Constant::drawing(&[]));
+            constants.push(derive::Constant::drawing_constant(&[]));
         }
         if facts.requests.packed {
-            constants.push(derive::Constant::entries(&facts.entries));
+            constants.push(derive::Constant::packed_entry_constant(&facts.entries));
         }
         let bare = self.bare_interface();
         let interface = Interface {
-            absent: emit::absent(&facts, &functions, &bare.outputs),
+            absent: emit::absent_items(&facts, &functions, &bare.outputs),
             configuration: outline.configuration,
             velocities: outline.velocities,
             inputs: outline.inputs,
@@ -241,15 +264,15 @@ impl Source {
             diagrams: outline
                 .diagrams
                 .into_iter()
-                .filter(|(name, _)| can_be_a_function(name) && !catalogue::has(name, &facts))
+                .filter(|(name, _)| can_be_a_function(name) && !catalogue::has_function(name, &facts))
                 .collect(),
             constraints: if outline.constrained {
-                Constraints::unknown(outline.slipping)
+                Constraints::unknown_constraints(outline.slipping)
             } else {
                 Constraints::default()
             },
             contacts: if facts.contacts.count > 0 {
-                vec![emit::UnilateralContact::unknown()]
+                vec![emit::UnilateralContact::unknown_contact()]
             } else {
                 Vec::new()
             },
@@ -261,7 +284,7 @@ impl Source {
 
     /// Guesses the properties of a mechanism that failed to compile on which the signatures of its functions
     /// depend.
-    fn guess(&self, outline: &resolve::Outline) -> Facts {
+    fn guess_facts(&self, outline: &resolve::Outline) -> Facts {
         let (description, requests) = (&self.mechanism.description, self.mechanism.requests);
         let kinematic = description.inertias == syntax::Inertias::None;
         let nv = outline.velocities.len();

@@ -1,16 +1,16 @@
 //! Tests of the attribute's options: valid and invalid arguments, and the resulting messages or code.
 
-use linkwork_compiler::{check, expand};
+use linkwork_compiler::{check_mechanism, expand};
 use std::path::Path;
 
 const CART: &str = "#[body(mass = 1)] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,";
 
-fn messages(arguments: &str, fields: &str) -> Vec<String> {
+fn compiler_messages(arguments: &str, fields: &str) -> Vec<String> {
     let item = format!("struct S {{ {fields} }}");
-    check(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""))
+    check_mechanism(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""))
 }
 
-fn code(arguments: &str, fields: &str) -> String {
+fn generated_code(arguments: &str, fields: &str) -> String {
     let item = format!("/// `::linkwork::`\npub struct S {{ {fields} }}");
     let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
     emitted.into_tokens().unwrap().to_string().replace(' ', "")
@@ -24,11 +24,11 @@ fn a_field_is_there_always() {
                 each case";
     let used = "#[body(mass = m)] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,";
     for attribute in ["cfg(unix)", "cfg_attr(unix, unit(kg))", "cfg_attr(unix, cfg(test))"] {
-        let told = messages("", &format!("#[{attribute}] m: f64, {used}"));
+        let told = compiler_messages("", &format!("#[{attribute}] m: f64, {used}"));
         assert_eq!(told, [format!("a parameter cannot be conditional\n\n{help}")], "{attribute}");
     }
-    assert_eq!(messages("", &format!("#[cfg_attr(unix, serde(skip))] m: f64, {used}")), NONE);
-    let told = messages("", &format!("#[cfg(unix)] {CART}"));
+    assert_eq!(compiler_messages("", &format!("#[cfg_attr(unix, serde(skip))] m: f64, {used}")), NONE);
+    let told = compiler_messages("", &format!("#[cfg(unix)] {CART}"));
     assert_eq!(told, [format!("an element cannot be conditional\n\n{help}")]);
 }
 
@@ -36,10 +36,10 @@ fn a_field_is_there_always() {
 fn the_runtime_may_have_another_name() {
     let fields = format!("{CART} #[output(r(cart / ground))] place: Vector,");
     let words = "derivatives, centroidal, regressor, packed, batch";
-    let usual = code(words, &fields);
+    let usual = generated_code(words, &fields);
     for (path, spelt) in [("lw", "uselwas"), ("::a::b", "use::a::bas"), ("crate::c", "usecrate::cas")] {
         for arguments in [format!("crate = {path}, {words}"), format!("{words}, crate = {path}")] {
-            let renamed = code(&arguments, &fields);
+            let renamed = generated_code(&arguments, &fields);
             assert!(renamed.contains(&format!("{spelt}__linkwork_of_S;")), "{path}");
             // Text of the user does not change.
             assert!(renamed.contains("\"`::linkwork::`\""));
@@ -62,14 +62,14 @@ fn the_runtime_may_have_another_name() {
     for fields in ["", "#[output(unknown)] mistake: Scalar,"] {
         assert!(!expand_generic_mechanism(fields).contains("::linkwork::"), "{fields}");
     }
-    assert!(messages("crate = 3", CART)[0].starts_with("expected a path for `crate`"));
-    assert!(messages("crate = ", CART)[0].starts_with("expected a path for `crate`"));
-    assert_eq!(messages("crate = a, crate = b", CART), ["`crate` is given twice"]);
+    assert!(compiler_messages("crate = 3", CART)[0].starts_with("expected a path for `crate`"));
+    assert!(compiler_messages("crate = ", CART)[0].starts_with("expected a path for `crate`"));
+    assert_eq!(compiler_messages("crate = a, crate = b", CART), ["`crate` is given twice"]);
 }
 
 #[test]
 fn doc_comments_stand_beside_what_they_describe() {
-    let text = code(
+    let text = generated_code(
         "",
         "/// Mass | of all.\n m: f64,
         /// A box.\n #[body(mass = m)] cart: Body,
@@ -99,21 +99,22 @@ fn functions_say_what_determines_the_motion() {
     let fields =
         "#[body(mass = 1, inertia = sphere(1, 1))] stone: Body, #[joint(ground -> stone)] flight: Free,
         #[output(stone)] diagram: FreeBody, #[output(reaction_force(flight))] load: Vector,";
-    let text = code("", fields);
+    let text = generated_code("", fields);
     for expected in [
         "thefree-bodydiagramof`stone`inthemotionthatthestatedetermines:nothingacts.",
         "Theoutput`load`,inthemotionthatthestatedetermines:",
     ] {
         assert!(text.contains(expected), "{expected}\n{text}");
     }
-    let text = code("", &format!("{fields} #[acts(on = stone, along = x)] push: Force,"));
+    let text = generated_code("", &format!("{fields} #[acts(on = stone, along = x)] push: Force,"));
     for expected in [
         "thefree-bodydiagramof`stone`inthemotionundertheinputs:`push`.",
         "Theoutput`load`,inthemotionundertheinputs:",
     ] {
         assert!(text.contains(expected), "{expected}\n{text}");
     }
-    let text = code("", &format!("{fields} #[contact(stone.sphere(1), ground.plane(z))] floor: Contact,"));
+    let text =
+        generated_code("", &format!("{fields} #[contact(stone.sphere(1), ground.plane(z))] floor: Contact,"));
     let expected = "Theoutput`load`,inthemotionthatthestatedetermineswithouttheforcesofunilateralcontacts:";
     assert!(text.contains(expected), "{expected}\n{text}");
 }
@@ -145,7 +146,7 @@ fn a_mechanism_of_a_file_is_a_constant() {
 #[test]
 fn what_has_no_equations_says_why() {
     let equations_doc = |arguments: &str, fields: &str| {
-        let text = code(arguments, fields);
+        let text = generated_code(arguments, fields);
         let before = text.split("pubconstEQUATIONS:&'staticstr=").next().unwrap().to_string();
         before.rsplit("#[doc=").next().unwrap().to_string()
     };
@@ -159,13 +160,28 @@ fn what_has_no_equations_says_why() {
             .contains("Empty:withoutinertiatherearenoequationsofmotion.")
     );
     assert!(!equations_doc("", CART).contains("Empty"));
-    assert!(code("equations = structure", CART).contains("Theoption`equations=structure`omitstheterms."));
+    assert!(
+        generated_code("equations = structure", CART)
+            .contains("Theoption`equations=structure`omitstheterms.")
+    );
 }
 
 /// After an error the set of frames is unknown, so every frame name is accepted.
 #[test]
 fn a_mistake_leaves_every_frame() {
     let any = "None=>::core::option::Option::Some(0)";
-    assert!(!code("", CART).contains(any));
-    assert!(code("", &format!("{CART} #[output(unknown)] mistake: Scalar,")).contains(any));
+    assert!(!generated_code("", CART).contains(any));
+    assert!(generated_code("", &format!("{CART} #[output(unknown)] mistake: Scalar,")).contains(any));
+}
+
+/// An input that only the rate of a state contains has no generalized force, even if a force depends on
+/// velocities.
+#[test]
+fn inputs_of_states_have_no_generalized_force() {
+    let fields = "lag: f64, command: Input, #[state(rate = (command - level) / lag)] level: State, \
+                  #[body(mass = 1, com = x)] arm: Body, #[joint(ground -> arm, about = z)] pin: Pin, \
+                  #[acts(on = cable(arm.at(x) / ground.at(2 * y), ground.cylinder(0.1, z)), value = -3 * \
+                  rate(cable(arm.at(x) / ground.at(2 * y), ground.cylinder(0.1, z))))] rope: Force,";
+    let emitted = generated_code("", fields);
+    assert!(!emitted.contains("compile_error"), "{emitted}");
 }

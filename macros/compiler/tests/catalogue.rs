@@ -9,21 +9,24 @@ use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Model;
-use linkwork_compiler::{compile, expand, read};
+use linkwork_compiler::{compile, expand, read_source};
 use mechanisms::MECHANISMS;
 use proc_macro2::TokenStream;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-fn tokens((attribute, name, fields): (&str, &str, &str)) -> (TokenStream, TokenStream) {
+fn mechanism_tokens((attribute, name, fields): (&str, &str, &str)) -> (TokenStream, TokenStream) {
     (attribute.parse().unwrap(), format!("pub struct {name} {{ {fields} }}").parse().unwrap())
 }
 
 /// Compiles a mechanism of the test and calls `f` with its model, facts and generated functions.
-fn compiled<T>(mechanism: (&str, &str, &str), f: impl FnOnce(&Model<'_>, Facts, Output) -> T) -> T {
-    let (attribute, item) = tokens(mechanism);
+fn with_compiled_mechanism<T>(
+    mechanism: (&str, &str, &str),
+    f: impl FnOnce(&Model<'_>, Facts, Output) -> T,
+) -> T {
+    let (attribute, item) = mechanism_tokens(mechanism);
     let mut cx = Diagnostics::new();
-    let source = read(attribute, item, Path::new(""), &mut cx).unwrap();
+    let source = read_source(attribute, item, Path::new(""), &mut cx).unwrap();
     let graph = Graph::new();
     let Some((model, output)) = compile(&source, &graph, &mut cx) else {
         panic!("{}: {:?}", mechanism.1, cx.messages());
@@ -33,10 +36,10 @@ fn compiled<T>(mechanism: (&str, &str, &str), f: impl FnOnce(&Model<'_>, Facts, 
 
 /// Returns the public functions in the inherent implementations of a type, except functions that only report
 /// that a feature is absent.
-fn public(text: &str, name: &str) -> BTreeSet<String> {
+fn public_function_names(text: &str, name: &str) -> BTreeSet<String> {
     let file = syn::parse_file(text).unwrap();
     let mut found = BTreeSet::new();
-    for item in generated::items(file) {
+    for item in generated::items_of_generated_code(file) {
         let syn::Item::Impl(item) = item else { continue };
         let own = matches!(&*item.self_ty, syn::Type::Path(path) if path.path.is_ident(name));
         let token_text = |tokens: &dyn quote::ToTokens| tokens.to_token_stream().to_string();
@@ -61,8 +64,9 @@ fn public(text: &str, name: &str) -> BTreeSet<String> {
 
 /// Returns the functions that the catalogue declares for a mechanism with these facts, and the functions of
 /// its outputs.
-fn expected(facts: &Facts, outputs: &[String]) -> BTreeSet<String> {
-    let rows = catalogue::rows().filter(|row| row.lacks(facts).is_none() && !row.is_hidden());
+fn expected_function_names(facts: &Facts, outputs: &[String]) -> BTreeSet<String> {
+    let rows =
+        catalogue::catalogue_rows().filter(|row| row.first_unmet_need(facts).is_none() && !row.is_hidden());
     let mut names: BTreeSet<String> = BTreeSet::new();
     for row in rows {
         names.insert(row.name.to_string());
@@ -86,16 +90,16 @@ fn expected(facts: &Facts, outputs: &[String]) -> BTreeSet<String> {
 fn every_function_is_a_row_and_every_row_a_function() {
     let mut seen = BTreeSet::new();
     for mechanism in MECHANISMS {
-        let (attribute, item) = tokens(mechanism);
+        let (attribute, item) = mechanism_tokens(mechanism);
         let text = expand(attribute, item, Path::new("")).text;
-        let (facts, outputs) = compiled(mechanism, |model, facts, _| {
+        let (facts, outputs) = with_compiled_mechanism(mechanism, |model, facts, _| {
             (facts, model.outputs.iter().map(|output| output.name.clone()).collect::<Vec<_>>())
         });
-        let names = public(&text, mechanism.1);
-        assert_eq!(names, expected(&facts, &outputs), "{}", mechanism.1);
+        let names = public_function_names(&text, mechanism.1);
+        assert_eq!(names, expected_function_names(&facts, &outputs), "{}", mechanism.1);
         seen.extend(names);
     }
-    let never: Vec<&str> = catalogue::rows()
+    let never: Vec<&str> = catalogue::catalogue_rows()
         .filter(|row| !row.is_hidden() && !seen.contains(row.name))
         .map(|row| row.name)
         .collect();
@@ -106,10 +110,12 @@ fn every_function_is_a_row_and_every_row_a_function() {
 #[test]
 fn what_is_not_there_has_a_reason() {
     for mechanism in MECHANISMS {
-        compiled(mechanism, |_, facts, _| {
-            let present: BTreeSet<&str> =
-                catalogue::rows().filter(|row| row.lacks(&facts).is_none()).map(|row| row.name).collect();
-            let absent: Vec<&str> = catalogue::absent(&facts)
+        with_compiled_mechanism(mechanism, |_, facts, _| {
+            let present: BTreeSet<&str> = catalogue::catalogue_rows()
+                .filter(|row| row.first_unmet_need(&facts).is_none())
+                .map(|row| row.name)
+                .collect();
+            let absent: Vec<&str> = catalogue::absent_functions(&facts)
                 .into_iter()
                 .flat_map(|(_, rows)| rows)
                 .map(|row| row.name)
@@ -118,7 +124,7 @@ fn what_is_not_there_has_a_reason() {
             assert_eq!(names.len(), absent.len(), "{}: {absent:?}", mechanism.1);
             assert!(present.is_disjoint(&names), "{}", mechanism.1);
             let all: BTreeSet<&str> =
-                catalogue::rows().filter(|row| !row.is_hidden()).map(|row| row.name).collect();
+                catalogue::catalogue_rows().filter(|row| !row.is_hidden()).map(|row| row.name).collect();
             let hidden: Vec<&&str> =
                 all.iter().filter(|n| !present.contains(*n) && !names.contains(*n)).collect();
             assert_eq!(hidden, Vec::<&&str>::new(), "{}", mechanism.1);
@@ -143,24 +149,24 @@ fn a_program_that_does_not_fit_is_found() {
     let limbs = trunk.to_string() + &(0..4).map(limb_declarations).collect::<String>();
     let alike = ("gravity = -9.81 * y", "Alike", limbs.as_str());
     for mechanism in MECHANISMS.into_iter().chain([alike]) {
-        compiled(mechanism, |_, _, mut output| {
-            assert_eq!(output.misfit(), None, "{}", mechanism.1);
+        with_compiled_mechanism(mechanism, |_, _, mut output| {
+            assert_eq!(output.misfitting_function(), None, "{}", mechanism.1);
             for k in 0..output.functions.len() {
                 let Some(last) = output.functions[k].program.outputs.pop() else { continue };
                 let name = output.functions[k].name.clone();
-                assert_eq!(output.misfit(), Some(name.as_str()), "{}", mechanism.1);
+                assert_eq!(output.misfitting_function(), Some(name.as_str()), "{}", mechanism.1);
                 output.functions[k].program.outputs.push(last);
                 let Some(lanes) = &mut output.functions[k].program.simd else { continue };
                 let last = lanes.outputs.pop().unwrap();
-                assert_eq!(output.misfit(), Some(name.as_str()), "lanes of {}", mechanism.1);
+                assert_eq!(output.misfitting_function(), Some(name.as_str()), "lanes of {}", mechanism.1);
                 output.functions[k].program.simd.as_mut().unwrap().outputs.push(last);
                 in_lanes += 1;
             }
             let last = output.links[0].columns.outputs.pop().unwrap();
-            assert!(output.misfit().is_some(), "{}", mechanism.1);
+            assert!(output.misfitting_function().is_some(), "{}", mechanism.1);
             output.links[0].columns.outputs.push(last);
             output.frames[0].twist.outputs.pop();
-            assert!(output.misfit().is_some(), "{}", mechanism.1);
+            assert!(output.misfitting_function().is_some(), "{}", mechanism.1);
         });
     }
     assert!(in_lanes > 0, "programs in lanes are looked at: {in_lanes}");

@@ -5,7 +5,7 @@ use std::path::Path;
 
 /// Returns the generated code of a floating body with arms of six joints, with these options of the
 /// attribute.
-fn code(words: &str, names: &[&str]) -> String {
+fn floating_body_code(words: &str, names: &[&str]) -> String {
     let mut item = "struct S {\n#[body(mass = 5, inertia = sphere(5, 0.2))] trunk: Body, \
                     #[joint(ground -> trunk)] base: Free,"
         .to_string();
@@ -26,7 +26,7 @@ fn code(words: &str, names: &[&str]) -> String {
 }
 
 /// Returns pairs of bodies: for debug builds, and for all other builds.
-fn bodies(code: &str) -> Vec<(&str, &str)> {
+fn debug_and_release_bodies(code: &str) -> Vec<(&str, &str)> {
     let both = code.split("#[cfg(debug_assertions)]").skip(1);
     both.map(|text| text.split_once("#[cfg(not(debug_assertions))]").expect("one of either")).collect()
 }
@@ -34,8 +34,8 @@ fn bodies(code: &str) -> Vec<(&str, &str)> {
 #[test]
 fn debug_builds_have_operators_for_calls() {
     for names in [&["one"][..], &["left", "right"]] {
-        let code = code("", names);
-        let bodies = bodies(&code);
+        let code = floating_body_code("", names);
+        let bodies = debug_and_release_bodies(&code);
         assert!(bodies.len() > 4, "{names:?}: inverse and forward dynamics, at least");
         for (debug, _) in &bodies {
             assert!(!debug.contains("mul_add(") && !debug.contains("mul_sub("), "{names:?}");
@@ -50,8 +50,8 @@ fn debug_builds_have_operators_for_calls() {
 /// too much stack.
 #[test]
 fn debug_builds_compute_one_state_after_another() {
-    let code = code("batch, derivatives", &["one"]);
-    let bodies = bodies(&code);
+    let code = floating_body_code("batch, derivatives", &["one"]);
+    let bodies = debug_and_release_bodies(&code);
     for call in [
         "|k| self.inverse_dynamics(",
         "|k| self.forward_dynamics(",
@@ -78,7 +78,7 @@ fn debug_builds_have_all_derivatives_of_each_state() {
     let emitted = expand("batch, second_derivatives".parse().unwrap(), item.parse().unwrap(), Path::new(""));
     let code = format!("{}{}", emitted.tokens, emitted.text);
     let call = "|k| self.generalized_forces_second_derivatives(&lane(q, k), &lane(v, k)";
-    let bodies = bodies(&code);
+    let bodies = debug_and_release_bodies(&code);
     let (debug, _) = bodies.iter().find(|(debug, _)| debug.contains(call)).expect(call);
     assert!(debug.contains("all[k].5") && !debug.contains("all[k].6"), "{debug}");
     let call = "|k| self.felt_derivatives(&lane(q, k), &lane(v, k), &lane(a, k))";

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// Returns the generated code of a chain of pins.
-fn chain(n: usize) -> String {
+fn chain_code(n: usize) -> String {
     let (mut item, mut parent) = ("struct Chain {".to_string(), "ground".to_string());
     for k in 1..=n {
         let axis = ["x", "y", "z"][k % 3];
@@ -25,7 +25,7 @@ fn chain(n: usize) -> String {
 
 #[test]
 fn a_long_chain_is_read_once() {
-    let (short, long) = (chain(16), chain(32));
+    let (short, long) = (chain_code(16), chain_code(32));
 
     // Jacobians of frames grow linearly with the number of links.
     let count_jacobians = |code: &str| code.matches("_columns(").count();

@@ -1,26 +1,26 @@
 //! Lists of elements: a mechanism with lists compiles to the same code as the mechanism with single elements.
 
-use linkwork_compiler::{check, expand};
+use linkwork_compiler::{check_mechanism, expand};
 use std::path::Path;
 
 /// Returns the code generated for a mechanism with these arguments and fields.
-fn code(arguments: &str, fields: &str) -> String {
+fn generated_code(arguments: &str, fields: &str) -> String {
     let item = format!("pub struct S {{ {fields} }}");
     let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
     emitted.into_tokens().unwrap().to_string()
 }
 
-fn messages(arguments: &str, fields: &str) -> Vec<String> {
+fn compiler_messages(arguments: &str, fields: &str) -> Vec<String> {
     let item = format!("struct S {{ {fields} }}");
-    check(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""))
+    check_mechanism(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""))
 }
 
 /// Checks that both mechanisms compile to the same code.
 fn assert_same_code(arguments: [&str; 2], fields: [&str; 2]) {
     for (arguments, fields) in arguments.iter().zip(fields) {
-        assert_eq!(messages(arguments, fields), [""; 0]);
+        assert_eq!(compiler_messages(arguments, fields), [""; 0]);
     }
-    assert_eq!(code(arguments[0], fields[0]), code(arguments[1], fields[1]));
+    assert_eq!(generated_code(arguments[0], fields[0]), generated_code(arguments[1], fields[1]));
 }
 
 #[test]
@@ -78,11 +78,11 @@ fn a_chain_leads_from_one_to_the_next() {
 #[test]
 fn lists_do_not_explode() {
     let many = "#[body(mass = 1)] a: [Body; 4096], #[body(mass = 1)] b: [Body; 1],";
-    assert_eq!(messages("", many), ["the lists of a mechanism have at most 4096 elements"]);
+    assert_eq!(compiler_messages("", many), ["the lists of a mechanism have at most 4096 elements"]);
     let long = "x + ".repeat(2000) + "x";
     let wide = format!("#[output({long})] wide: [Vector; 4000],");
-    assert_eq!(messages("", &wide)[0], "lists expand to at most 1000000 tokens");
+    assert_eq!(compiler_messages("", &wide)[0], "lists expand to at most 1000000 tokens");
     let deep =
         format!("#[body(mass = 1)] a: [Body; 2], #[output(mass(a[{}0]))] m: Scalar,", "0 + ".repeat(50_000));
-    assert!(messages("", &deep)[0].starts_with("expected an index into `a`"));
+    assert!(compiler_messages("", &deep)[0].starts_with("expected an index into `a`"));
 }

@@ -2,7 +2,7 @@
 //! correct expression. Each row of a table contains the source text, the first line of the message and a part
 //! of the help.
 
-use linkwork_compiler::check;
+use linkwork_compiler::check_mechanism;
 use std::path::Path;
 
 #[path = "mistakes/angles.rs"]
@@ -58,20 +58,20 @@ const ARM: &str = "#[body(mass = 1, com = -y, inertia = sphere(1, 0.1))] arm: Bo
 const CART: &str = "#[body(mass = 1)] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,";
 
 /// Returns the error messages of the compiler for a mechanism.
-fn messages(attribute: &str, fields: &str) -> Vec<String> {
+fn compiler_messages(attribute: &str, fields: &str) -> Vec<String> {
     let struct_ = format!("struct Machine {{ {fields} }}");
     match (attribute.parse(), struct_.parse()) {
-        (Ok(attribute), Ok(item)) => check(attribute, item, Path::new(env!("CARGO_TARGET_TMPDIR"))),
+        (Ok(attribute), Ok(item)) => check_mechanism(attribute, item, Path::new(env!("CARGO_TARGET_TMPDIR"))),
         _ => vec!["these are no tokens".to_string()],
     }
 }
 
 /// Checks that each row causes exactly the expected error.
-fn answers(setting: Setting, rows: &[Row]) {
+fn check_error_rows(setting: Setting, rows: &[Row]) {
     let mut wrong = Vec::new();
     for (said, message, help) in rows {
         let (attribute, fields) = setting(said);
-        let found = messages(&attribute, &fields);
+        let found = compiler_messages(&attribute, &fields);
         let good = match found.as_slice() {
             [one] => {
                 let (first, rest) = one.split_once('\n').unwrap_or((one, ""));
@@ -88,9 +88,9 @@ fn answers(setting: Setting, rows: &[Row]) {
 }
 
 /// Checks the number of errors of each row.
-fn counts(rows: &[(&str, &str, usize)]) {
+fn check_error_counts(rows: &[(&str, &str, usize)]) {
     for (attribute, fields, count) in rows {
-        let found = messages(attribute, fields);
+        let found = compiler_messages(attribute, fields);
         assert!(found.len() == *count, "{fields}\nexpected {count} errors, found\n{}", found.join("\n"));
     }
 }

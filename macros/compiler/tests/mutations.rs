@@ -6,7 +6,7 @@
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::{check_rest, read};
+use linkwork_compiler::{check_rest, read_source};
 use proc_macro2::{Group, TokenStream, TokenTree};
 use quote::ToTokens;
 use std::collections::BTreeMap;
@@ -32,7 +32,7 @@ struct Subject {
 }
 
 /// Reads the mechanisms of the gallery.
-fn gallery() -> Vec<Subject> {
+fn gallery_mechanisms() -> Vec<Subject> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/src");
     let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
@@ -53,14 +53,16 @@ fn gallery() -> Vec<Subject> {
             all.push(Subject { name, arguments, item: item.into_token_stream() });
         }
     }
-    all.retain(|subject| count(&subject.item) <= LARGEST && !subject.arguments.to_string().contains("urdf"));
+    all.retain(|subject| {
+        count_tokens(&subject.item) <= LARGEST && !subject.arguments.to_string().contains("urdf")
+    });
     all
 }
 
 /// Returns the number of tokens in a stream, including groups and their contents.
-fn count(tokens: &TokenStream) -> usize {
+fn count_tokens(tokens: &TokenStream) -> usize {
     let count_nested_tokens = |token: TokenTree| match token {
-        TokenTree::Group(group) => 1 + count(&group.stream()),
+        TokenTree::Group(group) => 1 + count_tokens(&group.stream()),
         _ => 1,
     };
     tokens.clone().into_iter().map(count_nested_tokens).sum()
@@ -94,17 +96,17 @@ enum Slip {
 const SLIPS: [Slip; 5] = [Slip::Lost, Slip::Doubled, Slip::Exchanged, Slip::Misspelt, Slip::Mistaken];
 
 /// Collects all tokens that are not groups.
-fn leaves(tokens: &TokenStream, found: &mut Vec<TokenTree>) {
+fn collect_leaf_tokens(tokens: &TokenStream, found: &mut Vec<TokenTree>) {
     for token in tokens.clone() {
         match &token {
-            TokenTree::Group(group) => leaves(&group.stream(), found),
+            TokenTree::Group(group) => collect_leaf_tokens(&group.stream(), found),
             _ => found.push(token),
         }
     }
 }
 
 /// Applies a mutation to the token with index `at`, counted in depth-first order.
-fn slip(
+fn mutate_token_at(
     tokens: TokenStream,
     at: &mut usize,
     slip_: Slip,
@@ -124,14 +126,14 @@ fn slip(
                     out.extend(rest.next());
                     out.push(token);
                 }
-                Slip::Misspelt => out.push(misspelt(token, random)),
+                Slip::Misspelt => out.push(misspell_token(token, random)),
                 Slip::Mistaken => out.push(others[random.index_below(others.len())].clone()),
             }
             continue;
         }
         match token {
             TokenTree::Group(group) => {
-                let inner = slip(group.stream(), at, slip_, others, random);
+                let inner = mutate_token_at(group.stream(), at, slip_, others, random);
                 out.push(Group::new(group.delimiter(), inner).into());
             }
             other => out.push(other),
@@ -140,7 +142,7 @@ fn slip(
     out.into_iter().collect()
 }
 
-fn misspelt(token: TokenTree, random: &mut Random) -> TokenTree {
+fn misspell_token(token: TokenTree, random: &mut Random) -> TokenTree {
     let text = token.to_string();
     let mut letters: Vec<char> = text.chars().collect();
     let at = random.index_below(letters.len());
@@ -157,9 +159,9 @@ fn misspelt(token: TokenTree, random: &mut Random) -> TokenTree {
 }
 
 /// Returns the messages of the parser and the model.
-fn messages(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
+fn parser_and_model_messages(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
     let mut cx = Diagnostics::new();
-    if let Some(source) = read(arguments.clone(), item, Path::new(""), &mut cx) {
+    if let Some(source) = read_source(arguments.clone(), item, Path::new(""), &mut cx) {
         match cx.is_empty() {
             true => drop(build_model(&source.mechanism.description, &Graph::new(), &mut cx)),
             false => check_rest(&source, &Graph::new(), &mut cx),
@@ -169,7 +171,7 @@ fn messages(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
 }
 
 /// Returns the first line of a message without its names: the class of the message.
-fn class(message: &str) -> String {
+fn message_class(message: &str) -> String {
     let first = message.lines().next().unwrap_or_default();
     first.split('`').step_by(2).collect::<Vec<_>>().join("`…`")
 }
@@ -178,24 +180,24 @@ fn class(message: &str) -> String {
 fn slips_of_the_hand_are_answered_in_few_words() {
     let number_from_environment = |name: &str| std::env::var(name).ok().and_then(|n| n.parse::<u64>().ok());
     let cases = number_from_environment("MUTATIONS").unwrap_or(CASES);
-    let gallery = gallery();
+    let gallery = gallery_mechanisms();
     assert!(gallery.len() > 40, "{} mechanisms", gallery.len());
     let mut random = Random(number_from_environment("SEED").unwrap_or(SEED));
     let mut wrong: BTreeMap<String, (usize, String)> = BTreeMap::new();
     for case in 0..cases {
         let subject = &gallery[random.index_below(gallery.len())];
         let mut others = Vec::new();
-        leaves(&subject.item, &mut others);
+        collect_leaf_tokens(&subject.item, &mut others);
         let kind = SLIPS[random.index_below(SLIPS.len())];
-        let mut at = random.index_below(count(&subject.item));
-        let item = slip(subject.item.clone(), &mut at, kind, &others, &mut random);
+        let mut at = random.index_below(count_tokens(&subject.item));
+        let item = mutate_token_at(subject.item.clone(), &mut at, kind, &others, &mut random);
         // rustc itself reports items that are no structs.
         if syn::parse2::<syn::ItemStruct>(item.clone()).is_err() {
             continue;
         }
         let text = item.to_string();
         let begun = Instant::now();
-        let run = std::panic::catch_unwind(|| messages(&subject.arguments, item));
+        let run = std::panic::catch_unwind(|| parser_and_model_messages(&subject.arguments, item));
         let mut blame = |what: String| {
             let example = format!("case {case}, {} {kind:?}: {text}", subject.name);
             wrong.entry(what).or_insert((0, example)).0 += 1;
@@ -210,7 +212,7 @@ fn slips_of_the_hand_are_answered_in_few_words() {
                     blame(format!("{} errors:\n{}", found.len(), found.join("\n")));
                 }
                 for message in found.iter().filter(|m| !m.contains("= help: ")) {
-                    blame(format!("no help: {}", class(message)));
+                    blame(format!("no help: {}", message_class(message)));
                 }
             }
         }
@@ -223,7 +225,7 @@ fn slips_of_the_hand_are_answered_in_few_words() {
 /// Returns the error messages of the parser alone, before the model is built.
 fn messages_of_grammar(arguments: &TokenStream, item: TokenStream) -> Vec<String> {
     let mut cx = Diagnostics::new();
-    read(arguments.clone(), item, Path::new(""), &mut cx);
+    read_source(arguments.clone(), item, Path::new(""), &mut cx);
     cx.messages()
 }
 
@@ -246,12 +248,12 @@ fn with_a_mistake(item: &TokenStream, at: usize) -> Option<TokenStream> {
 fn a_field_that_cannot_be_read_makes_no_other_wrong() {
     let mut wrong = Vec::new();
     let mut tried = 0;
-    for subject in gallery() {
+    for subject in gallery_mechanisms() {
         let fields = syn::parse2::<syn::ItemStruct>(subject.item.clone()).unwrap().fields.len();
         for item in (0..fields).filter_map(|at| with_a_mistake(&subject.item, at)) {
             tried += 1;
             let grammar = messages_of_grammar(&subject.arguments, item.clone());
-            let all = messages(&subject.arguments, item);
+            let all = parser_and_model_messages(&subject.arguments, item);
             if grammar.is_empty() || all.len() > grammar.len() {
                 wrong.push(format!("{}: {}", subject.name, all.join("\n  and ")));
             }
@@ -264,13 +266,13 @@ fn a_field_that_cannot_be_read_makes_no_other_wrong() {
 #[test]
 fn a_name_that_is_declared_otherwise_is_told_once() {
     let mut wrong = Vec::new();
-    for subject in gallery() {
+    for subject in gallery_mechanisms() {
         let item: syn::ItemStruct = syn::parse2(subject.item).unwrap();
         for at in 0..item.fields.len() {
             let mut other = item.clone();
             let field = other.fields.iter_mut().nth(at).unwrap();
             let name = field.ident.replace(syn::parse_str("declared_otherwise").unwrap()).unwrap();
-            let found = messages(&subject.arguments, other.into_token_stream());
+            let found = parser_and_model_messages(&subject.arguments, other.into_token_stream());
             if found.len() > 1 {
                 wrong.push(format!("{}, {name}: {}", subject.name, found.join("\n  and ")));
             }

@@ -1,10 +1,10 @@
 //! Names of outputs: an output cannot have the name of another function of the mechanism.
 
-use linkwork_compiler::{check, expand};
+use linkwork_compiler::{check_mechanism, expand};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-fn mechanism(name: &str) -> String {
+fn mechanism_text(name: &str) -> String {
     format!(
         "struct S {{
             #[particle(mass = 1)] ball: Particle,
@@ -16,7 +16,7 @@ fn mechanism(name: &str) -> String {
 }
 
 /// Returns the names of the functions in generated code.
-fn functions(code: &str) -> BTreeSet<String> {
+fn function_names(code: &str) -> BTreeSet<String> {
     let names = code.split("fn ").skip(1).map(|rest| {
         rest.chars().skip_while(|c| *c == ' ').take_while(|c| c.is_alphanumeric() || *c == '_').collect()
     });
@@ -26,32 +26,35 @@ fn functions(code: &str) -> BTreeSet<String> {
 #[test]
 fn names_of_functions_are_taken() {
     let empty_tokens = || "".parse().unwrap();
-    let mechanism_tokens = |name: &str| mechanism(name).parse().unwrap();
-    assert_eq!(check(empty_tokens(), mechanism_tokens("place"), Path::new("")), Vec::<String>::new());
+    let mechanism_tokens = |name: &str| mechanism_text(name).parse().unwrap();
+    assert_eq!(
+        check_mechanism(empty_tokens(), mechanism_tokens("place"), Path::new("")),
+        Vec::<String>::new()
+    );
     let emitted = expand(empty_tokens(), mechanism_tokens("place"), Path::new(""));
     let code = format!("{}{}", emitted.tokens, emitted.text);
     // Absent functions reserve no names, because they are visible only if no other function matches.
     let is_there = |part: &&str| !part.contains("::__private::absent::");
     let code: String = code.split("#[automatically_derived]").filter(is_there).collect();
-    let names = functions(&code);
+    let names = function_names(&code);
     assert!(names.contains("mass_matrix") && names.contains("place_jacobian"), "{names:?}");
     // Methods of the traits for frames and parameters are not functions of the mechanism.
     let by_name = ["placement", "twist", "acceleration", "jacobian"];
     let by_number = ["placement_of", "velocity_of", "acceleration_of", "jacobian_of"];
     let of_others = [&["place", "place_jacobian", "outputs"][..], &by_name, &by_number].concat();
     for name in names.iter().filter(|name| !of_others.contains(&name.as_str())) {
-        let messages = check(empty_tokens(), mechanism_tokens(name), Path::new(""));
+        let messages = check_mechanism(empty_tokens(), mechanism_tokens(name), Path::new(""));
         assert!(messages.iter().any(|m| m.contains("is taken")), "{name}: {messages:?}");
     }
     for name in ["linearize", "prepare", "joint_torque_regressor", "mass_matrix_lanes", "assemble_jacobian"] {
         assert_eq!(
-            check(empty_tokens(), mechanism_tokens(name), Path::new("")),
+            check_mechanism(empty_tokens(), mechanism_tokens(name), Path::new("")),
             Vec::<String>::new(),
             "{name}"
         );
     }
     // The Jacobian of such an output would have the name of another function.
-    assert!(!check(empty_tokens(), mechanism_tokens("frame"), Path::new("")).is_empty());
+    assert!(!check_mechanism(empty_tokens(), mechanism_tokens("frame"), Path::new("")).is_empty());
 }
 
 /// Passes of the program may divide constants with another sign, whose result is finite.

@@ -9,7 +9,7 @@ use std::path::Path;
 type Places = &'static [(&'static str, &'static str)];
 
 /// Fails with the files in which names are missing.
-fn check(names: &[String], places: Places) {
+fn check_names_on_pages(names: &[String], places: Places) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut missing = Vec::new();
     for (path, form) in places {
@@ -25,7 +25,7 @@ fn check(names: &[String], places: Places) {
 #[test]
 fn joints_are_listed() {
     let names: Vec<String> = JointKind::names().map(ToString::to_string).collect();
-    check(
+    check_names_on_pages(
         &names,
         &[
             ("runtime/guide/language.md", "| [`NAME`](crate::elements::NAME) |"),
@@ -45,9 +45,9 @@ fn joints_are_listed() {
 /// mechanisms of the oracle.
 #[test]
 fn elements_are_listed() {
-    let names: Vec<String> = ElementKind::names().map(ToString::to_string).collect();
+    let names: Vec<String> = ElementKind::element_names().map(ToString::to_string).collect();
     assert!(names.iter().all(|name| ElementKind::of_name(name).is_some()));
-    check(
+    check_names_on_pages(
         &names,
         &[
             ("runtime/guide/language.md", "[`NAME`](crate::elements::NAME)"),
@@ -57,13 +57,13 @@ fn elements_are_listed() {
     let forces = ForceKind::names().map(ToString::to_string);
     // These two are compared only with closed-form solutions.
     let forces: Vec<String> = forces.filter(|name| name != "Friction" && name != "Gravity").collect();
-    check(&forces, &[("macros/compiler/tests/oracle/features/source.rs", "\"NAME\"")]);
+    check_names_on_pages(&forces, &[("macros/compiler/tests/oracle/features/source.rs", "\"NAME\"")]);
 }
 
 /// Returns the spelling of an option, from the trait that reports its absence: `AsksForSecondDerivatives`
 /// becomes `second_derivatives`.
-fn written(word: Word) -> String {
-    let name = word.reason().trim_start_matches("AsksFor");
+fn option_spelling(word: Word) -> String {
+    let name = word.trait_for_missing_option().trim_start_matches("AsksFor");
     let snake_case_letter =
         |c: char| if c.is_uppercase() { format!("_{}", c.to_lowercase()) } else { c.to_string() };
     name.chars().map(snake_case_letter).collect::<String>().trim_start_matches('_').to_string()
@@ -71,8 +71,8 @@ fn written(word: Word) -> String {
 
 #[test]
 fn words_are_listed() {
-    let names: Vec<String> = Word::ALL.into_iter().map(written).collect();
-    check(
+    let names: Vec<String> = Word::ALL.into_iter().map(option_spelling).collect();
+    check_names_on_pages(
         &names,
         &[
             ("macros/src/lib.rs", "/// | `NAME` |"),
@@ -83,7 +83,7 @@ fn words_are_listed() {
     );
     // This option is rejected if no coordinate is cyclic.
     let any: Vec<String> = names.into_iter().filter(|name| name != "routh").collect();
-    check(
+    check_names_on_pages(
         &any,
         &[
             ("macros/compiler/tests/oracle/features/source.rs", "    \"NAME\","),
@@ -96,5 +96,5 @@ fn words_are_listed() {
 fn passes_are_listed() {
     let rows: Vec<String> =
         DRAFT.iter().chain(FINISH).map(|pass| format!("| `{}` | {} |", pass.name, pass.about)).collect();
-    check(&rows, &[("macros/compiler/README.md", "NAME")]);
+    check_names_on_pages(&rows, &[("macros/compiler/README.md", "NAME")]);
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// Returns the code generated for a chain of revolute joints, with derivatives.
-fn chain(pins: usize) -> String {
+fn chain_code(pins: usize) -> String {
     let mut item = "struct S {\n".to_string();
     let mut parent = "ground".to_string();
     for k in 0..pins {
@@ -24,21 +24,25 @@ fn chain(pins: usize) -> String {
 }
 
 /// Returns the identifiers in a text.
-fn names(text: &str) -> impl Iterator<Item = &str> {
+fn identifiers_in_text(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').filter(|name| !name.is_empty())
 }
 
 /// rustc searches all definitions of a crate for each unused variable.
 #[test]
 fn no_input_is_bound_that_nothing_reads() {
-    let code = chain(6);
+    let code = chain_code(6);
     let mut bound = 0;
     for function in code.split("fn ") {
         for line in function.lines().filter(|line| line.starts_with("let [")) {
             let pattern = line.split('=').next().unwrap();
-            for name in names(pattern).filter(|name| !matches!(*name, "let" | "_") && !name.starts_with("dv"))
+            for name in identifiers_in_text(pattern)
+                .filter(|name| !matches!(*name, "let" | "_") && !name.starts_with("dv"))
             {
-                assert!(names(function).filter(|other| *other == name).count() > 1, "{name} in\n{function}");
+                assert!(
+                    identifiers_in_text(function).filter(|other| *other == name).count() > 1,
+                    "{name} in\n{function}"
+                );
                 bound += 1;
             }
         }
@@ -53,7 +57,7 @@ fn a_long_function_is_written_once() {
     let head = "fn inverse_dynamics_derivatives(";
     let body =
         |code: &str| code.split(head).nth(1).and_then(|rest| rest.split("fn ").next()).map(str::to_string);
-    let (short, long) = (body(&chain(3)).unwrap(), body(&chain(18)).unwrap());
+    let (short, long) = (body(&chain_code(3)).unwrap(), body(&chain_code(18)).unwrap());
     assert!(long.contains("self.inverse_dynamics_derivatives_into("), "{long}");
     assert!(!short.contains("self.inverse_dynamics_derivatives_into("), "{short}");
 }

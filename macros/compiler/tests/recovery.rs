@@ -81,14 +81,14 @@ struct Generated {
     traits: BTreeSet<String>,
 }
 
-fn code(arguments: &str, name: &str, fields: &str) -> Generated {
+fn generate_code(arguments: &str, name: &str, fields: &str) -> Generated {
     let item = format!("pub struct {name} {{ {fields} }}");
     let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
     let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
     let mut all = Generated { present: Names::new(), absent: BTreeMap::new(), traits: BTreeSet::new() };
-    for item in generated::items(file) {
+    for item in generated::items_of_generated_code(file) {
         if let Item::Impl(block) = item {
-            all.read(&block);
+            all.read_implementation(&block);
         }
     }
     all
@@ -111,7 +111,7 @@ const UNSIZED: [&str; 12] = [
     "standard_",
 ];
 
-fn signature(f: &syn::ImplItemFn) -> String {
+fn signature_text(f: &syn::ImplItemFn) -> String {
     let (name, inputs, output) = (f.sig.ident.to_string(), &f.sig.inputs, &f.sig.output);
     // After an error the set of frames is unknown.
     let mut text = quote::quote!((#inputs) #output).to_string();
@@ -211,8 +211,8 @@ fn an_error_keeps_the_arguments_of_every_measure() {
         let messages = expand("".parse().unwrap(), item.parse().unwrap(), Path::new("")).tokens.to_string();
         let error = messages.find("compile_error").map(|at| &messages[at..]);
         assert_eq!(error, None, "{function}");
-        let whole = code("", "Measured", &fields);
-        let failed = code("", "Measured", &format!("{fields} {MISTAKE}"));
+        let whole = generate_code("", "Measured", &fields);
+        let failed = generate_code("", "Measured", &format!("{fields} {MISTAKE}"));
         let signature_of_measure = |all: &Generated| all.present.get("Measured::measure").cloned();
         assert!(signature_of_measure(&whole).is_some(), "{function}");
         assert_eq!(signature_of_measure(&failed), signature_of_measure(&whole), "{function}");
@@ -220,7 +220,7 @@ fn an_error_keeps_the_arguments_of_every_measure() {
 }
 
 /// Returns the bound of an absent function, which is the only bound over a lifetime.
-fn reason(block: &ItemImpl) -> Option<String> {
+fn reason_of_absence(block: &ItemImpl) -> Option<String> {
     let bounds = block.generics.where_clause.as_ref()?.predicates.iter();
     let reasons = bounds.filter_map(|predicate| match predicate {
         syn::WherePredicate::Type(bound) if bound.lifetimes.is_some() => match bound.bounds.first()? {
@@ -233,17 +233,17 @@ fn reason(block: &ItemImpl) -> Option<String> {
 }
 
 impl Generated {
-    fn read(&mut self, block: &ItemImpl) {
+    fn read_implementation(&mut self, block: &ItemImpl) {
         let Type::Path(of) = &*block.self_ty else { return };
         let of = of.path.segments.last().unwrap().ident.to_string();
         if let Some((path, _)) = &block.trait_ {
             self.traits.insert(format!("{of}: {}", path.segments.last().unwrap().ident));
             return;
         }
-        let reason = reason(block);
+        let reason = reason_of_absence(block);
         for item in &block.items {
             let (name, arguments) = match item {
-                ImplItem::Fn(f) => (f.sig.ident.to_string(), Some(signature(f))),
+                ImplItem::Fn(f) => (f.sig.ident.to_string(), Some(signature_text(f))),
                 ImplItem::Const(c) => (c.ident.to_string(), None),
                 _ => continue,
             };
@@ -268,7 +268,7 @@ fn internals_are_hidden() {
             let item = format!("pub struct {name} {{ {fields} }}");
             let emitted = expand(words.parse().unwrap(), item.parse().unwrap(), Path::new(""));
             let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
-            for item in generated::items(file) {
+            for item in generated::items_of_generated_code(file) {
                 let Item::Impl(ItemImpl { trait_: None, items, .. }) = item else { continue };
                 for item in items {
                     let (ident, attributes) = match item {
@@ -289,8 +289,8 @@ fn internals_are_hidden() {
 fn a_mistake_leaves_every_name() {
     for (name, fields) in MECHANISMS {
         for words in ["", "derivatives", "batch", WORDS] {
-            let whole = code(words, name, fields);
-            let failed = code(words, name, &format!("{fields} {MISTAKE}"));
+            let whole = generate_code(words, name, fields);
+            let failed = generate_code(words, name, &format!("{fields} {MISTAKE}"));
             for (function, arguments) in &whole.present {
                 assert_eq!(failed.present.get(function), Some(arguments), "{name}, {words}: `{function}`");
             }
@@ -311,7 +311,7 @@ fn a_mistake_leaves_every_name() {
 fn every_word_is_named_by_what_needs_it() {
     let function_name = |name: &str| name.split_once("::").unwrap().1.to_string();
     for (name, fields) in MECHANISMS {
-        let (bare, all) = (code("", name, fields), code(WORDS, name, fields));
+        let (bare, all) = (generate_code("", name, fields), generate_code(WORDS, name, fields));
         // A function that all options together add is present without them, or reports why it is absent.
         for function in all.present.keys().filter(|function| function.starts_with(name)) {
             let known = bare.present.contains_key(function) || bare.absent.contains_key(function);
@@ -324,7 +324,7 @@ fn every_word_is_named_by_what_needs_it() {
         let one_less = WORDS.split(", ").filter(|_| ["CartPole", "FourBar"].contains(&name));
         for word in one_less {
             let others: Vec<&str> = WORDS.split(", ").filter(|other| *other != word).collect();
-            let without = code(&others.join(", "), name, fields);
+            let without = generate_code(&others.join(", "), name, fields);
             let lost = all.present.keys().filter(|function| !without.present.contains_key(*function));
             for function in lost.filter(|function| !function.starts_with("Prepared") || word != "prepare") {
                 let reason = without.absent.get(function).map(|reason| reason.to_lowercase());
@@ -357,7 +357,7 @@ fn every_word_is_named_by_what_needs_it() {
 
 #[test]
 fn kinematics_alone_say_what_they_lack() {
-    let kinematic = code(
+    let kinematic = generate_code(
         "inertia = none",
         "CartPole",
         "#[body] cart: Body, #[joint(ground -> cart, along = x)] rail: Sleeve,",
@@ -417,13 +417,13 @@ const WELDED: &str = "#[body(mass = 1)] stone: Body, #[joint(ground -> stone)] b
 
 /// Returns the names of all generated functions and constants, as text: available names, and absent names
 /// grouped by reason. Also lists the implemented traits, except those of frames and function bodies.
-fn names(arguments: &str, name: &str, fields: &str) -> String {
+fn names_by_availability(arguments: &str, name: &str, fields: &str) -> String {
     let item = format!("pub struct {name} {{ {fields} }}");
     let emitted = expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
     assert!(!emitted.tokens.to_string().contains("compile_error"), "{name}: {}", emitted.tokens);
     let file: syn::File = syn::parse2(emitted.into_tokens().unwrap()).unwrap();
     let mut by: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    for item in generated::items(file) {
+    for item in generated::items_of_generated_code(file) {
         let Item::Impl(block) = item else { continue };
         if let Some((path, _)) = &block.trait_ {
             let of = path.segments.last().unwrap().ident.to_string();
@@ -438,7 +438,8 @@ fn names(arguments: &str, name: &str, fields: &str) -> String {
                 ImplItem::Const(c) => c.ident.to_string(),
                 _ => continue,
             };
-            let list = reason(&block).map_or("there".to_string(), |reason| format!("not there, {reason}"));
+            let list = reason_of_absence(&block)
+                .map_or("there".to_string(), |reason| format!("not there, {reason}"));
             by.entry(list).or_default().insert(name);
         }
     }
@@ -467,8 +468,10 @@ fn names_are_those_of_the_table() {
     let kinematic = ("inertia = none", "Led", &led[..]);
     let all = MECHANISMS.into_iter().chain(others);
     let all = all.flat_map(|(name, fields)| [("", name, fields), ("derivatives", name, fields)]);
-    let text: String =
-        all.chain([kinematic]).map(|(arguments, name, fields)| names(arguments, name, fields)).collect();
+    let text: String = all
+        .chain([kinematic])
+        .map(|(arguments, name, fields)| names_by_availability(arguments, name, fields))
+        .collect();
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recovery/names.txt");
     if std::env::var_os("LINKWORK_WRITE").is_some() {
         std::fs::write(&path, &text).unwrap();

@@ -269,9 +269,9 @@ fn is_passed_on(function: &syn::ImplItemFn) -> bool {
 
 /// Returns the generated code without documentation, frames, and functions that only report that a feature is
 /// absent.
-fn shown(text: &str, functions: &[&str]) -> String {
+fn code_of_functions(text: &str, functions: &[&str]) -> String {
     let mut file = syn::parse_file(text).unwrap();
-    file.items = generated::items(file.clone());
+    file.items = generated::items_of_generated_code(file.clone());
     file.items.retain_mut(|item| {
         let syn::Item::Impl(block) = item else { return false };
         let clause = block.generics.where_clause.to_token_stream().to_string();
@@ -347,7 +347,7 @@ fn is_as_written(name: &str) {
     let emitted = expand(attribute.parse().unwrap(), item, Path::new(""));
     assert!(!emitted.tokens.to_string().contains("compile_error"), "{name}: {}", emitted.tokens);
     assert_eq!(
-        difference(name, &shown(&emitted.text, functions)),
+        difference(name, &code_of_functions(&emitted.text, functions)),
         None,
         "generated code differs; with `LINKWORK_WRITE=1` it is written anew"
     );

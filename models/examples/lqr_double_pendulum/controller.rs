@@ -33,7 +33,7 @@ pub type State = SVector<f64, { Cart::NV }>;
 pub type Regulator = Policy<f64, { Cart::NV }, { Cart::NU }>;
 
 /// Returns the weights of one period: displacement, angles, rates and force.
-pub fn costs() -> Quadratic<f64, { Cart::NV }, { Cart::NU }> {
+pub fn quadratic_costs() -> Quadratic<f64, { Cart::NV }, { Cart::NU }> {
     Quadratic {
         qq: SMatrix::from_diagonal(&[10.0, 100.0, 100.0].into()),
         vv: SMatrix::from_diagonal(&[1.0, 1.0, 1.0].into()),
@@ -43,7 +43,7 @@ pub fn costs() -> Quadratic<f64, { Cart::NV }, { Cart::NU }> {
 }
 
 /// Returns the force on the cart for a state, N, limited to the motor's strength.
-pub fn control(regulator: &Regulator, q: &State, v: &State) -> f64 {
+pub fn force_on_cart(regulator: &Regulator, q: &State, v: &State) -> f64 {
     let strength = Cart {}.effort_limits()[index!(Cart::VELOCITIES, "rail")];
     regulator.inputs(1.0, q, v)[0].clamp(-strength, strength)
 }

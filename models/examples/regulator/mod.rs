@@ -12,7 +12,7 @@ use linkwork::optimal::{Policy, Quadratic, Value, backward};
 ///
 /// Returns `None` if it does not converge, as for a mechanism that cannot be stabilised, or if a value is not
 /// finite.
-pub fn regulator<M, S, const NQ: usize, const NV: usize, const NU: usize>(
+pub fn linear_quadratic_regulator<M, S, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     method: &S,
     q: &SVector<f64, NQ>,

@@ -1,6 +1,6 @@
 //! Transport aircraft: its trimmed flight, its response to a gust and to the rudder, and its flight modes.
 
-use crate::report::{Check, Picture, Section, Table, declaration, figure};
+use crate::report::{Check, Picture, Section, Table, declaration_of_mechanism, format_number};
 use linkwork::nalgebra::DVector;
 use linkwork::prelude::*;
 use linkwork_design::flight::{self, FlightModes, LATERAL, LONGITUDINAL};
@@ -23,7 +23,7 @@ const PUBLISHED: [(&str, f64, f64); 5] = [
     ("spiral", -0.0072973, 0.0),
 ];
 
-pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
+pub fn run_aircraft_tour() -> Result<Section, Box<dyn std::error::Error>> {
     let trim = equilibrium(&TRANSPORT)
         .moving([TRANSPORT.cruise, 0.0, 0.0, 0.0, 0.0, 0.0].into())
         .coordinates(["flight.wy"])
@@ -35,7 +35,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     let system = flight::linear_system(&TRANSPORT, &trim.q, &trim.v, &trim.u)?;
     let modes = FlightModes::from_system(&system)?;
     let named = modes.named_modes();
-    let rows = named.iter().map(|(name, mode)| row(name, mode));
+    let rows = named.iter().map(|(name, mode)| mode_table_row(name, mode));
     let table = Table {
         head: vec!["mode", "eigenvalue, 1/s", "published", "period, s", "damping ratio", "half or double, s"],
         rows: rows.collect(),
@@ -78,7 +78,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
              it, and its modes come by their names.",
             TRANSPORT.cruise
         ),
-        declaration: elements(&declaration(
+        declaration: elements_of_declaration(&declaration_of_mechanism(
             include_str!("../../src/cruising_aircraft.rs"),
             "CruisingAircraft",
         )),
@@ -91,12 +91,12 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
 }
 
 /// Returns a declaration without its many parameters.
-fn elements(declaration: &str) -> String {
+fn elements_of_declaration(declaration: &str) -> String {
     let is_parameter = |line: &&str| line.starts_with("    pub ") || line.starts_with("    #[unit");
     declaration.lines().filter(|line| !is_parameter(line)).collect::<Vec<_>>().join("\n")
 }
 
-fn row(name: &str, mode: &Mode) -> Vec<String> {
+fn mode_table_row(name: &str, mode: &Mode) -> Vec<String> {
     let format_eigenvalue = |re: f64, im: f64| {
         let wave = if im == 0.0 { String::new() } else { format!(" ± {im:.4}i") };
         format!("{re:.5}{wave}").replace('-', "−")
@@ -107,9 +107,9 @@ fn row(name: &str, mode: &Mode) -> Vec<String> {
         name.into(),
         format_eigenvalue(mode.exponent.re, mode.exponent.im),
         published.map_or("–".into(), |(_, re, im)| format_eigenvalue(*re, *im)),
-        mode.period().map_or("–".into(), figure),
-        mode.period().map_or("–".into(), |_| figure(mode.damping_ratio())),
-        time.map_or("–".into(), figure),
+        mode.period().map_or("–".into(), format_number),
+        mode.period().map_or("–".into(), |_| format_number(mode.damping_ratio())),
+        time.map_or("–".into(), format_number),
     ]
 }
 

@@ -1,7 +1,7 @@
 //! A Panda arm draws a figure eight with a load that its controller's model does not include.
 
-use crate::report::{Check, Picture, Section, Table, declaration, figure};
-use crate::scene::{Part, Point, Scene, Tone, View, point};
+use crate::report::{Check, Picture, Section, Table, declaration_of_mechanism, format_number};
+use crate::scene::{Part, Point, Scene, Tone, View, point_in_ground};
 use linkwork::nalgebra::{IsometryMatrix3, Vector3, Vector6};
 use linkwork::prelude::*;
 use linkwork_design::picture::Chart;
@@ -54,20 +54,20 @@ struct Controller {
     momentum: Seven,
 }
 
-pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
+pub fn run_arm_tour() -> Result<Section, Box<dyn std::error::Error>> {
     let cases = [
-        ("no load", draw(0.0, false)?),
-        ("unknown load", draw(LOAD, false)?),
-        ("unknown load, observed", draw(LOAD, true)?),
+        ("no load", simulate_drawing(0.0, false)?),
+        ("unknown load", simulate_drawing(LOAD, false)?),
+        ("unknown load, observed", simulate_drawing(LOAD, true)?),
     ];
     let table_row_of_run = |(name, run): &(&str, Run)| {
-        let weighed = weigh(run);
+        let weighed = estimate_load_mass(run);
         let last = run.error.last().copied().unwrap_or(f64::NAN);
         vec![
             name.to_string(),
-            figure(1e3 * run.rms()),
-            figure(1e3 * run.worst()),
-            figure(1e3 * last),
+            format_number(1e3 * run.rms_error()),
+            format_number(1e3 * run.largest_error()),
+            format_number(1e3 * last),
             if run.felt.amax() > 0.0 { format!("{weighed:.3} kg") } else { "–".into() },
             format!("{:.1} µs", 1e-3 * median(&run.cost)),
         ]
@@ -78,11 +78,15 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     };
     let [exact, loaded, observed] = &cases.each_ref().map(|(_, run)| run);
     let checks = vec![
-        Check::new("no load: largest error, mm", 1e3 * exact.worst(), 0.05),
-        Check::new("unknown load: largest error, mm", 1e3 * loaded.worst(), 40.0),
-        Check::new("unknown load, observed: largest error, mm", 1e3 * observed.worst(), 5.0),
-        Check::new("load weighed by joint torques, error in kg", (weigh(observed) - LOAD).abs(), 0.01),
-        Check::new("largest torque / limit of the joint", observed.strain(), 1.0),
+        Check::new("no load: largest error, mm", 1e3 * exact.largest_error(), 0.05),
+        Check::new("unknown load: largest error, mm", 1e3 * loaded.largest_error(), 40.0),
+        Check::new("unknown load, observed: largest error, mm", 1e3 * observed.largest_error(), 5.0),
+        Check::new(
+            "load weighed by joint torques, error in kg",
+            (estimate_load_mass(observed) - LOAD).abs(),
+            0.01,
+        ),
+        Check::new("largest torque / limit of the joint", observed.largest_relative_torque(), 1.0),
         Check::new("median time of a control step, µs", 1e-3 * median(&observed.cost), 1e6 * PERIOD),
     ];
     let table_row_of_timing = |(name, times): (&str, [f64; 2])| {
@@ -90,9 +94,9 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     };
     let calls = Table {
         head: vec!["generated function", "median", "least"],
-        rows: timings(&observed.samples).map(table_row_of_timing).into(),
+        rows: function_timings(&observed.samples).map(table_row_of_timing).into(),
     };
-    let scene = scene(observed);
+    let scene = scene_of_run(observed);
     let add_error_curve = |chart: Chart, (name, run): &(&str, Run)| {
         chart.curve(*name, run.samples.iter().zip(&run.error).skip(1).map(|(s, e)| (s.t, 1e3 * e)))
     };
@@ -120,7 +124,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
              generated momentum and its rate feels the load, cancels it and weighs it.",
             1e-3 / PERIOD
         ),
-        declaration: declaration(include_str!("../../src/arm7.rs"), "LoadedPanda"),
+        declaration: declaration_of_mechanism(include_str!("../../src/arm7.rs"), "LoadedPanda"),
         equations: "",
         tables: vec![table, calls],
         checks,
@@ -130,7 +134,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
 }
 
 /// Returns desired position, velocity and acceleration of the fingertips, relative to the start.
-fn eight(t: f64) -> [Vector3<f64>; 3] {
+fn desired_figure_eight(t: f64) -> [Vector3<f64>; 3] {
     // Phase from 0 to 2 turns, with zero velocity and acceleration at both ends.
     let s = (t / DRAWING).clamp(0.0, 1.0);
     let turns = 2.0 * TAU;
@@ -144,34 +148,34 @@ fn eight(t: f64) -> [Vector3<f64>; 3] {
     [at, along * rate, along * growth + curved * rate * rate]
 }
 
-fn hand(q: &Seven) -> IsometryMatrix3<f64> {
+fn pose_of_hand(q: &Seven) -> IsometryMatrix3<f64> {
     PandaArm.frame_placement(frame!(PandaArm, "panda_hand_tcp"), q)
 }
 
 /// Returns the small rotation from one frame to another, rad: half of the sum of the cross products of their
 /// axes.
-fn turn(from: &IsometryMatrix3<f64>, to: &IsometryMatrix3<f64>) -> Vector3<f64> {
+fn small_rotation_between(from: &IsometryMatrix3<f64>, to: &IsometryMatrix3<f64>) -> Vector3<f64> {
     let axis_of_frame = |frame: &IsometryMatrix3<f64>, k| frame.rotation.matrix().column(k).into_owned();
     (0..3).map(|k| axis_of_frame(from, k).cross(&axis_of_frame(to, k))).sum::<Vector3<f64>>() / 2.0
 }
 
 impl Controller {
     fn new(observing: bool) -> Self {
-        Self { observing, home: hand(&HOME.into()), felt: Seven::zeros(), momentum: Seven::zeros() }
+        Self { observing, home: pose_of_hand(&HOME.into()), felt: Seven::zeros(), momentum: Seven::zeros() }
     }
 
     /// Returns the torques for one period of the control loop.
-    fn torque(&mut self, t: f64, q: &Seven, v: &Seven) -> Seven {
+    fn control_torques(&mut self, t: f64, q: &Seven, v: &Seven) -> Seven {
         let arm = PandaArm;
         let tip = frame!(PandaArm, "panda_hand_tcp");
-        let [at, velocity, acceleration] = eight(t);
+        let [at, velocity, acceleration] = desired_figure_eight(t);
         let hand = arm.frame_placement(tip, q);
         let twist = arm.frame_velocity(tip, q, v);
         let jacobian = arm.frame_jacobian(tip, q);
 
         // Desired linear and angular acceleration of the hand.
         let offset = self.home.translation.vector + at - hand.translation.vector;
-        let turn = turn(&hand, &self.home);
+        let turn = small_rotation_between(&hand, &self.home);
         let stack_vectors = |a: Vector3<f64>, b: Vector3<f64>| Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z);
         let wanted = stack_vectors(acceleration, Vector3::zeros())
             + DAMPING * (stack_vectors(velocity, Vector3::zeros()) - twist)
@@ -198,7 +202,7 @@ impl Controller {
     }
 }
 
-fn draw(load: f64, observing: bool) -> Result<Run, Error> {
+fn simulate_drawing(load: f64, observing: bool) -> Result<Run, Error> {
     let arm = LoadedPanda { load };
     let mut controller = Controller::new(observing);
     let mut cost = Vec::new();
@@ -206,7 +210,7 @@ fn draw(load: f64, observing: bool) -> Result<Run, Error> {
         .from(HOME, Seven::zeros())
         .control_every(PERIOD, |t, q, v| {
             let start = Instant::now();
-            let tau = controller.torque(t, q, v);
+            let tau = controller.control_torques(t, q, v);
             cost.push(start.elapsed().as_nanos() as f64);
             tau
         })
@@ -214,23 +218,24 @@ fn draw(load: f64, observing: bool) -> Result<Run, Error> {
         .duration(DURATION)
         .sample_every(PERIOD);
     let samples: Vec<_> = run.collect::<Result<_, _>>()?;
-    let home = hand(&HOME.into()).translation.vector;
-    let tracking_error =
-        |s: &Sample<f64, 7, 7, 7>| (hand(&s.q).translation.vector - home - eight(s.t)[0]).norm();
+    let home = pose_of_hand(&HOME.into()).translation.vector;
+    let tracking_error = |s: &Sample<f64, 7, 7, 7>| {
+        (pose_of_hand(&s.q).translation.vector - home - desired_figure_eight(s.t)[0]).norm()
+    };
     Ok(Run { error: samples.iter().map(tracking_error).collect(), felt: controller.felt, samples, cost })
 }
 
 impl Run {
-    fn rms(&self) -> f64 {
+    fn rms_error(&self) -> f64 {
         (self.error.iter().map(|e| e * e).sum::<f64>() / self.error.len() as f64).sqrt()
     }
 
-    fn worst(&self) -> f64 {
+    fn largest_error(&self) -> f64 {
         self.error.iter().copied().fold(0.0, f64::max)
     }
 
     /// Returns the largest torque of any motor relative to its rating.
-    fn strain(&self) -> f64 {
+    fn largest_relative_torque(&self) -> f64 {
         let rated_torque = |k: usize| if k < 4 { 87.0 } else { 12.0 };
         self.samples
             .iter()
@@ -240,7 +245,7 @@ impl Run {
 }
 
 /// Returns the mass whose weight at the fingertips fits the estimated torques best.
-fn weigh(run: &Run) -> f64 {
+fn estimate_load_mass(run: &Run) -> f64 {
     let Some(last) = run.samples.last() else { return f64::NAN };
     let jacobian = PandaArm.frame_jacobian(frame!(PandaArm, "panda_hand_tcp"), &last.q);
     let lift = jacobian.row(2).transpose();
@@ -255,7 +260,7 @@ fn median(times: &[f64]) -> f64 {
 
 /// Returns the time per call of some generated functions, ns: median and minimum over batches, each over the
 /// states of the motion.
-fn timings(samples: &[Sample<f64, 7, 7, 7>]) -> [(&'static str, [f64; 2]); 4] {
+fn function_timings(samples: &[Sample<f64, 7, 7, 7>]) -> [(&'static str, [f64; 2]); 4] {
     let arm = PandaArm;
     let states: Vec<(Seven, Seven, Seven)> =
         samples.iter().step_by(100).map(|s| (s.q, s.v, s.u * 0.1)).collect();
@@ -279,7 +284,7 @@ fn timings(samples: &[Sample<f64, 7, 7, 7>]) -> [(&'static str, [f64; 2]); 4] {
     ]
 }
 
-fn scene(run: &Run) -> Scene {
+fn scene_of_run(run: &Run) -> Scene {
     let frame_index_of_name = |name: &str| PandaArm::frame_index(name).unwrap_or(0);
     let joints: [usize; 7] = std::array::from_fn(|k| frame_index_of_name(&format!("panda_link{}", k + 1)));
     let (flange, palm) = (frame_index_of_name("panda_link8"), frame_index_of_name("panda_hand"));
@@ -288,20 +293,20 @@ fn scene(run: &Run) -> Scene {
         let at = PandaArm.frame_placements(&s.q);
         let mut points: Vec<Point> = vec![[0.0; 3]];
         // Origins of the links, then the ends of each joint's housing.
-        points.extend(joints.map(|k| point(&at[k], [0.0; 3])));
-        points.push(point(&at[flange], [0.0; 3]));
+        points.extend(joints.map(|k| point_in_ground(&at[k], [0.0; 3])));
+        points.push(point_in_ground(&at[flange], [0.0; 3]));
         for end in [-1.0, 1.0] {
-            points.extend(joints.map(|k| point(&at[k], [0.0, 0.0, 0.055 * end])));
+            points.extend(joints.map(|k| point_in_ground(&at[k], [0.0, 0.0, 0.055 * end])));
         }
         // Points of the palm, the fingers, the load, and the edge of the base.
         for [y, z] in
             [[-0.085, 0.035], [0.085, 0.035], [-0.03, 0.05], [-0.03, 0.11], [0.03, 0.05], [0.03, 0.11]]
         {
-            points.push(point(&at[palm], [0.0, y, z]));
+            points.push(point_in_ground(&at[palm], [0.0, y, z]));
         }
-        points.push(point(&at[tip], [0.0, 0.0, 0.02]));
-        points.push(point(&at[tip], [0.0; 3]));
-        points.push(point(&at[flange], [0.0, 0.0, 0.02]));
+        points.push(point_in_ground(&at[tip], [0.0, 0.0, 0.02]));
+        points.push(point_in_ground(&at[tip], [0.0; 3]));
+        points.push(point_in_ground(&at[flange], [0.0, 0.0, 0.02]));
         points
     };
     let mut parts = vec![Part::Rod(0, 1, 0.06, Tone::Body)];
@@ -319,8 +324,8 @@ fn scene(run: &Run) -> Scene {
         Part::Rod(27, 28, 0.011, Tone::Dark),
         Part::Ball(29, 0.045, Tone::Second),
     ]);
-    let home = hand(&HOME.into()).translation.vector;
-    let guide = (0..=120).map(|k| (home + eight(DRAWING / 2.0 * k as f64 / 120.0)[0]).into());
+    let home = pose_of_hand(&HOME.into()).translation.vector;
+    let guide = (0..=120).map(|k| (home + desired_figure_eight(DRAWING / 2.0 * k as f64 / 120.0)[0]).into());
     let every = (1.0 / (RATE * PERIOD)).round() as usize;
     Scene {
         title: "Figure eight with an unknown load",

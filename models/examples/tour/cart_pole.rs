@@ -1,7 +1,9 @@
 //! Cart-pole: swing-up by energy shaping, then stabilisation by a linear–quadratic regulator.
 
-use crate::report::{Check, Picture, Section, Table, declaration, figure, pairs};
-use crate::scene::{Part, Scene, Tone, View, corners, faces, point};
+use crate::report::{
+    Check, Picture, Section, Table, declaration_of_mechanism, format_number, pairs_of_curve,
+};
+use crate::scene::{Part, Scene, Tone, View, corners_of_box, faces_of_box, point_in_ground};
 use linkwork::nalgebra::IsometryMatrix3;
 use linkwork::prelude::*;
 use linkwork_design::matrices::Cost;
@@ -30,7 +32,7 @@ struct Controller {
     caught: Option<f64>,
 }
 
-pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
+pub fn run_cart_pole_tour() -> Result<Section, Box<dyn std::error::Error>> {
     let upright_system = linear_system(&CART_POLE, &State::zeros(), &State::zeros(), &SVector::zeros())?;
     // Riccati's equation for inputs that are constant over a period.
     let best = upright_system.lqr_held(&Cost::diagonal(&[20.0, 10.0, 1.0, 1.0], &[0.05]), PERIOD)?;
@@ -40,7 +42,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     let run = simulate(&CART_POLE)
         .from([0.0, PI - 0.05], [0.0, 0.0])
         .control_every(PERIOD, |t, q, v| {
-            let push = controller.push(t, q, v).clamp(-STRENGTH, STRENGTH);
+            let push = controller.force_on_cart(t, q, v).clamp(-STRENGTH, STRENGTH);
             forces.push([t, push]);
             [push + if SHOVE.contains(&t) { SHOVING } else { 0.0 }].into()
         })
@@ -56,20 +58,27 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     let table = Table {
         head: Vec::new(),
         rows: vec![
-            vec!["gains for x, θ and their rates".into(), list(&gains)],
+            vec!["gains for x, θ and their rates".into(), gains_text(&gains)],
             vec!["caught upright after".into(), format!("{caught:.2} s")],
             vec!["strongest push".into(), format!("{strongest:.1} N")],
             vec!["track used".into(), format!("±{:.2} m", largest_magnitude_since(0.0, &|q| q[0]))],
             vec![
                 format!("tilt after a shove of {SHOVING} N for {:.1} s", SHOVE.end - SHOVE.start),
-                format!("{:.1}°", largest_magnitude_since(SHOVE.start, &|q| upright(q[1])).to_degrees()),
+                format!(
+                    "{:.1}°",
+                    largest_magnitude_since(SHOVE.start, &|q| angle_from_upright(q[1])).to_degrees()
+                ),
             ],
         ],
     };
     let checks = vec![
         Check::new("caught upright, s", caught, SHOVE.start - 1.0),
         Check::new("track used, m", largest_magnitude_since(0.0, &|q| q[0]), 1.0),
-        Check::new("tilt at the end, rad", largest_magnitude_since(DURATION - 0.5, &|q| upright(q[1])), 5e-3),
+        Check::new(
+            "tilt at the end, rad",
+            largest_magnitude_since(DURATION - 0.5, &|q| angle_from_upright(q[1])),
+            5e-3,
+        ),
         Check::new(
             "cart's distance from the middle at the end, m",
             largest_magnitude_since(DURATION - 0.5, &|q| q[0]),
@@ -85,7 +94,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
             both.instant(caught, "caught").instant(SHOVE.start, "shove")
         })?,
         Picture::over_time("Force of the motor on the cart", "force, N", |chart| {
-            chart.curve("", pairs(&forces)).instant(caught, "caught").instant(SHOVE.start, "shove")
+            chart.curve("", pairs_of_curve(&forces)).instant(caught, "caught").instant(SHOVE.start, "shove")
         })?,
     ];
     Ok(Section {
@@ -97,18 +106,18 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
                  it against a shove.",
             1.0 / PERIOD
         ),
-        declaration: declaration(include_str!("../../src/cart_pole.rs"), "CartPole"),
+        declaration: declaration_of_mechanism(include_str!("../../src/cart_pole.rs"), "CartPole"),
         equations: CartPole::EQUATIONS,
         tables: vec![table],
         checks,
-        scenes: vec![scene(&samples, caught)],
+        scenes: vec![scene_of_samples(&samples, caught)],
         pictures,
     })
 }
 
 impl Controller {
-    fn push(&mut self, t: f64, q: &State, v: &State) -> f64 {
-        let x = SVector::from([q[0], upright(q[1]), v[0], v[1]]);
+    fn force_on_cart(&mut self, t: f64, q: &State, v: &State) -> f64 {
+        let x = SVector::from([q[0], angle_from_upright(q[1]), v[0], v[1]]);
         let hold = -(self.gains * x)[0];
         // Switch to the regulator as soon as the motor is strong enough; switch back only if the pole falls.
         let holding = self.caught.is_some() && x[1].abs() < 1.0;
@@ -117,13 +126,13 @@ impl Controller {
             return hold;
         }
         self.caught = None;
-        self.swing(q, v)
+        self.swing_up_force(q, v)
     }
 
     /// Returns the force of Åström and Furuta's energy shaping, *Automatica* 36 (2000). The pole's energy `E`
     /// relative to the cart is controlled to that of the upright position; `Ė` is proportional to the cart's
     /// acceleration.
-    fn swing(&self, q: &State, v: &State) -> f64 {
+    fn swing_up_force(&self, q: &State, v: &State) -> f64 {
         let turning = State::new(0.0, v[1]);
         let top = CART_POLE.potential_energy(&State::zeros());
         let energy = CART_POLE.kinetic_energy(q, &turning) + CART_POLE.potential_energy(q) - top;
@@ -137,25 +146,26 @@ impl Controller {
 }
 
 /// Returns the angle from the upright position, between −π and π.
-fn upright(angle: f64) -> f64 {
+fn angle_from_upright(angle: f64) -> f64 {
     (angle + PI).rem_euclid(TAU) - PI
 }
 
-fn list(gains: &SMatrix<f64, 1, 4>) -> String {
-    gains.iter().map(|k| figure(*k).replace('-', "−")).collect::<Vec<_>>().join(", ")
+fn gains_text(gains: &SMatrix<f64, 1, 4>) -> String {
+    gains.iter().map(|k| format_number(*k).replace('-', "−")).collect::<Vec<_>>().join(", ")
 }
 
-fn scene(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
+fn scene_of_samples(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
     // The mechanism's y axis points up, that of the animation is z.
     let to_z_up = |body: &IsometryMatrix3<f64>, at| {
-        let [x, y, z] = point(body, at);
+        let [x, y, z] = point_in_ground(body, at);
         [x, -z, y]
     };
     let points_of_frame = |s: &Sample<f64, 2, 2, 1>| {
         let cart = CART_POLE.frame_placement(frame!(CartPole, "cart"), &s.q);
         let pole = CART_POLE.frame_placement(frame!(CartPole, "pole"), &s.q);
         let mut points = vec![to_z_up(&pole, [0.0; 3]), to_z_up(&pole, [0.0, CART_POLE.pole_length, 0.0])];
-        points.extend(corners(&cart, [0.0, -0.04, 0.0], [0.16, 0.07, 0.1]).map(|[x, y, z]| [x, -z, y]));
+        points
+            .extend(corners_of_box(&cart, [0.0, -0.04, 0.0], [0.16, 0.07, 0.1]).map(|[x, y, z]| [x, -z, y]));
         // The force is an arrow that ends at the cart.
         let side = -0.17 * s.u[0].signum();
         points.push(to_z_up(&cart, [side - 0.03 * s.u[0], -0.04, 0.0]));
@@ -169,7 +179,7 @@ fn scene(samples: &[Sample<f64, 2, 2, 1>], caught: f64) -> Scene {
         Part::Ball(0, 0.035, Tone::Dark),
         Part::Arrow(10, 11, Tone::Second),
     ];
-    parts.extend(faces(2, Tone::Body));
+    parts.extend(faces_of_box(2, Tone::Body));
     let sample_index = |t: f64| (t * RATE) as usize;
     Scene {
         title: "Swing-up, catch, shove",

@@ -30,24 +30,31 @@ type Stop = fn() -> Result<Section, Box<dyn Error>>;
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
     let start = Instant::now();
-    let stops: [Stop; 6] = [pendulum::run, cart_pole::run, arm::run, quadruped::run, aircraft::run, top::run];
+    let stops: [Stop; 6] = [
+        pendulum::run_pendulum_tour,
+        cart_pole::run_cart_pole_tour,
+        arm::run_arm_tour,
+        quadruped::run_quadruped_tour,
+        aircraft::run_aircraft_tour,
+        top::run_top_tour,
+    ];
     println!(
         "Linkwork: mechanisms as annotated structs, compiled to equations of motion. A tour in six stops.\n"
     );
     let mut sections = Vec::new();
     for (k, stop) in stops.iter().enumerate() {
         let section = stop()?;
-        print!("{}", section.text(k + 1));
+        print!("{}", section.section_text(k + 1));
         sections.push(section);
     }
 
-    let folder = folder()?;
+    let folder = output_folder()?;
     fs::create_dir_all(&folder)?;
     let index = folder.join("index.html");
-    fs::write(&index, page::html(&sections))?;
+    fs::write(&index, page::page_html(&sections))?;
     println!("Watch it: {}", index.display());
 
-    let failed = sections.iter().flat_map(|s| &s.checks).filter(|check| !check.holds()).count();
+    let failed = sections.iter().flat_map(|s| &s.checks).filter(|check| !check.is_below_bound()).count();
     let total: usize = sections.iter().map(|s| s.checks.len()).sum();
     let seconds = start.elapsed().as_secs_f64();
     if failed == 0 {
@@ -61,7 +68,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
 
 /// Returns the output folder: the argument, or `tour` in cargo's target folder, three levels above
 /// `target/release/examples/tour`.
-fn folder() -> Result<PathBuf, Box<dyn Error>> {
+fn output_folder() -> Result<PathBuf, Box<dyn Error>> {
     if let Some(folder) = env::args_os().nth(1) {
         return Ok(folder.into());
     }

@@ -1,12 +1,12 @@
 //! Report as one self-contained web page: text, tables, SVG plots and animated scenes.
 
-use crate::report::{Section, Table, figure};
+use crate::report::{Section, Table, format_number};
 use std::fmt::Write;
 
 /// Returns the complete page.
-pub fn html(sections: &[Section]) -> String {
+pub fn page_html(sections: &[Section]) -> String {
     let all_checks = || sections.iter().flat_map(|s| &s.checks);
-    let (held, total) = (all_checks().filter(|check| check.holds()).count(), all_checks().count());
+    let (held, total) = (all_checks().filter(|check| check.is_below_bound()).count(), all_checks().count());
     let mut body = String::new();
     for (k, section) in sections.iter().enumerate() {
         write_section(&mut body, k + 1, section);
@@ -30,13 +30,13 @@ fn write_section(out: &mut String, number: usize, s: &Section) {
     let _ = writeln!(
         out,
         "<section>\n<h2><span>{number}</span>{}</h2>\n<p>{}</p>",
-        escape(&s.title),
-        escape(&s.text)
+        escape_html(&s.title),
+        escape_html(&s.text)
     );
     let blocks = [("declared", s.declaration.as_str()), ("derived", s.equations)];
     out.push_str("<div class='code'>");
     for (title, text) in blocks.iter().filter(|(_, text)| !text.is_empty()) {
-        let _ = writeln!(out, "<div><h3>{title}</h3><pre>{}</pre></div>", escape(text));
+        let _ = writeln!(out, "<div><h3>{title}</h3><pre>{}</pre></div>", escape_html(text));
     }
     out.push_str("</div>\n");
     out.push_str("<div class='figures'>\n");
@@ -50,16 +50,16 @@ fn write_section(out: &mut String, number: usize, s: &Section) {
              <div class='controls'><button>Pause</button>\
              <input type='range' min='0' max='{}' value='0' aria-label='time'><output></output></div>\
              <script type='application/json'>{}</script></figure>",
-            escape(scene.title),
+            escape_html(scene.title),
             scene.frames.len().saturating_sub(1),
-            scene.json()
+            scene.scene_json()
         );
     }
     for picture in &s.pictures {
         let _ = writeln!(
             out,
             "<figure class='plot'><figcaption>{}</figcaption>{}</figure>",
-            escape(picture.title),
+            escape_html(picture.title),
             picture.svg
         );
     }
@@ -71,13 +71,13 @@ fn write_section(out: &mut String, number: usize, s: &Section) {
     out.push_str("</div>\n");
     out.push_str("<ul class='checks'>");
     for check in &s.checks {
-        let (class, mark) = if check.holds() { ("holds", '✓') } else { ("fails", '✗') };
+        let (class, mark) = if check.is_below_bound() { ("holds", '✓') } else { ("fails", '✗') };
         let _ = write!(
             out,
             "<li class='{class}'><b>{mark}</b> {} <span>{} &lt; {}</span></li>",
-            escape(check.what),
-            figure(check.value),
-            figure(check.bound)
+            escape_html(check.what),
+            format_number(check.value),
+            format_number(check.bound)
         );
     }
     out.push_str("</ul>\n</section>\n");
@@ -86,16 +86,16 @@ fn write_section(out: &mut String, number: usize, s: &Section) {
 fn write_table(out: &mut String, table: &Table) {
     out.push_str("<div class='wide'><table>");
     if !table.head.is_empty() {
-        let heads: String = table.head.iter().map(|h| format!("<th>{}</th>", escape(h))).collect();
+        let heads: String = table.head.iter().map(|h| format!("<th>{}</th>", escape_html(h))).collect();
         let _ = write!(out, "<thead><tr>{heads}</tr></thead>");
     }
     for row in &table.rows {
-        let cells: String = row.iter().map(|c| format!("<td>{}</td>", escape(c))).collect();
+        let cells: String = row.iter().map(|c| format!("<td>{}</td>", escape_html(c))).collect();
         let _ = write!(out, "<tr>{cells}</tr>");
     }
     out.push_str("</table></div>\n");
 }
 
-fn escape(text: &str) -> String {
+fn escape_html(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

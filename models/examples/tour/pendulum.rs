@@ -1,6 +1,8 @@
 //! Pendulum over a thousand seconds: errors of energy and phase with three integrators.
 
-use crate::report::{Check, Picture, Section, Table, declaration, figure, pairs};
+use crate::report::{
+    Check, Picture, Section, Table, declaration_of_mechanism, format_number, pairs_of_curve,
+};
 use linkwork::integrate::Method;
 use linkwork::prelude::*;
 use linkwork_design::picture::Chart;
@@ -25,18 +27,18 @@ struct Run {
     cost: f64,
 }
 
-pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
+pub fn run_pendulum_tour() -> Result<Section, Box<dyn std::error::Error>> {
     let methods = [
-        ("Runge–Kutta 4", "10 ms", swing(Rk4::step(0.01))?),
-        ("implicit midpoint", "10 ms", swing(ImplicitMidpoint::step(0.01))?),
-        ("Dormand–Prince", "adaptive", swing(DormandPrince::new())?),
+        ("Runge–Kutta 4", "10 ms", simulate_swing(Rk4::step(0.01))?),
+        ("implicit midpoint", "10 ms", simulate_swing(ImplicitMidpoint::step(0.01))?),
+        ("Dormand–Prince", "adaptive", simulate_swing(DormandPrince::new())?),
     ];
     let table_row_of_method = |(name, step, run): &(&str, &str, Run)| {
         vec![
             name.to_string(),
             step.to_string(),
-            figure(worst(&run.energy)),
-            figure(worst(&run.angle)),
+            format_number(worst_error(&run.energy)),
+            format_number(worst_error(&run.angle)),
             format!("{:.1} ms", run.cost),
         ]
     };
@@ -47,26 +49,27 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     let [rk4, midpoint, adaptive] = &methods;
     let growth = {
         let (early, late) = midpoint.2.energy.split_at(midpoint.2.energy.len() / 2);
-        (worst(late) / worst(early) - 1.0).abs()
+        (worst_error(late) / worst_error(early) - 1.0).abs()
     };
     let checks = vec![
-        Check::new("Runge–Kutta: energy error after 1000 s", worst(&rk4.2.energy), 1e-5),
+        Check::new("Runge–Kutta: energy error after 1000 s", worst_error(&rk4.2.energy), 1e-5),
         Check::new("implicit midpoint: energy error, second half over first", growth, 1e-2),
-        Check::new("Dormand–Prince: energy error after 1000 s", worst(&adaptive.2.energy), 1e-5),
+        Check::new("Dormand–Prince: energy error after 1000 s", worst_error(&adaptive.2.energy), 1e-5),
         Check::new(
             "Dormand–Prince: angle against Jacobi's elliptic function, rad",
-            worst(&adaptive.2.angle),
+            worst_error(&adaptive.2.angle),
             1e-2,
         ),
     ];
     let energy = Picture::over_time("Energy error of the pendulum", "|E − E₀| / mgl", |chart| {
-        let add_energy_curve =
-            |chart: Chart, (name, _, run): &(&str, &str, Run)| chart.curve(*name, pairs(&run.energy));
+        let add_energy_curve = |chart: Chart, (name, _, run): &(&str, &str, Run)| {
+            chart.curve(*name, pairs_of_curve(&run.energy))
+        };
         methods.iter().fold(chart.logarithmic(), add_energy_curve)
     })?;
     let phase = Picture::over_time("Angle against the exact solution", "|θ − θ exact|, rad", |chart| {
         let add_angle_curve =
-            |chart: Chart, (name, _, run): &(&str, &str, Run)| chart.curve(*name, pairs(&run.angle));
+            |chart: Chart, (name, _, run): &(&str, &str, Run)| chart.curve(*name, pairs_of_curve(&run.angle));
         methods.iter().fold(chart.logarithmic(), add_angle_curve)
     })?;
     Ok(Section {
@@ -77,7 +80,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
              that both energy and angle can be held against the truth.",
             START.to_degrees()
         ),
-        declaration: declaration(include_str!("../../src/pendulum.rs"), "Pendulum"),
+        declaration: declaration_of_mechanism(include_str!("../../src/pendulum.rs"), "Pendulum"),
         equations: Pendulum::<f64>::EQUATIONS,
         tables: vec![table],
         checks,
@@ -86,7 +89,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     })
 }
 
-fn swing(method: impl Method<f64>) -> Result<Run, Error> {
+fn simulate_swing(method: impl Method<f64>) -> Result<Run, Error> {
     let total_energy = |q: &SVector<f64, 1>, v: &SVector<f64, 1>| {
         PENDULUM.kinetic_energy(q, v) + PENDULUM.potential_energy(q)
     };
@@ -113,18 +116,18 @@ fn swing(method: impl Method<f64>) -> Result<Run, Error> {
     };
     Ok(Run {
         energy: worst_errors_in_windows(&|s| (total_energy(&s.q, &s.v) - e0).abs() / scale),
-        angle: worst_errors_in_windows(&|s| (s.q[0] - exact(s.t)).abs()),
+        angle: worst_errors_in_windows(&|s| (s.q[0] - exact_angle(s.t)).abs()),
         cost,
     })
 }
 
-fn worst(errors: &[[f64; 2]]) -> f64 {
+fn worst_error(errors: &[[f64; 2]]) -> f64 {
     errors.iter().map(|e| e[1]).fold(0.0, f64::max)
 }
 
 /// Returns the exact angle: `sin ½θ = k cd(ω t)` with `k = sin ½θ₀` and `ω² = g/l`. Jacobi's functions follow
 /// by the descending Landen transformation (Abramowitz and Stegun, 16.4).
-fn exact(t: f64) -> f64 {
+fn exact_angle(t: f64) -> f64 {
     let k = (START / 2.0).sin();
     let (mut a, mut b) = (1.0, (START / 2.0).cos());
     let mut ratios = Vec::new();

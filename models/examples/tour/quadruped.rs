@@ -1,8 +1,10 @@
 //! Somersault of a quadruped: without contacts, Newton's and Euler's laws determine its centre of mass and
 //! its angular momentum.
 
-use crate::report::{Check, Picture, Section, Table, declaration, figure, pairs};
-use crate::scene::{Part, Point, Scene, Tone, View, corners, faces, point};
+use crate::report::{
+    Check, Picture, Section, Table, declaration_of_mechanism, format_number, pairs_of_curve,
+};
+use crate::scene::{Part, Point, Scene, Tone, View, corners_of_box, faces_of_box, point_in_ground};
 use linkwork::integrate::Method;
 use linkwork::nalgebra::{Matrix3, Vector3};
 use linkwork::prelude::*;
@@ -25,20 +27,21 @@ const OPENING: [f64; 2] = [0.68, 0.86];
 /// Frames per second of the animation.
 const RATE: f64 = 200.0;
 
-pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
-    let (spin, landing) = aim()?;
+pub fn run_quadruped_tour() -> Result<Section, Box<dyn std::error::Error>> {
+    let (spin, landing) = find_takeoff_spin()?;
     let runs = [
-        ("implicit midpoint", "1 ms", fly(spin, ImplicitMidpoint::step(PERIOD))?),
-        ("Runge–Kutta 4", "1 ms", fly(spin, Rk4::step(PERIOD))?),
+        ("implicit midpoint", "1 ms", simulate_flight(spin, ImplicitMidpoint::step(PERIOD))?),
+        ("Runge–Kutta 4", "1 ms", simulate_flight(spin, Rk4::step(PERIOD))?),
         (
             "Dormand–Prince, tolerance 1e-13",
             "adaptive",
-            fly(spin, DormandPrince::new().tolerance(1e-13, 1e-13))?,
+            simulate_flight(spin, DormandPrince::new().tolerance(1e-13, 1e-13))?,
         ),
     ];
     let worst_error = |errors: &[[f64; 2]]| errors.iter().map(|e| e[1]).fold(0.0, f64::max);
     let table_row_of_method = |(name, step, samples): &(&str, &str, Vec<Sample12>)| {
-        let errors = [parabola(samples), drift(samples)].map(|e| figure(worst_error(&e)));
+        let errors = [distance_from_parabola(samples), angular_momentum_drift(samples)]
+            .map(|e| format_number(worst_error(&e)));
         [vec![name.to_string(), step.to_string()], errors.to_vec()].concat()
     };
     let table = Table {
@@ -54,22 +57,32 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     let angular_rate_samples = |k: usize| samples.iter().map(|s| [s.t, s.v[3 + k]]).collect::<Vec<_>>();
     let fastest = angular_rate_samples(1).iter().map(|r| r[1].abs()).fold(0.0, f64::max);
     let checks = vec![
-        Check::new("centre of mass off its parabola, m", worst_error(&parabola(samples)), 1e-11),
-        Check::new("angular momentum about it, relative drift", worst_error(&drift(samples)), 1e-11),
+        Check::new(
+            "centre of mass off its parabola, m",
+            worst_error(&distance_from_parabola(samples)),
+            1e-11,
+        ),
+        Check::new(
+            "angular momentum about it, relative drift",
+            worst_error(&angular_momentum_drift(samples)),
+            1e-11,
+        ),
         Check::new("trunk against level at landing, rad", landing, 1e-6),
         Check::new("spin at take-off / fastest spin, legs tucked", spin.y.abs() / fastest, 0.9),
     ];
     let pictures = vec![
         Picture::over_time("Angular velocity of the trunk", "angular velocity, rad/s", |chart| {
-            let add_rate_curve =
-                |chart: Chart, (k, name): (usize, &str)| chart.curve(name, pairs(&angular_rate_samples(k)));
+            let add_rate_curve = |chart: Chart, (k, name): (usize, &str)| {
+                chart.curve(name, pairs_of_curve(&angular_rate_samples(k)))
+            };
             let chart = ["roll", "pitch", "yaw"].into_iter().enumerate().fold(chart, add_rate_curve);
             chart.instant(TUCKING[0] * FLIGHT, "tuck").instant(OPENING[0] * FLIGHT, "open")
         })?,
         Picture::over_time("Conservation (Dormand–Prince)", "deviation", |chart| {
-            let fallen =
-                chart.logarithmic().curve("centre of mass off parabola, m", pairs(&parabola(samples)));
-            fallen.curve("angular momentum, relative", pairs(&drift(samples)))
+            let fallen = chart
+                .logarithmic()
+                .curve("centre of mass off parabola, m", pairs_of_curve(&distance_from_parabola(samples)));
+            fallen.curve("angular momentum, relative", pairs_of_curve(&angular_momentum_drift(samples)))
         })?,
     ];
     Ok(Section {
@@ -82,17 +95,17 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
              method has found the take-off spin ({}) rad/s for which it lands level.",
             spin.iter().map(|w| format!("{w:.2}").replace('-', "−")).collect::<Vec<_>>().join(", ")
         ),
-        declaration: declaration(include_str!("../../src/quadruped.rs"), "Solo12"),
+        declaration: declaration_of_mechanism(include_str!("../../src/quadruped.rs"), "Solo12"),
         equations: "",
         tables: vec![table],
         checks,
-        scenes: vec![scene(samples)],
+        scenes: vec![scene_of_samples(samples)],
         pictures,
     })
 }
 
 /// Returns the desired joint angles at a time.
-fn posture(t: f64) -> SVector<f64, 12> {
+fn desired_posture(t: f64) -> SVector<f64, 12> {
     let part = t / FLIGHT;
     let smooth_step_between = |[from, to]: [f64; 2], part: f64| {
         let s = ((part - from) / (to - from)).clamp(0.0, 1.0);
@@ -116,7 +129,7 @@ fn posture(t: f64) -> SVector<f64, 12> {
 fn take_off(spin: Vector3<f64>) -> (SVector<f64, 19>, SVector<f64, 18>) {
     let robot = Solo12;
     let mut q = robot.neutral();
-    q.fixed_rows_mut::<12>(7).copy_from(&posture(0.0));
+    q.fixed_rows_mut::<12>(7).copy_from(&desired_posture(0.0));
     q[2] = FOOT - robot.frame_placement(frame!(Solo12, "FL_FOOT"), &q).translation.z;
     let arm = robot.center_of_mass(&q) - q.fixed_rows::<3>(0);
     let mut v = SVector::<f64, 18>::zeros();
@@ -128,12 +141,12 @@ fn take_off(spin: Vector3<f64>) -> (SVector<f64, 19>, SVector<f64, 18>) {
 /// Radius of a foot, m.
 const FOOT: f64 = 0.018;
 
-fn fly(spin: Vector3<f64>, method: impl Method<f64>) -> Result<Vec<Sample12>, Error> {
+fn simulate_flight(spin: Vector3<f64>, method: impl Method<f64>) -> Result<Vec<Sample12>, Error> {
     let (q, v) = take_off(spin);
     simulate(&Solo12)
         .from(q, v)
         .control_every(PERIOD, |t, q, v| {
-            8.0 * (posture(t) - q.fixed_rows::<12>(7)) - 0.15 * v.fixed_rows::<12>(6)
+            8.0 * (desired_posture(t) - q.fixed_rows::<12>(7)) - 0.15 * v.fixed_rows::<12>(6)
         })
         .method(method)
         .duration(FLIGHT)
@@ -143,9 +156,9 @@ fn fly(spin: Vector3<f64>, method: impl Method<f64>) -> Result<Vec<Sample12>, Er
 
 /// Returns the angular velocity at take-off for which the trunk is level again at the end, and the remaining
 /// tilt.
-fn aim() -> Result<(Vector3<f64>, f64), Box<dyn std::error::Error>> {
+fn find_takeoff_spin() -> Result<(Vector3<f64>, f64), Box<dyn std::error::Error>> {
     let final_tilt = |spin: Vector3<f64>| -> Result<Vector3<f64>, Box<dyn std::error::Error>> {
-        let samples = fly(spin, Rk4::step(PERIOD))?;
+        let samples = simulate_flight(spin, Rk4::step(PERIOD))?;
         let (first, last) = samples.first().zip(samples.last()).ok_or("no samples")?;
         Ok(Solo12.difference(&first.q, &last.q).fixed_rows::<3>(3).into_owned())
     };
@@ -169,7 +182,7 @@ fn aim() -> Result<(Vector3<f64>, f64), Box<dyn std::error::Error>> {
 }
 
 /// Returns the distance of the centre of mass from its free-fall parabola over time, m.
-fn parabola(samples: &[Sample12]) -> Vec<[f64; 2]> {
+fn distance_from_parabola(samples: &[Sample12]) -> Vec<[f64; 2]> {
     let start = Solo12.center_of_mass(&samples[0].q);
     let free_fall_position = |t: f64| start + Vector3::from(TAKE_OFF) * t - Vector3::z() * (G * t * t / 2.0);
     samples
@@ -180,32 +193,32 @@ fn parabola(samples: &[Sample12]) -> Vec<[f64; 2]> {
 }
 
 /// Returns the relative change of the angular momentum about the centre of mass over time.
-fn drift(samples: &[Sample12]) -> Vec<[f64; 2]> {
+fn angular_momentum_drift(samples: &[Sample12]) -> Vec<[f64; 2]> {
     let angular_momentum = |s: &Sample12| Solo12.momentum(&s.q, &s.v).fixed_rows::<3>(3).into_owned();
     let start = angular_momentum(&samples[0]);
     samples.iter().skip(1).map(|s| [s.t, (angular_momentum(s) - start).norm() / start.norm()]).collect()
 }
 
-fn scene(samples: &[Sample12]) -> Scene {
+fn scene_of_samples(samples: &[Sample12]) -> Scene {
     let frame_index_of_link =
         |leg: &str, link: &str| Solo12::frame_index(&format!("{leg}_{link}")).unwrap_or(0);
     let legs = ["FL", "FR", "HL", "HR"];
     let points_of_frame = |s: &Sample12| {
         let at = Solo12.frame_placements(&s.q);
         let trunk = Solo12.frame_placement(frame!(Solo12, "base_link"), &s.q);
-        let mut points: Vec<Point> = corners(&trunk, [0.0; 3], [0.2, 0.055, 0.028]).to_vec();
+        let mut points: Vec<Point> = corners_of_box(&trunk, [0.0; 3], [0.2, 0.055, 0.028]).to_vec();
         for leg in legs {
             for link in ["SHOULDER", "UPPER_LEG", "LOWER_LEG", "FOOT"] {
-                points.push(point(&at[frame_index_of_link(leg, link)], [0.0; 3]));
+                points.push(point_in_ground(&at[frame_index_of_link(leg, link)], [0.0; 3]));
             }
             // Axle of the shoulder, from inside the trunk.
             let inwards = if leg.ends_with('L') { -0.05 } else { 0.05 };
-            points.push(point(&at[frame_index_of_link(leg, "SHOULDER")], [0.0, inwards, 0.0]));
+            points.push(point_in_ground(&at[frame_index_of_link(leg, "SHOULDER")], [0.0, inwards, 0.0]));
         }
         points.push(Solo12.center_of_mass(&s.q).into());
         points
     };
-    let mut parts: Vec<Part> = faces(0, Tone::Body).collect();
+    let mut parts: Vec<Part> = faces_of_box(0, Tone::Body).collect();
     for k in 0..4 {
         let first = 8 + 5 * k;
         let tone = if k % 2 == 0 { Tone::Accent } else { Tone::Second };

@@ -44,7 +44,7 @@ impl Picture {
 }
 
 /// Converts points to the pairs of a curve.
-pub fn pairs(points: &[[f64; 2]]) -> impl Iterator<Item = (f64, f64)> {
+pub fn pairs_of_curve(points: &[[f64; 2]]) -> impl Iterator<Item = (f64, f64)> {
     points.iter().map(|[x, y]| (*x, *y))
 }
 
@@ -73,13 +73,13 @@ impl Check {
     }
 
     /// Whether the value is below its bound; NaN is not.
-    pub fn holds(&self) -> bool {
+    pub fn is_below_bound(&self) -> bool {
         self.value < self.bound
     }
 }
 
 /// Formats a number with three digits, and with a power of ten if it is very small or large.
-pub fn figure(x: f64) -> String {
+pub fn format_number(x: f64) -> String {
     let size = x.abs();
     if size > 0.0 && !(1e-3..1e4).contains(&size) {
         return format!("{x:.1e}");
@@ -90,7 +90,7 @@ pub fn figure(x: f64) -> String {
 }
 
 /// Returns the declaration of a mechanism without its documentation, from the text of its file.
-pub fn declaration(file: &str, name: &str) -> String {
+pub fn declaration_of_mechanism(file: &str, name: &str) -> String {
     let lines: Vec<&str> = file.lines().filter(|line| !line.trim_start().starts_with("///")).collect();
     let starts_struct_declaration =
         |line: &&str, word: &str| line.starts_with(&format!("pub struct {name}{word}"));
@@ -110,7 +110,7 @@ const WIDTH: usize = 100;
 
 impl Section {
     /// Returns the section as text for a terminal.
-    pub fn text(&self, number: usize) -> String {
+    pub fn section_text(&self, number: usize) -> String {
         let mut out = format!("{number}  {}\n", self.title);
         write_wrapped(&mut out, &self.text);
         let shown = if self.equations.is_empty() { &self.declaration } else { self.equations };
@@ -124,8 +124,8 @@ impl Section {
         out.push('\n');
         let widest = self.checks.iter().map(|c| c.what.chars().count()).max().unwrap_or(0);
         for check in &self.checks {
-            let mark = if check.holds() { '✓' } else { '✗' };
-            let (value, bound) = (figure(check.value), figure(check.bound));
+            let mark = if check.is_below_bound() { '✓' } else { '✗' };
+            let (value, bound) = (format_number(check.value), format_number(check.bound));
             let _ = writeln!(out, "   {mark} {:<widest$}  {value:>8} < {bound}", check.what);
         }
         out.push('\n');

@@ -73,7 +73,7 @@ pub struct View {
 
 impl Scene {
     /// Returns the scene as JSON for `player.js`. Points are in hundredths of millimetres.
-    pub fn json(&self) -> String {
+    pub fn scene_json(&self) -> String {
         let mut out = format!(
             "{{\"rate\":{},\"speed\":{},\"still\":{},\"target\":{:?},\"size\":{:?},\"yaw\":{},\"pitch\":{},\"turning\":{},",
             self.rate,
@@ -91,7 +91,7 @@ impl Scene {
         if let Some((point, length)) = self.trail {
             let _ = write!(out, "\"trail\":[{point},{length}],");
         }
-        let parts: Vec<String> = self.parts.iter().map(Part::json).collect();
+        let parts: Vec<String> = self.parts.iter().map(Part::part_json).collect();
         let captions: Vec<String> =
             self.captions.iter().map(|(k, words)| format!("[{k},{words:?}]")).collect();
         let _ = write!(
@@ -99,15 +99,15 @@ impl Scene {
             "\"parts\":[{}],\"captions\":[{}],\"guides\":[{}],\"frames\":[{}]}}",
             parts.join(","),
             captions.join(","),
-            join(&self.guides),
-            join(&self.frames)
+            join_point_lists(&self.guides),
+            join_point_lists(&self.frames)
         );
         out
     }
 }
 
 impl Part {
-    fn json(&self) -> String {
+    fn part_json(&self) -> String {
         match self {
             Self::Rod(a, b, radius, tone) => format!("[\"rod\",{a},{b},{radius},{}]", *tone as u8),
             Self::Ball(a, radius, tone) => format!("[\"ball\",{a},{radius},{}]", *tone as u8),
@@ -117,7 +117,7 @@ impl Part {
     }
 }
 
-fn join(lists: &[Vec<Point>]) -> String {
+fn join_point_lists(lists: &[Vec<Point>]) -> String {
     let join_coordinates = |points: &Vec<Point>| {
         let numbers: Vec<String> =
             points.iter().flatten().map(|x| format!("{}", (x * 1e5).round() as i64)).collect();
@@ -127,21 +127,21 @@ fn join(lists: &[Vec<Point>]) -> String {
 }
 
 /// Returns a point of a body in ground coordinates.
-pub fn point(body: &IsometryMatrix3<f64>, at: Point) -> Point {
+pub fn point_in_ground(body: &IsometryMatrix3<f64>, at: Point) -> Point {
     (body * Point3::from(at)).coords.into()
 }
 
 /// Returns the eight corners of a box with the given half sizes about a point of a body.
-pub fn corners(body: &IsometryMatrix3<f64>, at: Point, half: Point) -> [Point; 8] {
+pub fn corners_of_box(body: &IsometryMatrix3<f64>, at: Point, half: Point) -> [Point; 8] {
     let signs_of_corner = |k: usize| [k & 1, k >> 1 & 1, k >> 2 & 1].map(|bit| 2.0 * bit as f64 - 1.0);
     std::array::from_fn(|k| {
         let s = signs_of_corner(k);
-        point(body, [0, 1, 2].map(|i| at[i] + s[i] * half[i]))
+        point_in_ground(body, [0, 1, 2].map(|i| at[i] + s[i] * half[i]))
     })
 }
 
 /// Returns the six faces of a box whose corners start with the point `first`.
-pub fn faces(first: usize, tone: Tone) -> impl Iterator<Item = Part> {
+pub fn faces_of_box(first: usize, tone: Tone) -> impl Iterator<Item = Part> {
     let sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
     sides.into_iter().map(move |side| Part::Face(side.map(|k| first + k).to_vec(), tone))
 }

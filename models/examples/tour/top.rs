@@ -1,7 +1,7 @@
 //! Heavy top: its precession and nutation against Lagrange's closed-form solutions.
 
-use crate::report::{Check, Picture, Section, Table, declaration, figure};
-use crate::scene::{Part, Point, Scene, Tone, View, point};
+use crate::report::{Check, Picture, Section, Table, declaration_of_mechanism, format_number};
+use crate::scene::{Part, Point, Scene, Tone, View, point_in_ground};
 use linkwork::nalgebra::{IsometryMatrix3, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork_models::HeavyTop;
@@ -19,7 +19,7 @@ const SHOWN: f64 = 2.8;
 /// Frames per second of the animation.
 const RATE: f64 = 240.0;
 
-pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
+pub fn run_top_tour() -> Result<Section, Box<dyn std::error::Error>> {
     let across = TOP.transverse + TOP.mass * TOP.height * TOP.height;
     let (spin, weight) = (TOP.axial * SPIN, TOP.mass * TOP.g * TOP.height);
     let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), TILT);
@@ -38,7 +38,7 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     let mut omega = tilt.inverse() * Vector3::new(0.0, 0.0, rate);
     omega.z = SPIN;
     let end = simulate(&TOP).from(q, omega).method(method).duration(TURNS * TAU / rate).finish()?;
-    let tip = axis(&end.q);
+    let tip = axis_of_top(&end.q);
     let missed = tip.x.atan2(-tip.y);
     compare(
         "steady precession",
@@ -53,14 +53,15 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
     let (a2, b) = ((spin / across) * (spin / across), 2.0 * weight / across);
     let lowest = (a2 - (a2 * a2 - 4.0 * b * (a2 * TILT.cos() - b)).sqrt()) / (2.0 * b);
     let released = simulate(&TOP).from(q, [0.0, 0.0, SPIN]).method(method);
-    let falling =
-        |_: f64, q: &SVector<f64, 4>, v: &SVector<f64, 3>| (rotation(q) * Vector3::new(v.y, -v.x, 0.0)).z;
+    let falling = |_: f64, q: &SVector<f64, 4>, v: &SVector<f64, 3>| {
+        (rotation_of_top(q) * Vector3::new(v.y, -v.x, 0.0)).z
+    };
     let bottom = released.until_crossing(Crossing::Rising, falling).finish()?;
     compare(
         "released: lowest inclination",
         "lowest inclination, relative error",
         "rad",
-        axis(&bottom.q).z.acos(),
+        axis_of_top(&bottom.q).z.acos(),
         lowest.acos(),
     );
 
@@ -71,20 +72,20 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
         .sample_every(1.0 / RATE)
         .collect::<Result<_, _>>()?;
     let nutation = Picture::over_time("Inclination of the axis", "inclination, rad", |chart| {
-        let simulated = chart.curve("simulated", samples.iter().map(|s| (s.t, axis(&s.q).z.acos())));
+        let simulated = chart.curve("simulated", samples.iter().map(|s| (s.t, axis_of_top(&s.q).z.acos())));
         simulated
-            .curve("closed form, highest", level(TILT))
-            .curve("closed form, lowest", level(lowest.acos()))
+            .curve("closed form, highest", horizontal_line(TILT))
+            .curve("closed form, lowest", horizontal_line(lowest.acos()))
     })?;
     // Both angular momenta are constant: φ̇ = (L − C n cos θ) / (A sin²θ), and L = C n cos θ₀.
     let fastest = spin * (TILT.cos() - lowest) / (across * (1.0 - lowest * lowest));
     let precession = Picture::over_time("Rate of precession: zero at the cusps", "rate, rad/s", |chart| {
-        let simulated = chart.curve("simulated", samples.iter().map(|s| (s.t, precession(s))));
-        simulated.curve("closed form, fastest", level(fastest))
+        let simulated = chart.curve("simulated", samples.iter().map(|s| (s.t, precession_rate(s))));
+        simulated.curve("closed form, fastest", horizontal_line(fastest))
     })?;
 
     let vertical_angular_momentum =
-        |s: &Sample<f64, 4, 3, 0>| (rotation(&s.q) * TOP.generalized_momentum(&s.q, &s.v)).z;
+        |s: &Sample<f64, 4, 3, 0>| (rotation_of_top(&s.q) * TOP.generalized_momentum(&s.q, &s.v)).z;
     let momentum = samples
         .iter()
         .map(|s| (vertical_angular_momentum(s) / vertical_angular_momentum(&samples[0]) - 1.0).abs())
@@ -99,48 +100,52 @@ pub fn run() -> Result<Section, Box<dyn std::error::Error>> {
             "On a ball joint (a quaternion, no Euler angles), spinning at {} rad/s. Steady precession is \
              followed for \
              {TURNS} turns; then the top is let go with its axis at rest and draws cusps.",
-            figure(SPIN)
+            format_number(SPIN)
         ),
-        declaration: declaration(include_str!("../../src/heavy_top.rs"), "HeavyTop"),
+        declaration: declaration_of_mechanism(include_str!("../../src/heavy_top.rs"), "HeavyTop"),
         equations: HeavyTop::<f64>::EQUATIONS,
         tables: vec![table],
         checks,
-        scenes: vec![scene(&samples)],
+        scenes: vec![scene_of_samples(&samples)],
         pictures: vec![nutation, precession],
     })
 }
 
-fn level(value: f64) -> [(f64, f64); 2] {
+fn horizontal_line(value: f64) -> [(f64, f64); 2] {
     [(0.0, value), (SHOWN, value)]
 }
 
-fn rotation(q: &SVector<f64, 4>) -> UnitQuaternion<f64> {
+fn rotation_of_top(q: &SVector<f64, 4>) -> UnitQuaternion<f64> {
     UnitQuaternion::from_quaternion((*q).into())
 }
 
-fn axis(q: &SVector<f64, 4>) -> Vector3<f64> {
-    rotation(q) * Vector3::z()
+fn axis_of_top(q: &SVector<f64, 4>) -> Vector3<f64> {
+    rotation_of_top(q) * Vector3::z()
 }
 
 /// Returns the precession rate of the axis about the vertical, rad/s.
-fn precession(s: &Sample<f64, 4, 3, 0>) -> f64 {
-    let (at, rate) = (axis(&s.q), rotation(&s.q) * Vector3::new(s.v.y, -s.v.x, 0.0));
+fn precession_rate(s: &Sample<f64, 4, 3, 0>) -> f64 {
+    let (at, rate) = (axis_of_top(&s.q), rotation_of_top(&s.q) * Vector3::new(s.v.y, -s.v.x, 0.0));
     (at.x * rate.y - at.y * rate.x) / (at.x * at.x + at.y * at.y)
 }
 
 /// Number of points on the circumference of the drawn top.
 const CORNERS: usize = 20;
 
-fn scene(samples: &[Sample<f64, 4, 3, 0>]) -> Scene {
+fn scene_of_samples(samples: &[Sample<f64, 4, 3, 0>]) -> Scene {
     let points_of_ring = |body: &IsometryMatrix3<f64>, radius: f64, z: f64| {
         (0..CORNERS)
             .map(|k| TAU * k as f64 / CORNERS as f64)
-            .map(|a| point(body, [radius * a.cos(), radius * a.sin(), z]))
+            .map(|a| point_in_ground(body, [radius * a.cos(), radius * a.sin(), z]))
             .collect::<Vec<Point>>()
     };
     let points_of_frame = |s: &Sample<f64, 4, 3, 0>| {
         let body = TOP.frame_placement(frame!(HeavyTop<f64>, "top"), &s.q);
-        let mut points = vec![[0.0; 3], point(&body, [0.0, 0.0, 0.07]), point(&body, [0.0, 0.0, 0.105])];
+        let mut points = vec![
+            [0.0; 3],
+            point_in_ground(&body, [0.0, 0.0, 0.07]),
+            point_in_ground(&body, [0.0, 0.0, 0.105]),
+        ];
         points.extend(points_of_ring(&body, 0.042, 0.052));
         points.extend(points_of_ring(&body, 0.016, 0.07));
         points

@@ -144,12 +144,12 @@ const AFTERBURNER: [f64; 36] = [
     26070.0, 21075.0, 15975.0, 11115.0, 6860.0, 3950.0, 28886.0, 23319.0, 18300.0, 13484.0, 8642.0, 5057.0,
 ];
 
-static CL: [f64; 156] = mirrored(&ROLL);
-static CN: [f64; 156] = mirrored(&YAW);
+static CL: [f64; 156] = odd_function_rows(&ROLL);
+static CN: [f64; 156] = odd_function_rows(&YAW);
 static THRUST: [f64; 108] = by_power();
 
 /// Returns the rows from −30° to 30° of an odd function whose rows from 5° to 30° are given.
-const fn mirrored(right: &[f64; 72]) -> [f64; 156] {
+const fn odd_function_rows(right: &[f64; 72]) -> [f64; 156] {
     let mut all = [0.0; 156];
     let mut row = 0;
     while row < 6 {
@@ -178,7 +178,7 @@ const fn by_power() -> [f64; 108] {
 }
 
 /// Returns a table with linear extrapolation.
-const fn table<const N: usize>(axes: [&'static [f64]; N], values: &'static [f64]) -> Table<N> {
+const fn extrapolated_table<const N: usize>(axes: [&'static [f64]; N], values: &'static [f64]) -> Table<N> {
     match Table::new(axes, values) {
         Ok(table) => table.extrapolated(),
         Err(error) => panic!("{}", error.message()),
@@ -208,24 +208,24 @@ impl Fighter {
         depth: FOOT / 0.703e-5,
         second: 1.0,
         power: 0.0,
-        cx: table([&ELEVATOR, &ALPHA], &CX),
-        cz: table([&ALPHA], &CZ),
-        cl: table([&BETA, &ALPHA], &CL),
-        cm: table([&ELEVATOR, &ALPHA], &CM),
-        cn: table([&BETA, &ALPHA], &CN),
-        cl_aileron: table([&WIDE_BETA, &ALPHA], &CL_AILERON),
-        cl_rudder: table([&WIDE_BETA, &ALPHA], &CL_RUDDER),
-        cn_aileron: table([&WIDE_BETA, &ALPHA], &CN_AILERON),
-        cn_rudder: table([&WIDE_BETA, &ALPHA], &CN_RUDDER),
-        cx_q: table([&ALPHA], &CX_Q),
-        cy_r: table([&ALPHA], &CY_R),
-        cy_p: table([&ALPHA], &CY_P),
-        cz_q: table([&ALPHA], &CZ_Q),
-        cl_r: table([&ALPHA], &CL_R),
-        cl_p: table([&ALPHA], &CL_P),
-        cm_q: table([&ALPHA], &CM_Q),
-        cn_r: table([&ALPHA], &CN_R),
-        cn_p: table([&ALPHA], &CN_P),
-        thrust: table([&MACH, &HEIGHT, &POWER], &THRUST),
+        cx: extrapolated_table([&ELEVATOR, &ALPHA], &CX),
+        cz: extrapolated_table([&ALPHA], &CZ),
+        cl: extrapolated_table([&BETA, &ALPHA], &CL),
+        cm: extrapolated_table([&ELEVATOR, &ALPHA], &CM),
+        cn: extrapolated_table([&BETA, &ALPHA], &CN),
+        cl_aileron: extrapolated_table([&WIDE_BETA, &ALPHA], &CL_AILERON),
+        cl_rudder: extrapolated_table([&WIDE_BETA, &ALPHA], &CL_RUDDER),
+        cn_aileron: extrapolated_table([&WIDE_BETA, &ALPHA], &CN_AILERON),
+        cn_rudder: extrapolated_table([&WIDE_BETA, &ALPHA], &CN_RUDDER),
+        cx_q: extrapolated_table([&ALPHA], &CX_Q),
+        cy_r: extrapolated_table([&ALPHA], &CY_R),
+        cy_p: extrapolated_table([&ALPHA], &CY_P),
+        cz_q: extrapolated_table([&ALPHA], &CZ_Q),
+        cl_r: extrapolated_table([&ALPHA], &CL_R),
+        cl_p: extrapolated_table([&ALPHA], &CL_P),
+        cm_q: extrapolated_table([&ALPHA], &CM_Q),
+        cn_r: extrapolated_table([&ALPHA], &CN_R),
+        cn_p: extrapolated_table([&ALPHA], &CN_P),
+        thrust: extrapolated_table([&MACH, &HEIGHT, &POWER], &THRUST),
     };
 }

@@ -1,6 +1,6 @@
 //! Glider, quadrotor, satellite with wheels, and vehicle over the round Earth, against closed-form solutions.
 
-use crate::{close, is_at};
+use crate::{assert_relatively_close, is_at};
 use linkwork::nalgebra::{Complex, Quaternion, SVector, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork::{Mechanism, Outputs};
@@ -36,7 +36,7 @@ const GLIDER: Glider = Glider {
 };
 
 /// Returns a steady glide, with the elevator angle of this lift coefficient.
-fn glide(glider: &Glider, lift: f64) -> SteadyState<7, 6, 1> {
+fn steady_glide(glider: &Glider, lift: f64) -> SteadyState<7, 6, 1> {
     let alpha = (lift - glider.cl_0) / glider.cl_alpha;
     let elevator = -glider.cm_alpha * alpha / glider.cm_elevator;
     equilibrium(glider)
@@ -48,7 +48,7 @@ fn glide(glider: &Glider, lift: f64) -> SteadyState<7, 6, 1> {
         .unwrap()
 }
 
-fn sink(glider: &Glider, found: &SteadyState<7, 6, 1>) -> (f64, f64) {
+fn outputs_of_glide(glider: &Glider, found: &SteadyState<7, 6, 1>) -> (f64, f64) {
     let seen = Outputs::outputs(glider, 0.0, &found.q, &found.v, &SVector::zeros(), &found.u);
     (seen[0], seen[1])
 }
@@ -58,29 +58,31 @@ fn a_glider_glides_by_its_polar() {
     let Glider { g, mass, density, area, cd_0, cd_induced, .. } = GLIDER;
     let best = (cd_0 / cd_induced).sqrt();
     for lift in [0.5 * best, best, 1.3 * best] {
-        let (speed, down) = sink(&GLIDER, &glide(&GLIDER, lift));
+        let (speed, down) = outputs_of_glide(&GLIDER, &steady_glide(&GLIDER, lift));
         let drag = cd_0 + cd_induced * lift * lift;
-        close(down / speed, drag / lift.hypot(drag), 1e-9);
-        close(0.5 * density * speed * speed * area * lift.hypot(drag), mass * g, 1e-9);
+        assert_relatively_close(down / speed, drag / lift.hypot(drag), 1e-9);
+        assert_relatively_close(0.5 * density * speed * speed * area * lift.hypot(drag), mass * g, 1e-9);
     }
-    let glide_angle_sine =
-        |lift: f64| sink(&GLIDER, &glide(&GLIDER, lift)).1 / sink(&GLIDER, &glide(&GLIDER, lift)).0;
+    let glide_angle_sine = |lift: f64| {
+        outputs_of_glide(&GLIDER, &steady_glide(&GLIDER, lift)).1
+            / outputs_of_glide(&GLIDER, &steady_glide(&GLIDER, lift)).0
+    };
     let ratio = 1.0 / (2.0 * (cd_0 * cd_induced).sqrt());
-    close(glide_angle_sine(best).asin().tan(), 1.0 / ratio, 1e-9);
+    assert_relatively_close(glide_angle_sine(best).asin().tan(), 1.0 / ratio, 1e-9);
     assert!(
         glide_angle_sine(0.97 * best) > glide_angle_sine(best)
             && glide_angle_sine(1.03 * best) > glide_angle_sine(best)
     );
     let slowest = 3.0_f64.sqrt() * best;
-    let sink_rate_at_lift = |lift| sink(&GLIDER, &glide(&GLIDER, lift)).1;
+    let sink_rate_at_lift = |lift| outputs_of_glide(&GLIDER, &steady_glide(&GLIDER, lift)).1;
     assert!(
         sink_rate_at_lift(0.97 * slowest) > sink_rate_at_lift(slowest)
             && sink_rate_at_lift(1.03 * slowest) > sink_rate_at_lift(slowest)
     );
 }
 
-fn modes(glider: &Glider, lift: f64) -> FlightModes {
-    let found = glide(glider, lift);
+fn flight_modes_of_glider(glider: &Glider, lift: f64) -> FlightModes {
+    let found = steady_glide(glider, lift);
     FlightModes::from_system(&flight::linear_system(glider, &found.q, &found.v, &found.u).unwrap()).unwrap()
 }
 
@@ -90,19 +92,19 @@ fn modes(glider: &Glider, lift: f64) -> FlightModes {
 #[test]
 fn a_glider_has_the_phugoid_of_its_speed_and_drag() {
     let (lift, firm) = (0.8, Glider { cm_alpha: -1000.0, ..GLIDER });
-    let speed = sink(&firm, &glide(&firm, lift)).0;
-    let found = modes(&firm, lift);
+    let speed = outputs_of_glide(&firm, &steady_glide(&firm, lift)).0;
+    let found = flight_modes_of_glider(&firm, lift);
     let phugoid = found.phugoid.unwrap();
-    close(2.0 * PI / phugoid.frequency(), SQRT_2 * PI * speed / firm.g, 0.01);
+    assert_relatively_close(2.0 * PI / phugoid.frequency(), SQRT_2 * PI * speed / firm.g, 0.01);
     let ratio = lift / (firm.cd_0 + firm.cd_induced * lift * lift);
-    close(phugoid.damping_ratio(), 3.0 / (2.0 * SQRT_2 * ratio), 0.01);
+    assert_relatively_close(phugoid.damping_ratio(), 3.0 / (2.0 * SQRT_2 * ratio), 0.01);
     // Distance of the neutral point behind the centre of mass, in chords; pitch is much faster.
     let derivatives = {
-        let SteadyState { q, v, u, .. } = glide(&GLIDER, lift);
+        let SteadyState { q, v, u, .. } = steady_glide(&GLIDER, lift);
         Derivatives::at_state(&GLIDER, &q, &v, &u).unwrap().in_stability_axes()
     };
     let drag = GLIDER.cd_0 + GLIDER.cd_induced * lift * lift;
-    close(
+    assert_relatively_close(
         derivatives.static_margin(GLIDER.chord).unwrap(),
         -GLIDER.cm_alpha / (GLIDER.cl_alpha + drag),
         1e-3,
@@ -116,7 +118,8 @@ fn a_glider_has_the_phugoid_of_its_speed_and_drag() {
 fn dihedral_makes_a_spiral_stable() {
     let boundary = GLIDER.yaw_beta * GLIDER.roll_r / GLIDER.yaw_r;
     for (part, stable) in [(0.7, false), (1.3, true)] {
-        let spiral = modes(&Glider { roll_beta: part * boundary, ..GLIDER }, 0.5).spiral.unwrap();
+        let spiral =
+            flight_modes_of_glider(&Glider { roll_beta: part * boundary, ..GLIDER }, 0.5).spiral.unwrap();
         assert_eq!(spiral.exponent.re < 0.0, stable, "{spiral}");
     }
 }
@@ -152,7 +155,11 @@ fn a_quadrotor_hovers_and_answers() {
         .find()
         .unwrap();
     let hover = (mass * g / (4.0 * thrust)).sqrt();
-    found.u.iter().chain(found.v.rows(6, 4).iter()).for_each(|speed| close(*speed, hover, 1e-9));
+    found
+        .u
+        .iter()
+        .chain(found.v.rows(6, 4).iter())
+        .for_each(|speed| assert_relatively_close(*speed, hover, 1e-9));
 
     let system = measured_system(&at(&whole, 0.0), 0.0, &found.q, &found.v, &found.u).unwrap();
     let (across, up, roll, yaw) = (1, 2, 3, 5);
@@ -202,7 +209,7 @@ fn a_satellite_turns_by_its_wheels() {
     let (q, v) = apply_wheel_torques([-0.1, 0.0, 0.0], q, v, 20.0);
     assert!(v.norm() < 1e-8, "{v}");
     let hull = 2.0 * q[0].atan2(q[3]);
-    close(hull, -SATELLITE.wheel / (SATELLITE.ixx + 2.0 * SATELLITE.wheel) * q[4], 1e-8);
+    assert_relatively_close(hull, -SATELLITE.wheel / (SATELLITE.ixx + 2.0 * SATELLITE.wheel) * q[4], 1e-8);
 
     // With all wheels at once, and while tumbling, the angular momentum is constant.
     let v = SVector::from([0.1, -0.2, 0.15, 80.0, -50.0, 20.0]);
@@ -279,7 +286,7 @@ fn pose_above(place: Vector3<f64>, forward: Vector3<f64>) -> (SVector<f64, 7>, U
 }
 
 /// Returns the rate of the velocity relative to the Earth, in axes of the Earth.
-fn acceleration(t: f64, q: &SVector<f64, 7>, v: &SVector<f64, 6>, u: [f64; 3]) -> Vector3<f64> {
+fn acceleration_in_earth_axes(t: f64, q: &SVector<f64, 7>, v: &SVector<f64, 6>, u: [f64; 3]) -> Vector3<f64> {
     let tau = Mechanism::generalized_forces(&CRAFT, t, q, v, &u.into());
     let rates = Mechanism::forward_dynamics(&CRAFT, t, q, v, &tau);
     let (linear, angular) = (v.fixed_rows::<3>(0).into_owned(), v.fixed_rows::<3>(3).into_owned());
@@ -298,7 +305,7 @@ fn to_the_east_a_craft_needs_less_lift() {
         let lift = CRAFT.mass * (CRAFT.mu / (r * r) - inertial * inertial / r);
         let drag = 0.5 * CRAFT.density * (-40e3 / CRAFT.scale).exp() * CRAFT.drag_area * speed * speed;
         // Level and steady, with thrust equal to drag: the only acceleration is towards the centre.
-        let found = acceleration(0.0, &q, &v, [lift, drag, 0.0]);
+        let found = acceleration_in_earth_axes(0.0, &q, &v, [lift, drag, 0.0]);
         let expected = Vector3::new(-speed * speed / r, 0.0, 0.0);
         assert!((found - expected).norm() < 1e-8 * CRAFT.mu / (r * r), "{found} {expected}");
     }
@@ -315,7 +322,7 @@ fn over_the_earth_gravity_and_turning_pull() {
         let forward = UnitQuaternion::from_scaled_axis(up * (0.5 + k)) * east;
         let (q, turn) = pose_above(up * r, forward);
         let v = [3000.0 + 500.0 * k, 20.0, -40.0, 0.01, -0.02, 0.003].into();
-        let found = acceleration(50.0 * k, &q, &v, [2e4, 0.0, 0.0]);
+        let found = acceleration_in_earth_axes(50.0 * k, &q, &v, [2e4, 0.0, 0.0]);
         let velocity = turn * v.fixed_rows::<3>(0);
         let spin = Vector3::z() * CRAFT.turning;
         let air = CRAFT.density * (-(r - CRAFT.radius) / CRAFT.scale).exp();

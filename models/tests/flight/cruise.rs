@@ -1,6 +1,6 @@
 //! Transport and light aircraft given by their stability derivatives.
 
-use crate::{close, is_at};
+use crate::{assert_relatively_close, is_at};
 use linkwork::nalgebra::DMatrix;
 use linkwork::prelude::*;
 use linkwork_design::StateSpace;
@@ -12,7 +12,7 @@ use linkwork_models::CruisingAircraft;
 type State = (SVector<f64, 7>, SVector<f64, 6>, SVector<f64, 4>);
 
 /// Trims level flight at the cruise speed: pitch, climb, elevator and thrust are unknown.
-fn level(craft: &CruisingAircraft) -> State {
+fn trim_level_flight(craft: &CruisingAircraft) -> State {
     let found = equilibrium(craft)
         .moving([craft.cruise, 0.0, 0.0, 0.0, 0.0, 0.0].into())
         .with_inputs([0.01, 0.0, 0.0, 1e3].into())
@@ -26,8 +26,8 @@ fn level(craft: &CruisingAircraft) -> State {
     (found.q, found.v, found.u)
 }
 
-fn system(craft: &CruisingAircraft) -> StateSpace {
-    let (q, v, u) = level(craft);
+fn linearized_aircraft(craft: &CruisingAircraft) -> StateSpace {
+    let (q, v, u) = trim_level_flight(craft);
     flight::linear_system(craft, &q, &v, &u).unwrap()
 }
 
@@ -35,7 +35,7 @@ const TRANSPORT: CruisingAircraft = CruisingAircraft::BOEING_747;
 
 #[test]
 fn a_transport_cruises() {
-    let (q, v, u) = level(&TRANSPORT);
+    let (q, v, u) = trim_level_flight(&TRANSPORT);
     // In cruise the derivatives alone determine the trim: all deflections are zero.
     assert!((v[0] - 235.9).abs() < 1e-12 && v[2].abs() < 1e-9 && q[4].abs() < 1e-12);
     assert!(u[0].abs() < 1e-12 && u[3].abs() < 1e-6, "{u}");
@@ -47,7 +47,7 @@ fn a_transport_cruises() {
 /// Etkin's derivatives to 1e-9, and Etkin's printed matrices (ft and s) to their digits.
 #[test]
 fn a_transport_has_the_matrices_of_etkin_and_reid() {
-    let system = system(&TRANSPORT);
+    let system = linearized_aircraft(&TRANSPORT);
     let part = system.of_states(&["u", "w", "q", "theta"]).unwrap();
     let own = [
         [-0.006866611275943936, 0.013943035674208383, 0.0, -9.81],
@@ -88,16 +88,16 @@ fn a_transport_has_the_matrices_of_etkin_and_reid() {
     let CruisingAircraft { mass, density, cruise, area, chord, iyy, .. } = TRANSPORT;
     let (load, lag) = (0.5 * density * cruise * cruise * area, 0.25 * density * chord * area);
     let heave = load * TRANSPORT.cz_elevator / (mass - lag * TRANSPORT.cz_alpha_rate);
-    close(system.b()[(2, column)], heave, 1e-12);
+    assert_relatively_close(system.b()[(2, column)], heave, 1e-12);
     let pitch = load * chord * TRANSPORT.cm_elevator + lag * chord * TRANSPORT.cm_alpha_rate * heave;
-    close(system.b()[(4, column)], pitch / iyy, 1e-12);
+    assert_relatively_close(system.b()[(4, column)], pitch / iyy, 1e-12);
 }
 
 /// Checks that the modes of a transport aircraft have the published eigenvalues of Etkin and Reid, and those
 /// of an independent computation.
 #[test]
 fn a_transport_has_the_modes_of_etkin_and_reid() {
-    let modes = FlightModes::from_system(&system(&TRANSPORT)).unwrap();
+    let modes = FlightModes::from_system(&linearized_aircraft(&TRANSPORT)).unwrap();
     is_at(modes.short_period.as_ref(), -0.37166215649674494, 0.8868788584671381, 1e-9);
     is_at(modes.phugoid.as_ref(), -0.003289206894193512, 0.06720807985472561, 1e-9);
     is_at(modes.dutch_roll.as_ref(), -0.033052210108050734, 0.9467852313277423, 1e-9);
@@ -118,8 +118,9 @@ fn a_transport_has_the_modes_of_etkin_and_reid() {
 /// ratio.
 #[test]
 fn forces_by_the_rate_of_the_angle_of_attack_damp_the_short_period() {
-    let damping =
-        |craft| FlightModes::from_system(&system(&craft)).unwrap().short_period.unwrap().damping_ratio();
+    let damping = |craft| {
+        FlightModes::from_system(&linearized_aircraft(&craft)).unwrap().short_period.unwrap().damping_ratio()
+    };
     let without = CruisingAircraft { cz_alpha_rate: 0.0, cm_alpha_rate: 0.0, ..TRANSPORT };
     let ratio = damping(without) / damping(TRANSPORT);
     assert!((ratio - 7.0 / 8.0).abs() < 0.01, "{ratio}");
@@ -130,7 +131,7 @@ fn forces_by_the_rate_of_the_angle_of_attack_damp_the_short_period() {
 #[test]
 fn derivatives_without_dimension_are_those_declared() {
     let craft = TRANSPORT;
-    let (q, v, u) = level(&craft);
+    let (q, v, u) = trim_level_flight(&craft);
     let found = Derivatives::at_state(&craft, &q, &v, &u).unwrap();
     let reference =
         Reference { density: craft.density, area: craft.area, chord: craft.chord, span: craft.span };
@@ -160,16 +161,16 @@ fn derivatives_without_dimension_are_those_declared() {
     ];
     for axes in [found.clone(), found.in_stability_axes()] {
         for (force, by, expected) in declared {
-            close(axes.coefficient(force, by, &reference).unwrap(), expected, 1e-9);
+            assert_relatively_close(axes.coefficient(force, by, &reference).unwrap(), expected, 1e-9);
         }
     }
     // Table 6.2 of the book, in N·s/m: X_u = −1.982e3, Z_w = −9.030e4, M_q = −1.521e7, Z_ẇ = 1.909e3.
     for (force, by, published) in
         [("X", "u", -1.982e3), ("Z", "w", -9.030e4), ("M", "q", -1.521e7), ("Z", "w'", 1.909e3)]
     {
-        close(found.of_force(force, by).unwrap(), published, 1e-3);
+        assert_relatively_close(found.of_force(force, by).unwrap(), published, 1e-3);
     }
-    close(found.static_margin(craft.chord).unwrap(), 1.023 / 4.920, 1e-9);
+    assert_relatively_close(found.static_margin(craft.chord).unwrap(), 1.023 / 4.920, 1e-9);
     assert!(found.of_force("M", "flaps").unwrap_err().to_string().contains("elevator"));
 }
 
@@ -177,7 +178,7 @@ fn derivatives_without_dimension_are_those_declared() {
 /// 5).
 #[test]
 fn a_light_aircraft_has_the_modes_of_nelson() {
-    let modes = FlightModes::from_system(&system(&CruisingAircraft::NAVION)).unwrap();
+    let modes = FlightModes::from_system(&linearized_aircraft(&CruisingAircraft::NAVION)).unwrap();
     is_at(modes.short_period.as_ref(), -2.51, 2.59, 1e-2);
     is_at(modes.phugoid.as_ref(), -0.017, 0.213, 1e-2);
     is_at(modes.dutch_roll.as_ref(), -0.487, 2.335, 1e-2);
@@ -209,10 +210,10 @@ fn an_airliner_has_the_modes_of_cook() {
         cn_r: derivative_by_rate(-0.257, izz),
         ..base
     };
-    let modes = FlightModes::from_system(&system(&craft)).unwrap();
+    let modes = FlightModes::from_system(&linearized_aircraft(&craft)).unwrap();
     let dutch_roll = modes.dutch_roll.unwrap();
-    close(2.0 * dutch_roll.damping_ratio() * dutch_roll.frequency(), 0.254, 2e-3);
-    close(dutch_roll.frequency().powi(2), 1.433, 1e-3);
+    assert_relatively_close(2.0 * dutch_roll.damping_ratio() * dutch_roll.frequency(), 0.254, 2e-3);
+    assert_relatively_close(dutch_roll.frequency().powi(2), 1.433, 1e-3);
     is_at(modes.roll.as_ref(), -1.329, 0.0, 1e-3);
     is_at(modes.spiral.as_ref(), -0.0065, 0.0, 5e-3);
 }
@@ -236,14 +237,14 @@ fn modes_of_printed_matrices_are_named() {
     for (mode, damping, stiffness, digits) in
         [(modes.phugoid.unwrap(), 0.033, 0.020, 0.02), (modes.short_period.unwrap(), 0.902, 2.666, 1e-3)]
     {
-        close(2.0 * mode.damping_ratio() * mode.frequency(), damping, digits);
-        close(mode.frequency().powi(2), stiffness, digits);
+        assert_relatively_close(2.0 * mode.damping_ratio() * mode.frequency(), damping, digits);
+        assert_relatively_close(mode.frequency().powi(2), stiffness, digits);
     }
 }
 
 #[test]
 fn off_a_steady_state_the_error_says_by_how_much() {
-    let (q, mut v, u) = level(&TRANSPORT);
+    let (q, mut v, u) = trim_level_flight(&TRANSPORT);
     v[4] = 0.01;
     let error = flight::linear_system(&TRANSPORT, &q, &v, &u).unwrap_err().to_string();
     assert!(error.contains("not steady") && error.contains("flight.v"), "{error}");

@@ -13,14 +13,14 @@ const FOOT: f64 = 0.3048;
 /// Tolerance of rotational rates: the source divides by moments of inertia in constants of four digits.
 const ROUNDED: f64 = 2.5e-4;
 
-fn posed(place: [f64; 3], [bank, pitch, heading]: [f64; 3]) -> SVector<f64, 7> {
+fn pose_coordinates(place: [f64; 3], [bank, pitch, heading]: [f64; 3]) -> SVector<f64, 7> {
     let turn = UnitQuaternion::from_euler_angles(bank, pitch, heading);
     let [x, y, z] = place;
     SVector::from([x, y, z, turn.i, turn.j, turn.k, turn.w])
 }
 
 /// Returns the velocity in body axes and the power, for a speed, angle of attack, sideslip, and body rates.
-fn moving(speed: f64, alpha: f64, beta: f64, [p, q, r]: [f64; 3], power: f64) -> SVector<f64, 7> {
+fn velocity_and_power(speed: f64, alpha: f64, beta: f64, [p, q, r]: [f64; 3], power: f64) -> SVector<f64, 7> {
     let across = speed * beta.cos();
     SVector::from([across * alpha.cos(), speed * beta.sin(), across * alpha.sin(), p, q, r, power])
 }
@@ -31,8 +31,8 @@ fn moving(speed: f64, alpha: f64, beta: f64, [p, q, r]: [f64; 3], power: f64) ->
 fn all_rates_are_those_of_the_book() {
     let fighter = Fighter { place: 0.4, ..Fighter::F16 };
     let (speed, alpha, beta) = (500.0 * FOOT, 0.5, -0.2);
-    let q = posed([1000.0 * FOOT, 900.0 * FOOT, -10000.0 * FOOT], [-1.0, 1.0, -1.0]);
-    let v = moving(speed, alpha, beta, [0.7, -0.8, 0.9], 90.0);
+    let q = pose_coordinates([1000.0 * FOOT, 900.0 * FOOT, -10000.0 * FOOT], [-1.0, 1.0, -1.0]);
+    let v = velocity_and_power(speed, alpha, beta, [0.7, -0.8, 0.9], 90.0);
     let u = [0.9, 20.0, -15.0, -20.0].into();
     let whole = fighter.extended();
     let tau = whole.generalized_forces(0.0, &q, &v, &u);
@@ -72,11 +72,11 @@ struct Level {
 }
 
 /// Trims level flight at sea level: angle of attack, throttle, power and elevator are unknown.
-fn level(fighter: &Fighter, speed: f64) -> Level {
+fn trim_level_flight(fighter: &Fighter, speed: f64) -> Level {
     let whole = fighter.extended();
     let found = equilibrium(&whole)
-        .from(posed([0.0; 3], [0.0, 0.1, 0.0]))
-        .moving(moving(speed * FOOT, 0.1, 0.0, [0.0; 3], 20.0))
+        .from(pose_coordinates([0.0; 3], [0.0, 0.1, 0.0]))
+        .moving(velocity_and_power(speed * FOOT, 0.1, 0.0, [0.0; 3], 20.0))
         .with_inputs([0.3, -1.0, 0.0, 0.0].into())
         .coordinates(["flight.wy"])
         .speeds(["flight.vx", "flight.vz"])
@@ -108,7 +108,7 @@ fn trimmed_flight_is_that_of_the_book() {
         (800.0, 0.378, -0.045, -0.943),
     ];
     for (speed, throttle, alpha, elevator) in published {
-        let Level { v, u, .. } = level(&Fighter::F16, speed);
+        let Level { v, u, .. } = trim_level_flight(&Fighter::F16, speed);
         let found = [u[0], v[2].atan2(v[0]).to_degrees(), u[1]];
         for (found, (expected, digits)) in
             found.into_iter().zip([(throttle, 0.0012), (alpha, 0.05), (elevator, 0.006)])
@@ -120,7 +120,7 @@ fn trimmed_flight_is_that_of_the_book() {
     for (place, throttle, alpha, elevator) in
         [(0.35, 0.1385, 0.03691, -0.7588), (0.3, 0.1485, 0.03936, -1.931), (0.38, 0.1325, 0.03544, -0.0559)]
     {
-        let Level { v, u, .. } = level(&Fighter { place, ..Fighter::F16 }, 502.0);
+        let Level { v, u, .. } = trim_level_flight(&Fighter { place, ..Fighter::F16 }, 502.0);
         assert!((u[0] - throttle).abs() < 2e-4, "{u}");
         assert!((v[2].atan2(v[0]) - alpha).abs() < 2e-5, "{v}");
         assert!((u[1] - elevator).abs() < 1e-3, "{u}");
@@ -135,9 +135,9 @@ fn a_fighter_turns_as_in_the_book() {
     let (bank, pitch, turning) = (1.367_f64, 0.05185_f64, 0.3);
     let rates =
         [-pitch.sin(), bank.sin() * pitch.cos(), bank.cos() * pitch.cos()].map(|share| share * turning);
-    let v = moving(502.0 * FOOT, 0.2485, 4.8e-4, rates, 64.0);
+    let v = velocity_and_power(502.0 * FOOT, 0.2485, 4.8e-4, rates, 64.0);
     let found = equilibrium(&whole)
-        .from(posed([0.0; 3], [bank, pitch, 0.0]))
+        .from(pose_coordinates([0.0; 3], [bank, pitch, 0.0]))
         .moving(v)
         .with_inputs([0.85, -6.0, 0.1, -0.4].into())
         .coordinates(["flight.wx", "flight.wy"])
@@ -175,7 +175,7 @@ fn a_fighter_turns_as_in_the_book() {
     }
 }
 
-fn linear(fighter: &Fighter, at_rest: &Level) -> StateSpace {
+fn linearized_fighter(fighter: &Fighter, at_rest: &Level) -> StateSpace {
     let whole = fighter.extended();
     flight::linear_system(&at(&whole, 0.0), &at_rest.q, &at_rest.v, &at_rest.u).unwrap()
 }
@@ -195,8 +195,8 @@ const ACROSS: [[f64; 4]; 3] =
 
 #[test]
 fn linear_motion_is_that_of_the_book() {
-    let trim = level(&Fighter::F16, 502.0);
-    let system = linear(&Fighter::F16, &trim);
+    let trim = trim_level_flight(&Fighter::F16, 502.0);
+    let system = linearized_fighter(&Fighter::F16, &trim);
     let part = system.of_states(&["u", "w", "theta", "q"]).unwrap();
     let speed = 502.0 * FOOT;
     let (s, c) = trim.v[2].atan2(trim.v[0]).sin_cos();
@@ -232,7 +232,7 @@ fn linear_motion_is_that_of_the_book() {
 fn the_centre_of_mass_decides_on_the_modes_of_a_fighter() {
     let modes_with_center_of_mass = |place| {
         let fighter = Fighter { place, ..Fighter::F16 };
-        FlightModes::from_system(&linear(&fighter, &level(&fighter, 502.0))).unwrap()
+        FlightModes::from_system(&linearized_fighter(&fighter, &trim_level_flight(&fighter, 502.0))).unwrap()
     };
     let (stable, unstable) = (modes_with_center_of_mass(0.3), modes_with_center_of_mass(0.38));
     assert!(stable.short_period.is_some_and(|mode| mode.exponent.re < -1.0));
@@ -247,11 +247,11 @@ fn the_centre_of_mass_decides_on_the_modes_of_a_fighter() {
     );
 
     // Lateral modes: those of the book's matrix with its bank rate, p + r tan θ.
-    let trim = level(&Fighter::F16, 502.0);
+    let trim = trim_level_flight(&Fighter::F16, 502.0);
     let [beta, p, r] = ACROSS;
     let bank = [0.0, 1.0, trim.v[2] / trim.v[0], 0.0];
     let published = DMatrix::from_fn(4, 4, |i, j| [beta, p, r, bank][i][j]).complex_eigenvalues();
-    let found = FlightModes::from_system(&linear(&Fighter::F16, &trim)).unwrap();
+    let found = FlightModes::from_system(&linearized_fighter(&Fighter::F16, &trim)).unwrap();
     let real =
         |from: f64, to: f64| published.iter().find(|e| e.im == 0.0 && from < e.re && e.re < to).unwrap();
     let wave = published.iter().find(|e| e.im > 0.0).unwrap();

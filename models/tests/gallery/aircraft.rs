@@ -24,7 +24,11 @@ const A: Aircraft = Aircraft {
     cm_elevator: -1.3,
 };
 
-fn state(turn: UnitQuaternion<f64>, v: Vector3<f64>, w: Vector3<f64>) -> (SVector<f64, 7>, SVector<f64, 6>) {
+fn aircraft_state(
+    turn: UnitQuaternion<f64>,
+    v: Vector3<f64>,
+    w: Vector3<f64>,
+) -> (SVector<f64, 7>, SVector<f64, 6>) {
     let v = turn.inverse() * v;
     let w = turn.inverse() * w;
     ([0.0, 0.0, 0.0, turn.i, turn.j, turn.k, turn.w].into(), [v.x, v.y, v.z, w.x, w.y, w.z].into())
@@ -43,7 +47,7 @@ fn level_flight() {
     let thrust = load * cd / alpha.cos();
     let elevator = -(A.cm_0 + A.cm_alpha * alpha) / A.cm_elevator;
     let attitude = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), alpha);
-    let (q, v) = state(attitude, Vector3::new(speed, 0.0, 0.0), Vector3::zeros());
+    let (q, v) = aircraft_state(attitude, Vector3::new(speed, 0.0, 0.0), Vector3::zeros());
     assert_close(A.angle_of_attack(&q, &v), alpha, 1e-14);
     assert_close(A.airspeed(&q, &v), speed, 1e-14);
     let tau = A.generalized_forces(&q, &v, &[elevator, thrust].into());
@@ -51,7 +55,7 @@ fn level_flight() {
 
     // After a small pitch-up the moment lowers the nose.
     let nose_up = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), alpha + 0.01);
-    let (q, v) = state(nose_up, Vector3::new(speed, 0.0, 0.0), Vector3::zeros());
+    let (q, v) = aircraft_state(nose_up, Vector3::new(speed, 0.0, 0.0), Vector3::zeros());
     let tau = A.generalized_forces(&q, &v, &[elevator, thrust].into());
     let back = A.forward_dynamics(&q, &v, &tau)[4];
     assert_close(back, load * A.chord * A.cm_alpha * 0.01 / A.iyy, 1e-12);
@@ -67,7 +71,7 @@ fn level_turn() {
     let rate = A.g * bank.tan() / speed;
     let attitude = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), bank)
         * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), alpha);
-    let (q, v) = state(attitude, Vector3::new(speed, 0.0, 0.0), Vector3::new(0.0, 0.0, rate));
+    let (q, v) = aircraft_state(attitude, Vector3::new(speed, 0.0, 0.0), Vector3::new(0.0, 0.0, rate));
     let a = smooth.forward_dynamics(&q, &v, &SVector::zeros());
     assert_near(a.fixed_rows::<3>(0).into_owned(), SVector::zeros(), 1e-12);
 }

@@ -1,4 +1,4 @@
-use crate::testing::precisely;
+use crate::testing::precise_integrator;
 use linkwork::prelude::*;
 use linkwork_models::AndrewsSqueezer;
 
@@ -31,7 +31,7 @@ fn andrews_squeezer_ends_where_published() -> Result<(), Error> {
     let squeezer = AndrewsSqueezer {};
     let end = simulate(&squeezer)
         .from(AndrewsSqueezer::START, [0.0; 7])
-        .method(precisely())
+        .method(precise_integrator())
         .duration(0.03)
         .finish()?;
     for (found, expected) in end.q.iter().zip(END) {

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, elliptic, precisely};
+use crate::testing::{assert_close, assert_near, elliptic_integral, precise_integrator};
 use linkwork::nalgebra::Vector3;
 use linkwork::prelude::*;
 use linkwork_models::BallInBowl;
@@ -6,7 +6,7 @@ use linkwork_models::BallInBowl;
 const B: BallInBowl = BallInBowl { g: 9.81, mass: 0.3, radius: 0.05, bowl: 0.45 };
 
 /// Returns the configuration at the angle `theta` from the lowest point towards x, without rotation.
-fn place(theta: f64) -> SVector<f64, 7> {
+fn ball_configuration(theta: f64) -> SVector<f64, 7> {
     let reach = B.bowl - B.radius;
     [reach * theta.sin(), 0.0, -reach * theta.cos(), 0.0, 0.0, 0.0, 1.0].into()
 }
@@ -19,13 +19,13 @@ fn swings_like_a_longer_pendulum() -> Result<(), Error> {
     for theta in [1.1_f64, 1e-3] {
         let angular_speed = |v: &SVector<f64, 6>| v[4];
         let end = simulate(&B)
-            .from(place(theta), [0.0; 6])
-            .method(precisely())
+            .from(ball_configuration(theta), [0.0; 6])
+            .method(precise_integrator())
             .until_crossing(Crossing::Rising, |_, _, v| -angular_speed(v))
             .duration(10.0)
             .finish()?;
         let length = 1.4 * (B.bowl - B.radius);
-        let period = 4.0 * (length / B.g).sqrt() * elliptic((theta / 2.0).sin().powi(2));
+        let period = 4.0 * (length / B.g).sqrt() * elliptic_integral((theta / 2.0).sin().powi(2));
         let crossing = if end.t < 0.75 * period { period / 2.0 } else { period };
         assert_close(end.t, crossing, 1e-7);
     }
@@ -38,13 +38,13 @@ fn circles_with_spin() -> Result<(), Error> {
     for spin in [0.0, 40.0, -15.0] {
         let (square, linear) = (1.4 * reach * theta.cos(), 0.4 * B.radius * spin);
         let rate = (linear + (linear * linear + 4.0 * square * B.g).sqrt()) / (2.0 * square);
-        let q = place(theta);
+        let q = ball_configuration(theta);
         let outward = Vector3::new(q[0], q[1], q[2]) / reach;
         let velocity = Vector3::new(0.0, rate * q[0], 0.0);
         let w = outward * spin - outward.cross(&velocity) / B.radius;
         let v = [velocity.x, velocity.y, velocity.z, w.x, w.y, w.z];
         let time = 2.0;
-        let end = simulate(&B).from(q, v).method(precisely()).duration(time).finish()?;
+        let end = simulate(&B).from(q, v).method(precise_integrator()).duration(time).finish()?;
         let (s, c) = (rate * time).sin_cos();
         let found = end.q.fixed_rows::<3>(0).into_owned();
         assert_near(found, [q[0] * c, q[0] * s, q[2]].into(), 1e-8);

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precisely};
+use crate::testing::{assert_close, assert_near, precise_integrator};
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork_models::BallInFunnel;
@@ -7,7 +7,7 @@ const B: BallInFunnel = BallInFunnel { g: 9.81, mass: 0.1, radius: 0.02, half_an
 
 /// Returns a state at the distance `rho` from the axis, towards x, without rotation. The ball moves along the
 /// funnel at `sinking` and around it at `rate`, with a spin about the normal.
-fn state(rho: f64, rate: f64, sinking: f64, spin: f64) -> (SVector<f64, 7>, SVector<f64, 6>) {
+fn ball_state(rho: f64, rate: f64, sinking: f64, spin: f64) -> (SVector<f64, 7>, SVector<f64, 6>) {
     let (s, c) = B.half_angle.sin_cos();
     let (normal, along) = (Vector3::new(-c, 0.0, s), Vector3::new(s, 0.0, c));
     let velocity = along * sinking + Vector3::y() * (rate * rho);
@@ -25,12 +25,12 @@ fn circles_level() -> Result<(), Error> {
     for spin in [0.0, 60.0, -25.0] {
         let (square, linear) = (1.4 * rho * s, 0.4 * B.radius * spin * c);
         let rate = (-linear + (linear * linear + 4.0 * square * B.g * c).sqrt()) / (2.0 * square);
-        let (q, v) = state(rho, rate, 0.0, spin);
+        let (q, v) = ball_state(rho, rate, 0.0, spin);
         assert!(B.constraint_residuals(&q).amax() < 1e-16);
         assert!(B.constraint_rates(&q, &v).amax() < 1e-14);
         let (_, lambda) = B.constrained_dynamics(&q, &v, &SVector::zeros());
         assert_close(lambda[0], B.mass * (rate * rate * rho * c + B.g * s), 1e-13);
-        let end = simulate(&B).from(q, v).method(precisely()).duration(1.0).finish()?;
+        let end = simulate(&B).from(q, v).method(precise_integrator()).duration(1.0).finish()?;
         let (sine, cosine) = rate.sin_cos();
         let found = end.q.fixed_rows::<3>(0).into_owned();
         assert_near(found, [rho * cosine, rho * sine, q[2]].into(), 1e-8);
@@ -54,8 +54,8 @@ fn keeps_its_integrals() -> Result<(), Error> {
         let spin = w.dot(&normal) - momentum / rho * c / (B.radius * s);
         SVector::from([momentum, spin, B.kinetic_energy(q, v) + B.potential_energy(q)])
     };
-    let (q, v) = state(0.2, 5.0, -0.6, 30.0);
-    let run = simulate(&B).from(q, v).method(precisely()).duration(1.5).sample_every(0.1);
+    let (q, v) = ball_state(0.2, 5.0, -0.6, 30.0);
+    let run = simulate(&B).from(q, v).method(precise_integrator()).duration(1.5).sample_every(0.1);
     let mut lowest = q[2];
     for sample in run {
         let Sample { q: now, v: then, .. } = sample?;

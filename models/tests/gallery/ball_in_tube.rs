@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, precisely};
+use crate::testing::{assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::BallInTube;
 
@@ -12,7 +12,7 @@ fn rises_again() -> Result<(), Error> {
     let v = [0.0, around * reach, sinking, spin, sinking / r, -around * reach / r];
     let frequency = (2.0_f64 / 7.0).sqrt() * around;
     let middle = -2.5 * B.g / (around * around) - r * spin / around;
-    let run = simulate(&B).from(q, v).method(precisely()).duration(1.0).sample_every(0.1);
+    let run = simulate(&B).from(q, v).method(precise_integrator()).duration(1.0).sample_every(0.1);
     for sample in run {
         let Sample { t, q, .. } = sample?;
         let ((s, c), (sz, cz)) = ((around * t).sin_cos(), (frequency * t).sin_cos());

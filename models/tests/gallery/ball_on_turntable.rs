@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, precisely};
+use crate::testing::{assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::BallOnTurntable;
 
@@ -22,7 +22,7 @@ fn goes_round(ball: BallOnTurntable) -> Result<(), Error> {
     let v = [velocity[0], velocity[1], 0.0, w[0], w[1], w[2]];
     assert!(ball.constraint_rates(0.0, &q.into(), &v.into()).amax() < 1e-14);
     let rate = 2.0 / 7.0 * ball.spin;
-    let run = simulate(&ball).from(q, v).method(precisely()).duration(4.0).sample_every(0.5);
+    let run = simulate(&ball).from(q, v).method(precise_integrator()).duration(4.0).sample_every(0.5);
     for sample in run {
         let Sample { t, q, .. } = sample?;
         let (s, c) = (rate * t).sin_cos();

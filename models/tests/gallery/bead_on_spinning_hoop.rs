@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precisely};
+use crate::testing::{assert_close, assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::BeadOnSpinningHoop;
 use std::f64::consts::TAU;
@@ -24,7 +24,7 @@ fn oscillation_about_the_tilted_equilibrium() -> Result<(), Error> {
     let tilt = (H.g / (H.radius * H.spin * H.spin)).acos();
     let end = simulate(&H)
         .from([tilt + 1e-4], [0.0])
-        .method(precisely())
+        .method(precise_integrator())
         .until_crossing(Crossing::Falling, |_, _, v| v[0])
         .finish()?;
     assert_close(end.t, TAU / (H.spin * tilt.sin()), 1e-7);
@@ -38,7 +38,8 @@ fn jacobis_integral_is_conserved() -> Result<(), Error> {
         H.mass * H.radius * (H.radius * speed2 / 2.0 - H.g * q[0].cos())
     };
     let start = jacobi_integral(&[0.2].into(), &[0.5].into());
-    for sample in simulate(&H).from([0.2], [0.5]).method(precisely()).duration(3.0).sample_every(0.5) {
+    for sample in simulate(&H).from([0.2], [0.5]).method(precise_integrator()).duration(3.0).sample_every(0.5)
+    {
         let Sample { q, v, .. } = sample?;
         assert_close(jacobi_integral(&q, &v), start, 1e-10);
     }

@@ -9,7 +9,7 @@ const WHEEL: usize = 6;
 const STEER: usize = 7;
 
 /// Returns `A` of `ẋ = A x` in lean, steer and their rates at a speed, and the inverse of the mass matrix.
-fn linear(speed: f64) -> (Matrix4<f64>, Matrix2<f64>) {
+fn linearized_bicycle(speed: f64) -> (Matrix4<f64>, Matrix2<f64>) {
     let bicycle = Bicycle::BENCHMARK;
     let q = bicycle.neutral();
     let v = SVector::from([
@@ -48,7 +48,7 @@ fn matrices_are_the_published_ones() {
         assert!(worst <= 1e-11 * expected.amax().max(1.0), "{found} for {expected}");
     };
     for speed in [0.0, 1.0, 4.6] {
-        let (a, inverse) = linear(speed);
+        let (a, inverse) = linearized_bicycle(speed);
         let mass = inverse.try_inverse().expect("regular");
         assert_close_matrices(mass, m);
         assert_close_matrices(-mass * a.fixed_view::<2, 2>(2, 0), k0 * 9.81 + k2 * (speed * speed));
@@ -163,7 +163,7 @@ const EIGENVALUES: [(f64, [(f64, f64); 4]); 11] = [
 #[test]
 fn eigenvalues_are_the_published_ones() {
     for (speed, expected) in EIGENVALUES {
-        let found = linear(speed).0.complex_eigenvalues();
+        let found = linearized_bicycle(speed).0.complex_eigenvalues();
         for (re, im) in expected {
             let nearest = found.iter().map(|e| (e.re - re).hypot(e.im - im)).fold(f64::INFINITY, f64::min);
             assert!(nearest < 1e-10, "{re} + {im} i at {speed} m/s is off by {nearest}");
@@ -174,7 +174,7 @@ fn eigenvalues_are_the_published_ones() {
 #[test]
 fn weave_and_capsize_speeds() {
     let largest_growth_rate = |speed: f64, weaving: bool| {
-        let exponents = linear(speed).0.complex_eigenvalues();
+        let exponents = linearized_bicycle(speed).0.complex_eigenvalues();
         let of = exponents.iter().filter(|e| (e.im.abs() > 1e-6) == weaving).map(|e| e.re);
         of.fold(f64::NEG_INFINITY, f64::max)
     };

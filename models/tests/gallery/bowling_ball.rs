@@ -1,11 +1,11 @@
-use crate::testing::{assert_close, assert_near, precisely};
+use crate::testing::{assert_close, assert_near, precise_integrator};
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork_models::BowlingBall;
 
 const B: BowlingBall = BowlingBall { g: 9.81, mass: 6.0, radius: 0.11, friction: 0.2, regular_speed: 1e-3 };
 
-fn place() -> SVector<f64, 7> {
+fn start_configuration() -> SVector<f64, 7> {
     [0.0, 0.0, B.radius, 0.0, 0.0, 0.0, 1.0].into()
 }
 
@@ -19,7 +19,7 @@ fn accelerations_follow_the_slip() {
         let slip = [1.0 - 3.0 * B.radius, -0.4 + 2.0 * B.radius];
         let size = (slip[0] * slip[0] + slip[1] * slip[1] + regular_speed * regular_speed).sqrt();
         let [x, y] = slip.map(|s| -B.friction * B.g * s / size);
-        let (a, normal) = ball.constrained_dynamics(&place(), &v, &SVector::zeros());
+        let (a, normal) = ball.constrained_dynamics(&start_configuration(), &v, &SVector::zeros());
         assert_close(normal[0], B.mass * B.g, 1e-14);
         // Acceleration in the ball's axes, which rotate.
         let linear = a.fixed_rows::<3>(0) + Vector3::new(2.0, 3.0, 5.0).cross(&Vector3::new(1.0, -0.4, 0.0));
@@ -37,7 +37,7 @@ fn slides_and_then_rolls() -> Result<(), Error> {
     let time = 2.0 * speed / (7.0 * B.friction * B.g);
     let roll_for_duration = |t: f64| {
         let v = [speed, 0.0, 0.0, 0.0, 0.0, 0.0];
-        simulate(&B).from(place(), v).method(precisely()).duration(t).finish()
+        simulate(&B).from(start_configuration(), v).method(precise_integrator()).duration(t).finish()
     };
     let half = roll_for_duration(time / 2.0)?;
     assert_close(half.q[0], speed * time / 2.0 - B.friction * B.g * time * time / 8.0, 1e-6);
@@ -61,7 +61,8 @@ fn hooks() -> Result<(), Error> {
     let slip = [4.0, 30.0 * B.radius];
     let size = slip[0].hypot(slip[1]);
     let t = 0.5;
-    let end = simulate(&B).from(place(), v).method(precisely()).duration(t).finish()?;
+    let end =
+        simulate(&B).from(start_configuration(), v).method(precise_integrator()).duration(t).finish()?;
     let [x, y] = slip.map(|s| -B.friction * B.g * s / size * t * t / 2.0);
     assert_near(end.q.fixed_rows::<3>(0).into_owned(), [4.0 * t + x, y, B.radius].into(), 1e-6);
     Ok(())

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, precisely};
+use crate::testing::{assert_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::BrakedFlywheel;
 
@@ -7,7 +7,9 @@ const W: BrakedFlywheel = BrakedFlywheel { inertia: 0.3, brake_torque: 0.9, cree
 #[test]
 fn runs_down() -> Result<(), Error> {
     let start = 12.0_f64;
-    for sample in simulate(&W).from([0.0], [start]).method(precisely()).duration(5.0).sample_every(0.5) {
+    for sample in
+        simulate(&W).from([0.0], [start]).method(precise_integrator()).duration(5.0).sample_every(0.5)
+    {
         let Sample { t, v, .. } = sample?;
         let left = (start / W.creep).sinh() * (-W.brake_torque * t / (W.inertia * W.creep)).exp();
         assert_close(v[0], W.creep * left.asinh(), 1e-9);

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, precisely};
+use crate::testing::{assert_close, precise_integrator};
 use linkwork::{frame, prelude::*};
 use linkwork_models::BricardLinkage;
 
@@ -35,7 +35,7 @@ fn one_condition_follows_from_the_others() {
 #[test]
 fn swings() -> Result<(), Error> {
     let start = B.potential_energy(&B.neutral());
-    let run = simulate(&B).method(precisely()).duration(10.0).sample_every(0.25);
+    let run = simulate(&B).method(precise_integrator()).duration(10.0).sample_every(0.25);
     let mut farthest = 0.0_f64;
     for sample in run {
         let Sample { q, v, .. } = sample?;

@@ -1,4 +1,4 @@
-use crate::testing::precisely;
+use crate::testing::precise_integrator;
 use linkwork::prelude::*;
 use linkwork_models::CarAxle;
 
@@ -7,7 +7,8 @@ use linkwork_models::CarAxle;
 #[test]
 fn car_axle_ends_where_published() -> Result<(), Error> {
     let start = ([0.0, 0.5, 1.0, 0.5], [-0.5, 0.0, -0.5, 0.0]);
-    let end = simulate(&CarAxle {}).from(start.0, start.1).method(precisely()).duration(3.0).finish()?;
+    let end =
+        simulate(&CarAxle {}).from(start.0, start.1).method(precise_integrator()).duration(3.0).finish()?;
     let q =
         [0.049_345_578_427_524_09, 0.496_989_460_230_008_1, 1.041_742_524_885_426_1, 0.373_911_027_265_365_8];
     let v = [

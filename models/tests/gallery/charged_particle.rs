@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, precisely};
+use crate::testing::{assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::ChargedParticle;
 
@@ -15,7 +15,7 @@ fn lorentz_force() {
 fn circles_about_a_drifting_centre() -> Result<(), Error> {
     let (omega, drift) = (P.charge * P.magnetic / P.mass, P.electric / P.magnetic);
     // Start at the origin with the drift velocity and 2 m/s more along x.
-    let run = simulate(&P).from([0.0; 3], [drift + 2.0, 0.0, 0.3]).method(precisely());
+    let run = simulate(&P).from([0.0; 3], [drift + 2.0, 0.0, 0.3]).method(precise_integrator());
     for sample in run.duration(2.0).sample_every(0.1) {
         let Sample { t, q, .. } = sample?;
         let (s, c) = (omega * t).sin_cos();

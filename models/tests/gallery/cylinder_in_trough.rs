@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, elliptic, precisely};
+use crate::testing::{assert_close, assert_near, elliptic_integral, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::CylinderInTrough;
 
@@ -17,10 +17,10 @@ fn period_of_a_longer_pendulum() -> Result<(), Error> {
     let start = 1.2_f64;
     let end = simulate(&C)
         .from([start], [0.0])
-        .method(precisely())
+        .method(precise_integrator())
         .until_crossing(Crossing::Falling, |_, _, v| v[0])
         .finish()?;
     let length = 1.5 * (C.trough - C.radius);
-    assert_close(end.t, 4.0 * (length / C.g).sqrt() * elliptic((start / 2.0).sin().powi(2)), 1e-9);
+    assert_close(end.t, 4.0 * (length / C.g).sqrt() * elliptic_integral((start / 2.0).sin().powi(2)), 1e-9);
     Ok(())
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, elliptic, precisely};
+use crate::testing::{assert_close, assert_near, elliptic_integral, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::DuffingOscillator;
 use std::f64::consts::TAU;
@@ -16,8 +16,8 @@ fn equation_of_motion() {
     assert_close(D.potential_energy(t, &q), 1.5 * x * x + 1.25 * x.powi(4), 1e-14);
 }
 
-fn period(d: DuffingOscillator, start: f64) -> Result<f64, Error> {
-    let run = simulate(&d).from([start], [0.0]).method(precisely());
+fn period_of_oscillation(d: DuffingOscillator, start: f64) -> Result<f64, Error> {
+    let run = simulate(&d).from([start], [0.0]).method(precise_integrator());
     Ok(run.until_crossing(Crossing::Falling, |_, _, v| v[0]).finish()?.t)
 }
 
@@ -27,8 +27,8 @@ fn period_by_an_elliptic_integral() -> Result<(), Error> {
     for amplitude in [0.1, 1.0, 4.0] {
         let stiff = free.beta * amplitude * amplitude;
         let sum = free.alpha + stiff;
-        let expected = 4.0 * elliptic(stiff / sum / 2.0) * (free.mass / sum).sqrt();
-        assert_close(period(free, amplitude)?, expected, 1e-9);
+        let expected = 4.0 * elliptic_integral(stiff / sum / 2.0) * (free.mass / sum).sqrt();
+        assert_close(period_of_oscillation(free, amplitude)?, expected, 1e-9);
     }
     Ok(())
 }
@@ -38,6 +38,6 @@ fn two_wells() -> Result<(), Error> {
     let double = DuffingOscillator { damping: 0.0, drive: 0.0, alpha: -3.0, ..D };
     let well = (3.0_f64 / 5.0).sqrt();
     assert_close(double.bias_forces(0.0, &[well].into(), &[0.0].into())[0], 0.0, 1e-15);
-    assert_close(period(double, well + 1e-4)?, TAU / (6.0_f64 / 0.7).sqrt(), 1e-6);
+    assert_close(period_of_oscillation(double, well + 1e-4)?, TAU / (6.0_f64 / 0.7).sqrt(), 1e-6);
     Ok(())
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precisely};
+use crate::testing::{assert_close, assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::ElasticPendulum;
 use std::f64::consts::TAU;
@@ -20,7 +20,7 @@ fn equations_of_motion() {
 fn bounces_harmonically_where_it_hangs() -> Result<(), Error> {
     let rest = P.free_length + P.mass * P.g / P.stiffness;
     let omega = (P.stiffness / P.mass).sqrt();
-    let run = simulate(&P).from([rest + 0.1, 0.0], [0.0, 0.0]).method(precisely());
+    let run = simulate(&P).from([rest + 0.1, 0.0], [0.0, 0.0]).method(precise_integrator());
     for sample in run.duration(2.0).sample_every(0.25) {
         let Sample { t, q, .. } = sample?;
         assert_near(q, SVector::from([rest + 0.1 * (omega * t).cos(), 0.0]), 1e-10);
@@ -33,7 +33,7 @@ fn period_of_small_swings() -> Result<(), Error> {
     let rest = P.free_length + P.mass * P.g / P.stiffness;
     let end = simulate(&P)
         .from([rest, 1e-4], [0.0, 0.0])
-        .method(precisely())
+        .method(precise_integrator())
         .until_crossing(Crossing::Falling, |_, _, v| v[1])
         .finish()?;
     assert_close(end.t, TAU * (rest / P.g).sqrt(), 1e-6);

@@ -13,20 +13,20 @@ const R: FiveBar = FiveBar {
     forearm: 0.4,
 };
 
-fn direction(angle: f64) -> Vector2<f64> {
+fn unit_direction(angle: f64) -> Vector2<f64> {
     Vector2::new(angle.cos(), angle.sin())
 }
 
 /// Returns the positions of elbows and tool, by the intersection of two circles above the elbows.
 fn closed_form(left: f64, right: f64) -> [Vector2<f64>; 3] {
-    let first = R.crank * direction(left);
-    let second = Vector2::new(R.base, 0.0) + R.crank * direction(right);
+    let first = R.crank * unit_direction(left);
+    let second = Vector2::new(R.base, 0.0) + R.crank * unit_direction(right);
     let half = (second - first) / 2.0;
     let height = (R.forearm * R.forearm - half.norm_squared()).sqrt();
     [first, second, first + half + Vector2::new(-half.y, half.x).normalize() * height]
 }
 
-fn state(left: f64, right: f64) -> SVector<f64, 4> {
+fn linkage_state(left: f64, right: f64) -> SVector<f64, 4> {
     let [first, second, tool] = closed_form(left, right);
     let angle_to_tool = |from: Vector2<f64>| (tool.y - from.y).atan2(tool.x - from.x);
     [left, angle_to_tool(first) - left, right, angle_to_tool(second) - right].into()
@@ -47,7 +47,7 @@ fn jacobian(left: f64, right: f64) -> Matrix2<f64> {
 fn circles_meet_at_the_tool() {
     assert_eq!((FiveBar::NC, FiveBar::NP, FiveBar::NU), (2, 2, 2));
     for (left, right) in [(2.0, 0.9), (2.4, 0.3), (1.6, 1.2)] {
-        let q = state(left, right);
+        let q = linkage_state(left, right);
         let guess = [left, 0.7 - left, right, 2.2 - right].into();
         assert_near(R.assemble(&guess, &[0, 2]).expect("the circles meet"), q, 1e-12);
         let [.., tool] = closed_form(left, right);
@@ -61,7 +61,7 @@ fn circles_meet_at_the_tool() {
 #[test]
 fn statics_and_reduced_inertia() {
     let (left, right) = (2.0, 0.9);
-    let q = state(left, right);
+    let q = linkage_state(left, right);
     let tool = jacobian(left, right);
     let zero = SVector::zeros();
     let [first, second, at] = closed_form(left, right);

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precisely};
+use crate::testing::{assert_close, assert_near, precise_integrator};
 use linkwork::nalgebra::Rotation3;
 use linkwork::prelude::*;
 use linkwork_models::{FoucaultPendulum, SphericalPendulum};
@@ -8,7 +8,7 @@ const P: FoucaultPendulum =
     FoucaultPendulum { g: 9.81, mass: 28.0, length: 67.0, earth_rate: 7.292e-5, latitude: 0.8527 };
 
 /// Returns the position of the bob: south, east, up, m.
-fn bob(q: &SVector<f64, 2>) -> SVector<f64, 3> {
+fn position_of_bob(q: &SVector<f64, 2>) -> SVector<f64, 3> {
     let ((sa, ca), (sb, cb)) = (q[0].sin_cos(), q[1].sin_cos());
     P.length * SVector::from([-sb, sa * cb, -ca * cb])
 }
@@ -30,8 +30,8 @@ fn plane_turns_with_the_sine_of_the_latitude() -> Result<(), Error> {
     let swings = 100.0;
     let omega = (P.g / P.length).sqrt();
     let time = swings * std::f64::consts::TAU / omega;
-    let end = simulate(&P).from([0.0, -1.0 / P.length], [0.0, 0.0]).method(precisely());
-    let place = bob(&end.duration(time).finish()?.q);
+    let end = simulate(&P).from([0.0, -1.0 / P.length], [0.0, 0.0]).method(precise_integrator());
+    let place = position_of_bob(&end.duration(time).finish()?.q);
     let turned = place[1].atan2(place[0]);
     assert_close(turned / (-P.earth_rate * P.latitude.sin() * time), 1.0, 1e-3);
     Ok(())
@@ -44,16 +44,16 @@ fn at_the_pole_the_plane_stands_still() -> Result<(), Error> {
     // The same position and velocity in the ground frame and in the laboratory frame, which coincide at t =
     // 0.
     let (q, v) = (SVector::from([0.3, -0.2]), SVector::from([0.02, 0.1]));
-    let cross = SVector::from([-bob(&q)[1], bob(&q)[0], 0.0]) * pole.earth_rate;
+    let cross = SVector::from([-position_of_bob(&q)[1], position_of_bob(&q)[0], 0.0]) * pole.earth_rate;
     // Velocity of the bob per rate of each angle.
     let ((sa, ca), (sb, cb)) = (q[0].sin_cos(), q[1].sin_cos());
     let jacobian = P.length * SMatrix::<f64, 3, 2>::new(0.0, -cb, ca * cb, -sa * sb, sa * cb, ca * sb);
     let normal = jacobian.transpose() * jacobian;
     let slip = normal.try_inverse().map_or(v, |inverse| v - inverse * jacobian.transpose() * cross);
     let time = 20.0;
-    let seen = simulate(&pole).from(q, slip).method(precisely()).duration(time).finish()?;
-    let ground = simulate(&still).from(q, v).method(precisely()).duration(time).finish()?;
+    let seen = simulate(&pole).from(q, slip).method(precise_integrator()).duration(time).finish()?;
+    let ground = simulate(&still).from(q, v).method(precise_integrator()).duration(time).finish()?;
     let turn = Rotation3::from_euler_angles(0.0, 0.0, pole.earth_rate * time);
-    assert_near(turn * bob(&seen.q), bob(&ground.q), 1e-8);
+    assert_near(turn * position_of_bob(&seen.q), position_of_bob(&ground.q), 1e-8);
     Ok(())
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, elliptic, precisely};
+use crate::testing::{assert_close, assert_near, elliptic_integral, precise_integrator};
 use linkwork::nalgebra::Vector3;
 use linkwork::prelude::*;
 use linkwork_models::FreeRigidBody;
@@ -26,10 +26,10 @@ fn turns_over() -> Result<(), Error> {
     let (excess, rest) = (momentum2 - twice * B.ixx, twice * B.izz - momentum2);
     let k2 = (B.iyy - B.ixx) * rest / ((B.izz - B.iyy) * excess);
     let scale = (B.ixx * B.iyy * B.izz / ((B.izz - B.iyy) * excess)).sqrt();
-    let period = 4.0 * elliptic(k2) * scale;
+    let period = 4.0 * elliptic_integral(k2) * scale;
     let run = simulate(&B)
         .from(B.neutral(), [0.0, 0.0, 0.0, start.x, start.y, start.z])
-        .method(precisely())
+        .method(precise_integrator())
         .duration(period);
     let angular = B.momentum(&B.neutral(), &[0.0, 0.0, 0.0, start.x, start.y, start.z].into());
     for (k, sample) in run.sample_every(period / 2.0).enumerate() {

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precisely};
+use crate::testing::{assert_close, assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::FurutaPendulum;
 use std::f64::consts::TAU;
@@ -31,7 +31,7 @@ fn small_swings_with_a_free_arm() -> Result<(), Error> {
     let frequency = (P.mass * P.g * P.length / 2.0 * m[(0, 0)] / m.determinant()).sqrt();
     let end = simulate(&P)
         .from([0.0, 1e-4], [0.0, 0.0])
-        .method(precisely())
+        .method(precise_integrator())
         .until_crossing(Crossing::Falling, |_, _, v| v[1])
         .finish()?;
     assert_close(end.t, TAU / frequency, 1e-6);

@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, precisely};
+use crate::testing::{assert_near, precise_integrator};
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork_models::GravityGradientSatellite;
@@ -8,14 +8,14 @@ use std::f64::consts::TAU;
 const S: GravityGradientSatellite =
     GravityGradientSatellite { mu: 3.986004418e14, mass: 50.0, ixx: 5.0, iyy: 90.0, izz: 92.0 };
 
-fn configuration(r: Vector3<f64>, turn: UnitQuaternion<f64>) -> SVector<f64, 7> {
+fn satellite_configuration(r: Vector3<f64>, turn: UnitQuaternion<f64>) -> SVector<f64, 7> {
     SVector::from([r.x, r.y, r.z, turn.i, turn.j, turn.k, turn.w])
 }
 
 #[test]
 fn force_and_torque() {
     let (r, turn) = (Vector3::new(4.1e6, -5.2e6, 1.7e6), UnitQuaternion::from_euler_angles(0.4, -0.8, 1.9));
-    let h = S.bias_forces(&configuration(r, turn), &SVector::zeros());
+    let h = S.bias_forces(&satellite_configuration(r, turn), &SVector::zeros());
     let own = turn.inverse() * r;
     let (distance, n) = (own.norm(), own.normalize());
     let weight = S.mu * S.mass / distance.powi(2) * n;
@@ -30,7 +30,7 @@ fn force_and_torque() {
 #[test]
 fn pitch_oscillation() -> Result<(), Error> {
     let frequency = (3.0 * (S.iyy - S.ixx) / S.izz).sqrt();
-    pitch(S, TAU / frequency, |t| (frequency * t).cos())
+    check_pitch(S, TAU / frequency, |t| (frequency * t).cos())
 }
 
 /// Checks that a satellite with its long axis in the direction of flight is unstable, and that its pitch
@@ -38,12 +38,14 @@ fn pitch_oscillation() -> Result<(), Error> {
 #[test]
 fn stands_with_the_long_axis_up_alone() -> Result<(), Error> {
     let growth = (3.0 * (S.iyy - S.ixx) / S.izz).sqrt();
-    pitch(GravityGradientSatellite { ixx: S.iyy, iyy: S.ixx, ..S }, 3.0 / growth, |t| (growth * t).cosh())
+    check_pitch(GravityGradientSatellite { ixx: S.iyy, iyy: S.ixx, ..S }, 3.0 / growth, |t| {
+        (growth * t).cosh()
+    })
 }
 
 /// Checks the pitch of a satellite with an initial pitch of a thousandth of a radian, at eight samples,
 /// against the expected function.
-fn pitch(
+fn check_pitch(
     satellite: GravityGradientSatellite,
     duration: f64,
     expected: impl Fn(f64) -> f64,
@@ -66,8 +68,8 @@ fn pitch(
         (q[0] * x.y - q[1] * x.x) / q[0].hypot(q[1])
     };
     let run = simulate(&unit)
-        .from(configuration(Vector3::x(), start), [v.x, v.y, v.z, 0.0, 0.0, 1.0])
-        .method(precisely())
+        .from(satellite_configuration(Vector3::x(), start), [v.x, v.y, v.z, 0.0, 0.0, 1.0])
+        .method(precise_integrator())
         .duration(duration);
     for sample in run.sample_every(duration / 8.0) {
         let Sample { t, q, .. } = sample?;

@@ -5,7 +5,7 @@ use linkwork_models::HeavyTop;
 
 const TOP: HeavyTop<f64> = HeavyTop { g: 9.81, mass: 0.3, height: 0.05, axial: 2.4e-4, transverse: 1.8e-4 };
 
-fn across() -> f64 {
+fn transverse_inertia_at_pivot() -> f64 {
     TOP.transverse + TOP.mass * TOP.height * TOP.height
 }
 
@@ -13,7 +13,11 @@ fn across() -> f64 {
 fn eulers_equations() {
     let turn = UnitQuaternion::from_euler_angles(0.4, -0.9, 1.7);
     let omega = Vector3::new(3.0, -2.0, 40.0);
-    let inertia = SMatrix::<f64, 3, 3>::from_diagonal(&Vector3::new(across(), across(), TOP.axial));
+    let inertia = SMatrix::<f64, 3, 3>::from_diagonal(&Vector3::new(
+        transverse_inertia_at_pivot(),
+        transverse_inertia_at_pivot(),
+        TOP.axial,
+    ));
     let weight = turn.inverse() * Vector3::new(0.0, 0.0, -TOP.mass * TOP.g);
     let torque = Vector3::new(0.0, 0.0, TOP.height).cross(&weight);
     let q = SVector::from([turn.i, turn.j, turn.k, turn.w]);
@@ -26,7 +30,8 @@ fn eulers_equations() {
 #[test]
 fn steady_precession() -> Result<(), Error> {
     let (theta, spin) = (0.5_f64, 150.0);
-    let (a, b, c) = (across() * theta.cos(), TOP.axial * spin, TOP.mass * TOP.g * TOP.height);
+    let (a, b, c) =
+        (transverse_inertia_at_pivot() * theta.cos(), TOP.axial * spin, TOP.mass * TOP.g * TOP.height);
     let root = (b * b - 4.0 * a * c).sqrt();
     for rate in [2.0 * c / (b + root), (b + root) / (2.0 * a)] {
         let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), theta);
@@ -49,7 +54,7 @@ fn steady_precession() -> Result<(), Error> {
 /// Near the upright position the top is stable with sufficient spin, and falls with less.
 #[test]
 fn sleeps_if_it_spins_fast_enough() -> Result<(), Error> {
-    let critical = (4.0 * across() * TOP.mass * TOP.g * TOP.height).sqrt() / TOP.axial;
+    let critical = (4.0 * transverse_inertia_at_pivot() * TOP.mass * TOP.g * TOP.height).sqrt() / TOP.axial;
     for (part, sleeps) in [(1.05, true), (0.95, false)] {
         let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 1e-4);
         let run = simulate(&TOP)

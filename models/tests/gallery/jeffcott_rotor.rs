@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, precisely};
+use crate::testing::{assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::JeffcottRotor;
 
@@ -29,7 +29,7 @@ fn steady_whirl_below_and_above_the_critical_speed() -> Result<(), Error> {
             radius * SVector::from([angle.cos(), angle.sin()])
         };
         let rate = spin * radius * SVector::from([lag.sin(), lag.cos()]);
-        let run = simulate(&rotor).from(whirl_position(0.0), rate).method(precisely());
+        let run = simulate(&rotor).from(whirl_position(0.0), rate).method(precise_integrator());
         for sample in run.duration(0.3).sample_every(0.05) {
             let Sample { t, q, .. } = sample?;
             assert_near(q / radius, whirl_position(t) / radius, 1e-7);

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, precisely};
+use crate::testing::{assert_close, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::NutOnScrew;
 use std::f64::consts::TAU;
@@ -20,7 +20,7 @@ fn equation_of_motion() {
 fn comes_down_steadily_faster() -> Result<(), Error> {
     let p = N.pitch;
     let fall = N.g / (1.0 + N.radius * N.radius / (2.0 * p * p));
-    let end = simulate(&N).method(precisely()).duration(1.5).finish()?;
+    let end = simulate(&N).method(precise_integrator()).duration(1.5).finish()?;
     assert_close(N.height(&end.q), -fall * 1.5 * 1.5 / 2.0, 1e-11);
     Ok(())
 }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, elliptic, precisely};
+use crate::testing::{assert_close, assert_near, elliptic_integral, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::Pendulum;
 
@@ -24,8 +24,8 @@ fn single_precision() {
 fn period_of_large_swings() {
     let p = Pendulum { g: 9.81, mass: 1.0, length: 0.8 };
     for start in [0.1_f64, 1.5, 3.0] {
-        let period = 4.0 * (0.8_f64 / 9.81).sqrt() * elliptic((start / 2.0).sin().powi(2));
-        let run = simulate(&p).from([start], [0.0]).method(precisely());
+        let period = 4.0 * (0.8_f64 / 9.81).sqrt() * elliptic_integral((start / 2.0).sin().powi(2));
+        let run = simulate(&p).from([start], [0.0]).method(precise_integrator());
         let back = run.until_crossing(Crossing::Falling, |_, _, v| v[0]).finish();
         assert_close(back.map_or(f64::NAN, |s| s.t), period, 1e-9);
     }

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precisely};
+use crate::testing::{assert_close, assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::PendulumOnCollar;
 
@@ -41,7 +41,7 @@ fn angular_momentum_and_energy_are_conserved() -> Result<(), Error> {
     let total_energy = |s: &Sample<f64, 3, 3, 0>| P.kinetic_energy(&s.q, &s.v) + P.potential_energy(&s.q);
     let angular_momentum = |s: &Sample<f64, 3, 3, 0>| P.generalized_momentum(&s.q, &s.v)[1];
     let mut start = None;
-    let run = simulate(&P).from([0.0, 0.0, 0.9], [0.1, 8.0, -1.0]).method(precisely());
+    let run = simulate(&P).from([0.0, 0.0, 0.9], [0.1, 8.0, -1.0]).method(precise_integrator());
     for sample in run.duration(2.0).sample_every(0.2) {
         let sample = sample?;
         let (e, l) = *start.get_or_insert((total_energy(&sample), angular_momentum(&sample)));

@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, precisely};
+use crate::testing::{assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::PlanarRotorcraft;
 
@@ -21,7 +21,8 @@ fn hovers_or_falls() -> Result<(), Error> {
     let q = SVector::from([0.3, 1.0, 0.0]);
     let held = simulate(&R).from(q, [0.0; 3]).inputs(|_, _, _| hover).duration(1.0).finish()?;
     assert_near(held.q, q, 1e-12);
-    let thrown = simulate(&R).from(q, [2.0, 5.0, -3.0]).method(precisely()).duration(0.8).finish()?;
+    let thrown =
+        simulate(&R).from(q, [2.0, 5.0, -3.0]).method(precise_integrator()).duration(0.8).finish()?;
     let expected = [0.3 + 1.6, 1.0 + 4.0 - R.g * 0.32, -2.4];
     assert_near(thrown.q, SVector::from(expected), 1e-12);
     Ok(())

@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precisely};
+use crate::testing::{assert_close, assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::RodInSlot;
 use std::f64::consts::TAU;
@@ -19,7 +19,7 @@ fn mass_matrix_and_bias_forces() {
 #[test]
 fn centre_of_mass_falls_straight_down() -> Result<(), Error> {
     let RodInSlot { g, mass: m, length: l } = R;
-    let run = simulate(&R).from([0.0, 2.0], [0.0, 0.0]).method(precisely());
+    let run = simulate(&R).from([0.0, 2.0], [0.0, 0.0]).method(precise_integrator());
     for sample in run.duration(2.0).sample_every(0.2) {
         let Sample { q, v, .. } = sample?;
         assert_close(R.center_of_mass(&q)[0], l / 2.0 * 2.0_f64.sin(), 1e-10);
@@ -34,7 +34,7 @@ fn centre_of_mass_falls_straight_down() -> Result<(), Error> {
 fn period_of_small_swings() -> Result<(), Error> {
     let end = simulate(&R)
         .from([0.0, 1e-4], [0.0, 0.0])
-        .method(precisely())
+        .method(precise_integrator())
         .until_crossing(Crossing::Falling, |_, _, v| v[1])
         .finish()?;
     assert_close(end.t, TAU / (6.0 * R.g / R.length).sqrt(), 1e-6);

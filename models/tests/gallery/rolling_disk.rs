@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precisely};
+use crate::testing::{assert_close, assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::RollingDisk;
 
@@ -6,7 +6,7 @@ const D: RollingDisk = RollingDisk { g: 9.81, m: 2.0, radius: 0.4 };
 
 /// Returns a state at the origin with a lean and an angular velocity `u` in the leaning axes, with the
 /// contact point at rest.
-fn state(lean: f64, u: [f64; 3]) -> (SVector<f64, 6>, SVector<f64, 6>) {
+fn leaning_state(lean: f64, u: [f64; 3]) -> (SVector<f64, 6>, SVector<f64, 6>) {
     let ((s, c), r) = (lean.sin_cos(), D.radius);
     let rates = [u[2] / c, u[0], u[1] - u[2] * s / c];
     let v = [r * u[1], -r * u[0] * c, -r * u[0] * s, rates[0], rates[1], rates[2]];
@@ -17,7 +17,7 @@ fn state(lean: f64, u: [f64; 3]) -> (SVector<f64, 6>, SVector<f64, 6>) {
 fn accelerations() {
     assert_eq!((RollingDisk::NC, RollingDisk::NH, RollingDisk::NP, RollingDisk::NS), (3, 1, 5, 3));
     let (lean, u): (f64, _) = (0.35, [0.7, -3.0, 1.3]);
-    let (q, v) = state(lean, u);
+    let (q, v) = leaning_state(lean, u);
     assert!(D.constraint_residuals(&q).amax() < 1e-15);
     assert!(D.constraint_rates(&q, &v).amax() < 1e-14);
     let (r, (s, c)) = (D.radius, lean.sin_cos());
@@ -38,7 +38,7 @@ fn accelerations() {
 fn stability_of_rolling_straight() {
     let critical = (D.g * D.radius / 3.0).sqrt();
     for speed in [0.3 * critical, 0.99 * critical, 1.01 * critical, 3.0 * critical] {
-        let (q, v) = state(0.0, [0.0, speed / D.radius, 0.0]);
+        let (q, v) = leaning_state(0.0, [0.0, speed / D.radius, 0.0]);
         let linear = D.linearize(&q, &v, &SVector::zeros(), &[3, 4, 5]).expect("regular");
         assert_eq!(linear.speeds, [3, 4, 5]);
         let square = 4.0 * D.g / (5.0 * D.radius) - 2.4 * (speed / D.radius).powi(2);
@@ -59,9 +59,9 @@ fn rolls_in_circles() -> Result<(), Error> {
     let (lean, turning) = (0.3_f64, 2.5);
     let across = turning * lean.cos();
     let spin = (across * across * lean.tan() - 4.0 * D.g / D.radius * lean.sin()) / (6.0 * across);
-    let (q, v) = state(lean, [0.0, spin, across]);
+    let (q, v) = leaning_state(lean, [0.0, spin, across]);
     let period = 2.0 * std::f64::consts::PI / turning;
-    let end = simulate(&D).from(q, v).method(precisely()).duration(period).finish()?;
+    let end = simulate(&D).from(q, v).method(precise_integrator()).duration(period).finish()?;
     assert_near(end.v, v, 1e-9);
     assert_near(end.q.fixed_rows::<3>(0).into_owned(), q.fixed_rows::<3>(0).into_owned(), 1e-8);
     Ok(())

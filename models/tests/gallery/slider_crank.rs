@@ -21,7 +21,7 @@ fn closed_form(theta: f64) -> [Course; 4] {
     [[phi, first, second], course(l / 2.0), [r / 2.0 * s, r / 2.0 * c, -r / 2.0 * s], course(l)]
 }
 
-fn state(theta: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
+fn crank_state(theta: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
     let [rod, .., piston] = closed_form(theta);
     let q = [theta, rod[0] - theta, piston[0]];
     (q.into(), [rate, (rod[1] - 1.0) * rate, piston[1] * rate].into())
@@ -32,7 +32,7 @@ fn piston_is_where_the_closed_form_says() {
     assert_eq!((SliderCrank::NC, SliderCrank::NP, SliderCrank::NU), (2, 1, 1));
     for k in 0..12 {
         let theta = 0.1 + f64::from(k) * std::f64::consts::PI / 6.0;
-        let (q, v) = state(theta, 300.0);
+        let (q, v) = crank_state(theta, 300.0);
         let s = theta.sin();
         assert_close(q[2], S.r * theta.cos() + (S.l * S.l - S.r * S.r * s * s).sqrt(), 1e-15);
         let found = S.assemble(&[theta, -theta, 0.1].into(), &[0]).expect("the crank goes round");
@@ -56,7 +56,7 @@ fn reduced_inertia() {
     let lift = g * (m_crank * r / 2.0 * theta.cos() + m_rod * y[1]);
     let expected = (torque - sum_over_masses(|c| c[1] * c[2]) * rate * rate - lift) / inertia;
 
-    let (q, v) = state(theta, rate);
+    let (q, v) = crank_state(theta, rate);
     assert_close(S.kinetic_energy(&q, &v), inertia * rate * rate / 2.0, 1e-13);
     let a = S.forward_dynamics(&q, &v, &S.generalized_forces(&q, &[torque].into()));
     let acceleration_of_course = |c: &Course| c[1] * expected + c[2] * rate * rate;

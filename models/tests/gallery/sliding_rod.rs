@@ -5,19 +5,19 @@ use linkwork_models::SlidingRod;
 const R: SlidingRod = SlidingRod { g: 9.81, mass: 0.3, half: 0.5, radius: 0.01, friction: 0.4 };
 
 /// Returns a state with this angle, slip velocity of the end and angular velocity.
-fn state(angle: f64, slip: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
-    let [c, d] = arm(angle);
+fn rod_state(angle: f64, slip: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
+    let [c, d] = contact_arm(angle);
     ([0.0, -d, angle].into(), [slip + rate * d, -rate * c, rate].into())
 }
 
 /// Returns the contact point relative to the centre.
-fn arm(angle: f64) -> [f64; 2] {
+fn contact_arm(angle: f64) -> [f64; 2] {
     [-R.half * angle.cos(), -R.half * angle.sin() - R.radius]
 }
 
 /// Returns `1/m + c²/J + μ σ c d / J`, the normal acceleration per normal force.
-fn pressed(rod: &SlidingRod, angle: f64, slip: f64) -> f64 {
-    let ([c, d], inertia) = (arm(angle), rod.mass * rod.half * rod.half / 3.0);
+fn acceleration_per_normal_force(rod: &SlidingRod, angle: f64, slip: f64) -> f64 {
+    let ([c, d], inertia) = (contact_arm(angle), rod.mass * rod.half * rod.half / 3.0);
     let part = slip / slip.hypot(1e-3);
     1.0 / rod.mass + c * c / inertia + rod.friction * part * c * d / inertia
 }
@@ -26,12 +26,13 @@ fn pressed(rod: &SlidingRod, angle: f64, slip: f64) -> f64 {
 fn slides_under_its_normal_force() {
     assert_eq!((SlidingRod::NC, SlidingRod::NS), (1, 2));
     for (slip, rate) in [(0.7, 0.0), (-0.7, 0.5), (1e-3, -0.8), (0.0, 0.0)] {
-        let (q, v) = state(0.6, slip, rate);
+        let (q, v) = rod_state(0.6, slip, rate);
         assert!(R.constraint_residuals(&q).amax() < 1e-16 && R.constraint_rates(&q, &v).amax() < 1e-16);
         let (a, lambda) = R.try_constrained_dynamics(&q, &v, &SVector::zeros()).expect("it slides");
-        let [c, d] = arm(0.6);
+        let [c, d] = contact_arm(0.6);
         // The centre of the end moves on a circle about the rod's centre.
-        let normal = (R.g - R.half * 0.6_f64.sin() * rate * rate) / pressed(&R, 0.6, slip);
+        let normal =
+            (R.g - R.half * 0.6_f64.sin() * rate * rate) / acceleration_per_normal_force(&R, 0.6, slip);
         let drag = -R.friction * normal * slip / slip.hypot(1e-3);
         assert_close(lambda[0], normal, 1e-12);
         let turn = (c * normal - d * drag) * 3.0 / (R.mass * R.half * R.half);
@@ -48,9 +49,9 @@ fn jams() {
     for k in 1..15 {
         let angle = 0.1 * f64::from(k);
         for slip in [-1.0, 1.0] {
-            let (q, v) = state(angle, slip, 0.0);
+            let (q, v) = rod_state(angle, slip, 0.0);
             let found = rough.try_constrained_dynamics(&q, &v, &SVector::zeros());
-            let jams = pressed(&rough, angle, slip) <= 0.0;
+            let jams = acceleration_per_normal_force(&rough, angle, slip) <= 0.0;
             seen[usize::from(jams)] += 1;
             let jammed = Err(ConstraintError::Jammed { constraint: "floor.normal" });
             assert_eq!(found.is_err(), jams, "at {angle}");
@@ -60,8 +61,8 @@ fn jams() {
     }
     assert!(seen[0] > 14 && seen[1] > 3, "{seen:?}");
     // The simulation therefore stops there with an error, for every method.
-    let (q, v) = state(0.8, -1.0, 0.0);
-    assert!(pressed(&rough, 0.8, -1.0) <= 0.0);
+    let (q, v) = rod_state(0.8, -1.0, 0.0);
+    assert!(acceleration_per_normal_force(&rough, 0.8, -1.0) <= 0.0);
     let is_jammed_by_floor = |end: Result<Sample<f64, 3, 3, 0>, Error>| match end {
         Err(Error::Constraint { reason, .. }) => {
             reason == ConstraintError::Jammed { constraint: "floor.normal" }

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 const C: SpringChain<f64> = SpringChain { mass: 0.8, stiffness: 50.0, damping: 0.6 };
 
 /// Returns the natural frequency, damping ratio and shape of mode j.
-fn mode(j: usize) -> (f64, f64, SVector<f64, 3>) {
+fn vibration_mode(j: usize) -> (f64, f64, SVector<f64, 3>) {
     let beta = (2 * j - 1) as f64 * PI / 7.0;
     let omega = 2.0 * (C.stiffness / C.mass).sqrt() * (beta / 2.0).sin();
     let shape = SVector::from_fn(|i, _| ((i + 1) as f64 * beta).sin());
@@ -24,7 +24,7 @@ fn equations_of_motion() {
 #[test]
 fn modes_are_decoupled() {
     for j in 1..=3 {
-        let (omega, zeta, shape) = mode(j);
+        let (omega, zeta, shape) = vibration_mode(j);
         let (q, v) = (0.05 * shape, 0.2 * shape);
         let a = C.forward_dynamics(&q, &v, &SVector::zeros());
         assert_near(a, -omega * omega * q - 2.0 * zeta * omega * v, 1e-13);
@@ -34,7 +34,7 @@ fn modes_are_decoupled() {
 #[test]
 fn modes_decay_at_their_own_rate() -> Result<(), Error> {
     for j in 1..=3 {
-        let (omega, zeta, shape) = mode(j);
+        let (omega, zeta, shape) = vibration_mode(j);
         let damped = omega * (1.0 - zeta * zeta).sqrt();
         let start = simulate(&C).from(0.05 * shape, SVector::zeros());
         for sample in start.duration(1.0).sample_every(0.25) {

@@ -24,7 +24,7 @@ fn on_circle(radius: f64, degrees: f64) -> Vector3<f64> {
 }
 
 /// Returns a pose of the platform without symmetry.
-fn pose() -> Isometry3<f64> {
+fn platform_pose() -> Isometry3<f64> {
     Isometry3::from_parts(
         Vector3::new(0.1, -0.05, 0.9).into(),
         UnitQuaternion::from_euler_angles(0.15, -0.2, 0.3),
@@ -32,7 +32,7 @@ fn pose() -> Isometry3<f64> {
 }
 
 /// Returns the legs as vectors from foot to head.
-fn legs(pose: &Isometry3<f64>) -> [Vector3<f64>; 6] {
+fn legs_as_vectors(pose: &Isometry3<f64>) -> [Vector3<f64>; 6] {
     LEGS.map(|(foot, head)| {
         let head = pose * linkwork::nalgebra::Point3::from(on_circle(P.platform_radius, head));
         head.coords - on_circle(P.base_radius, foot)
@@ -41,11 +41,11 @@ fn legs(pose: &Isometry3<f64>) -> [Vector3<f64>; 6] {
 
 /// Returns the configuration by inverse kinematics: the direction of a leg is
 /// `(sin b, −sin a cos b, cos a cos b)`.
-fn configuration(pose: &Isometry3<f64>) -> SVector<f64, { StewartPlatform::NQ }> {
+fn platform_configuration(pose: &Isometry3<f64>) -> SVector<f64, { StewartPlatform::NQ }> {
     let mut q = P.neutral();
     q.fixed_rows_mut::<3>(0).copy_from(&pose.translation.vector);
     q.fixed_rows_mut::<4>(3).copy_from(&pose.rotation.coords);
-    for (k, leg) in legs(pose).into_iter().enumerate() {
+    for (k, leg) in legs_as_vectors(pose).into_iter().enumerate() {
         let n = leg.normalize();
         let angles = [(-n.y).atan2(n.z), n.x.asin(), leg.norm()];
         q.fixed_rows_mut::<3>(7 + 3 * k).copy_from_slice(&angles);
@@ -57,10 +57,10 @@ fn configuration(pose: &Isometry3<f64>) -> SVector<f64, { StewartPlatform::NQ }>
 fn inverse_kinematics() {
     assert_eq!((StewartPlatform::NV, StewartPlatform::NC), (24, 18));
     assert_eq!((StewartPlatform::NP, StewartPlatform::NS, StewartPlatform::NU), (6, 6, 6));
-    let q = configuration(&pose());
+    let q = platform_configuration(&platform_pose());
     assert!(P.constraint_residuals(&q).amax() < 1e-15);
     // Assembly from a level platform with the pose fixed.
-    let mut guess = configuration(&Isometry3::translation(0.0, 0.0, 0.9));
+    let mut guess = platform_configuration(&Isometry3::translation(0.0, 0.0, 0.9));
     guess.fixed_rows_mut::<7>(0).copy_from(&q.fixed_rows::<7>(0));
     assert_near(P.assemble(&guess, &[0, 1, 2, 3, 4, 5]).expect("the legs reach"), q, 1e-13);
     // Forward kinematics: assembly with the lengths fixed.
@@ -73,10 +73,10 @@ fn inverse_kinematics() {
 /// respect to the platform's velocity in body axes.
 #[test]
 fn forces_by_virtual_work() {
-    let pose = pose();
+    let pose = platform_pose();
     let (mut lengths, mut weight) = (Matrix6::zeros(), Vector6::zeros());
     weight[2] = P.platform_mass;
-    for (k, (leg, (_, head))) in legs(&pose).into_iter().zip(LEGS).enumerate() {
+    for (k, (leg, (_, head))) in legs_as_vectors(&pose).into_iter().zip(LEGS).enumerate() {
         let arm = pose.rotation * on_circle(P.platform_radius, head);
         let (length, n) = (leg.norm(), leg.normalize());
         let wrench_row = |f: Vector3<f64>| {
@@ -90,7 +90,7 @@ fn forces_by_virtual_work() {
         weight += wrench_row(across) * P.leg_mass + wrench_row(Vector3::z() - across) * P.leg_mass;
     }
     let forces = lengths.lu().solve(&(weight * P.g)).expect("not singular");
-    let (q, still) = (configuration(&pose), SVector::zeros());
+    let (q, still) = (platform_configuration(&pose), SVector::zeros());
     let a = P.forward_dynamics(&q, &still, &P.generalized_forces(&q, &forces));
     assert!(a.amax() < 1e-11, "{a}");
     // With slightly smaller forces the platform sinks.
@@ -101,7 +101,7 @@ fn forces_by_virtual_work() {
 
 #[test]
 fn energy_is_conserved() -> Result<(), Error> {
-    let q = configuration(&pose());
+    let q = platform_configuration(&platform_pose());
     let mut v = SVector::<f64, { StewartPlatform::NV }>::zeros();
     v.fixed_rows_mut::<6>(0).copy_from_slice(&[0.3, -0.2, 0.5, 0.4, 0.6, -0.5]);
     let v = P.project_velocity(&q, &v).expect("regular");

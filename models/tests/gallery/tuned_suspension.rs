@@ -1,4 +1,4 @@
-use crate::testing::{assert_close, assert_near, precisely};
+use crate::testing::{assert_close, assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::TunedSuspension;
 
@@ -24,7 +24,7 @@ fn shaken_cart_stands_still() -> Result<(), Error> {
     let run = simulate(&tuned)
         .from([0.0, swing], [0.0, 0.0])
         .inputs(|t, _, _| SVector::from([2.0 * (omega * t).cos()]))
-        .method(precisely());
+        .method(precise_integrator());
     for sample in run.duration(3.0).sample_every(0.3) {
         let Sample { t, q, .. } = sample?;
         assert_near(q, SVector::from([0.0, swing * (omega * t).cos()]), 1e-9);

@@ -1,18 +1,18 @@
-use crate::testing::{assert_close, assert_near, precisely};
+use crate::testing::{assert_close, assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::TwoBodies;
 use std::f64::consts::TAU;
 
 const P: TwoBodies = TwoBodies { constant: 0.5, m1: 3.0, m2: 1.0 };
 
-fn relative(x: &SVector<f64, 6>) -> SVector<f64, 3> {
+fn relative_position(x: &SVector<f64, 6>) -> SVector<f64, 3> {
     x.fixed_rows::<3>(3) - x.fixed_rows::<3>(0)
 }
 
 #[test]
 fn newtons_law() {
     let q = SVector::from([0.1, -0.4, 0.3, 1.2, 0.7, -0.5]);
-    let r = relative(&q);
+    let r = relative_position(&q);
     let pull = 0.5 * 3.0 / r.norm().powi(3) * r;
     let h = P.bias_forces(&q, &SVector::zeros());
     assert_near(h.fixed_rows::<3>(0).into_owned(), -pull, 1e-14);
@@ -31,10 +31,10 @@ fn ellipse() -> Result<(), Error> {
     let drift = 0.1;
     let q = SVector::from([-near / 4.0, 0.0, 0.0, 0.75 * near, 0.0, 0.0]);
     let v = SVector::from([0.0, -speed / 4.0, drift, 0.0, 0.75 * speed, drift]);
-    let run = simulate(&P).from(q, v).method(precisely()).duration(period);
+    let run = simulate(&P).from(q, v).method(precise_integrator()).duration(period);
     for (k, sample) in run.sample_every(period / 4.0).enumerate() {
         let Sample { t, q, v, .. } = sample?;
-        let (r, dr) = (relative(&q), relative(&v));
+        let (r, dr) = (relative_position(&q), relative_position(&v));
         let laplace = dr.cross(&r.cross(&dr)) / mu - r.normalize();
         assert_near(laplace, SVector::from([e, 0.0, 0.0]), 1e-9);
         assert_close(P.center_of_mass(&q)[2], drift * t, 1e-10);

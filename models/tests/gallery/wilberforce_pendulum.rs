@@ -1,4 +1,4 @@
-use crate::testing::{assert_near, precisely};
+use crate::testing::{assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::WilberforcePendulum;
 
@@ -27,8 +27,11 @@ fn bouncing_becomes_twisting_and_back() -> Result<(), Error> {
     let split = P.coupling / (2.0 * (P.mass * P.inertia).sqrt());
     let (first, second) = ((omega2 + split).sqrt(), (omega2 - split).sqrt());
     let lever = (P.mass / P.inertia).sqrt();
-    for sample in
-        simulate(&tuned).from([0.1, 0.0], [0.0; 2]).method(precisely()).duration(40.0).sample_every(2.0)
+    for sample in simulate(&tuned)
+        .from([0.1, 0.0], [0.0; 2])
+        .method(precise_integrator())
+        .duration(40.0)
+        .sample_every(2.0)
     {
         let Sample { t, q, .. } = sample?;
         let (a, b) = ((first * t).cos(), (second * t).cos());

@@ -1,4 +1,4 @@
-use crate::testing::precisely;
+use crate::testing::precise_integrator;
 use linkwork::prelude::*;
 use linkwork_models::TwoWindows;
 
@@ -9,7 +9,7 @@ fn windows_go_through_their_singular_positions() -> Result<(), Error> {
     // Angles are counter-clockwise; the couplers keep their direction.
     let run = simulate(&windows)
         .from([0.0; 5], [-1.0, 1.0, -1.0, 1.0, -1.0])
-        .method(precisely())
+        .method(precise_integrator())
         .duration(10.0)
         .finish()?;
     let top = (-run.q[0].sin(), run.q[0].cos());

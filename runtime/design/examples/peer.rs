@@ -12,28 +12,28 @@ use std::time::Instant;
 
 type Numbers = Result<Vec<f64>, Error>;
 
-fn flat(m: &DMatrix<f64>) -> Vec<f64> {
+fn flatten_matrix(m: &DMatrix<f64>) -> Vec<f64> {
     m.transpose().iter().copied().collect()
 }
 
-fn pairs(all: &[Complex<f64>]) -> Vec<f64> {
+fn flatten_complex_numbers(all: &[Complex<f64>]) -> Vec<f64> {
     all.iter().flat_map(|x| [x.re, x.im]).collect()
 }
 
 /// Computes the named result of a system, such as `poles`, `zeros` or `care`.
-fn result(name: &str, s: &StateSpace) -> Numbers {
+fn compute_result(name: &str, s: &StateSpace) -> Numbers {
     let (n, m) = s.b().shape();
     let unit_cost = || Cost::new(DMatrix::identity(n, n), DMatrix::identity(m, m));
     Ok(match name {
-        "poles" => pairs(&s.poles()?),
-        "zeros" => pairs(&s.zeros()?),
-        "lyap" => flat(&lyapunov(s.a(), &DMatrix::identity(n, n))?),
-        "care" => flat(&riccati(s.a(), s.b(), &unit_cost())?.x),
+        "poles" => flatten_complex_numbers(&s.poles()?),
+        "zeros" => flatten_complex_numbers(&s.zeros()?),
+        "lyap" => flatten_matrix(&lyapunov(s.a(), &DMatrix::identity(n, n))?),
+        "care" => flatten_matrix(&riccati(s.a(), s.b(), &unit_cost())?.x),
         "dare" => {
             let held = s.discretize(0.1, Hold::Zero)?;
-            flat(&discrete_riccati(held.a(), held.b(), &unit_cost())?.x)
+            flatten_matrix(&discrete_riccati(held.a(), held.b(), &unit_cost())?.x)
         }
-        "gram" => flat(&s.controllability_gramian()?),
+        "gram" => flatten_matrix(&s.controllability_gramian()?),
         "h2" => vec![
             StateSpace::new(s.a().clone(), s.b().clone(), s.c().clone(), DMatrix::zeros(s.d().nrows(), m))?
                 .h2_norm()?,
@@ -41,14 +41,14 @@ fn result(name: &str, s: &StateSpace) -> Numbers {
         "hinf" => vec![s.peak_gain()?.gain],
         "zoh" => {
             let held = s.discretize(0.1, Hold::Zero)?;
-            [flat(held.a()), flat(held.b())].concat()
+            [flatten_matrix(held.a()), flatten_matrix(held.b())].concat()
         }
         "response" => {
             let map = s.frequency_map()?;
             let mut all = Vec::new();
             for w in [0.01, 0.1, 1.0, 10.0, 100.0] {
                 let values: Vec<_> = map.response(w)?.transpose().iter().copied().collect();
-                all.extend(pairs(&values));
+                all.extend(flatten_complex_numbers(&values));
             }
             all
         }
@@ -81,7 +81,7 @@ fn main() -> Result<(), Box<dyn Failure>> {
             ["poles", "zeros", "lyap", "care", "dare", "gram", "h2", "hinf", "zoh", "response", "margins"]
         {
             let start = Instant::now();
-            let found = result(name, &system);
+            let found = compute_result(name, &system);
             *times.entry(name).or_insert(0.0) += start.elapsed().as_secs_f64();
             match found {
                 Ok(values) => {

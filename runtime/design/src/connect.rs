@@ -1,18 +1,18 @@
 //! Series, parallel and feedback connections of linear systems.
 
-use crate::matrices::solve;
+use crate::matrices::solve_linear_system;
 use crate::{Error, Port, Signal, StateSpace};
 use nalgebra::DMatrix;
 
 /// Returns the block-diagonal matrix `[one 0; 0 other]`.
-fn diagonal(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
+fn block_diagonal(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
     let mut m = DMatrix::zeros(one.nrows() + other.nrows(), one.ncols() + other.ncols());
     m.view_mut((0, 0), one.shape()).copy_from(one);
     m.view_mut(one.shape(), other.shape()).copy_from(other);
     m
 }
 
-fn chained(one: &[Signal], other: &[Signal]) -> Vec<Signal> {
+fn concatenate_signals(one: &[Signal], other: &[Signal]) -> Vec<Signal> {
     one.iter().chain(other).cloned().collect()
 }
 
@@ -40,13 +40,13 @@ impl StateSpace {
     /// [`Error::Time`] for different periods.
     pub fn append(&self, other: &Self) -> Result<Self, Error> {
         Ok(Self {
-            a: diagonal(&self.a, &other.a),
-            b: diagonal(&self.b, &other.b),
-            c: diagonal(&self.c, &other.c),
-            d: diagonal(&self.d, &other.d),
-            states: chained(&self.states, &other.states),
-            inputs: chained(&self.inputs, &other.inputs),
-            outputs: chained(&self.outputs, &other.outputs),
+            a: block_diagonal(&self.a, &other.a),
+            b: block_diagonal(&self.b, &other.b),
+            c: block_diagonal(&self.c, &other.c),
+            d: block_diagonal(&self.d, &other.d),
+            states: concatenate_signals(&self.states, &other.states),
+            inputs: concatenate_signals(&self.inputs, &other.inputs),
+            outputs: concatenate_signals(&self.outputs, &other.outputs),
             period: self.common_period(other)?,
         })
     }
@@ -61,7 +61,7 @@ impl StateSpace {
         if found != expected {
             return Err(Error::Count { what: "outputs for the next system", expected, found });
         }
-        let mut a = diagonal(&self.a, &next.a);
+        let mut a = block_diagonal(&self.a, &next.a);
         let (n, m) = (self.order(), next.order());
         a.view_mut((n, 0), (m, n)).copy_from(&(&next.b * &self.c));
         let mut b = DMatrix::zeros(n + m, self.inputs.len());
@@ -75,7 +75,7 @@ impl StateSpace {
             b,
             c,
             d: &next.d * &self.d,
-            states: chained(&self.states, &next.states),
+            states: concatenate_signals(&self.states, &next.states),
             inputs: self.inputs.clone(),
             outputs: next.outputs.clone(),
             period: self.common_period(next)?,
@@ -135,7 +135,7 @@ impl StateSpace {
         right.view_mut((0, 0), (outputs, n)).copy_from(&self.c);
         right.view_mut((0, n), (outputs, m)).copy_from(&-(&self.d * &back.c));
         right.view_mut((0, n + m), (outputs, inputs)).copy_from(&self.d);
-        let y = solve("I + D₁ D₂", &w, &right)?;
+        let y = solve_linear_system("I + D₁ D₂", &w, &right)?;
         // u = r − C₂ x₂ − D₂ y.
         let mut u = -(&back.d * &y);
         let mut shifted = u.view_mut((0, n), (inputs, m));
@@ -146,13 +146,13 @@ impl StateSpace {
         x.view_mut((0, 0), (n, n + m + inputs)).copy_from(&(&self.b * &u));
         x.view_mut((n, 0), (m, n + m + inputs)).copy_from(&(&back.b * &y));
         let mut a = x.columns(0, n + m).into_owned();
-        a += diagonal(&self.a, &back.a);
+        a += block_diagonal(&self.a, &back.a);
         Ok(Self {
             a,
             b: x.columns(n + m, inputs).into_owned(),
             c: y.columns(0, n + m).into_owned(),
             d: y.columns(n + m, inputs).into_owned(),
-            states: chained(&self.states, &back.states),
+            states: concatenate_signals(&self.states, &back.states),
             inputs: self.inputs.clone(),
             outputs: self.outputs.clone(),
             period,
@@ -165,7 +165,7 @@ impl StateSpace {
     ///
     /// [`Error::Shape`] for a gain of another shape, [`Error::AlgebraicLoop`].
     pub fn feedback_gain(&self, gain: &DMatrix<f64>) -> Result<Self, Error> {
-        crate::matrices::check("the gain", gain, self.inputs.len(), self.outputs.len())?;
+        crate::matrices::check_matrix("the gain", gain, self.inputs.len(), self.outputs.len())?;
         self.feedback(&Self::gain(gain.clone())?)
     }
 
@@ -175,7 +175,7 @@ impl StateSpace {
     ///
     /// [`Error::Shape`] for a gain of another shape.
     pub fn state_feedback(&self, gain: &DMatrix<f64>) -> Result<Self, Error> {
-        crate::matrices::check("the gain", gain, self.inputs.len(), self.order())?;
+        crate::matrices::check_matrix("the gain", gain, self.inputs.len(), self.order())?;
         let (a, c) = (&self.a - &self.b * gain, &self.c - &self.d * gain);
         Ok(Self { a, c, ..self.clone() })
     }

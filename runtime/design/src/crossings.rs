@@ -1,6 +1,6 @@
 //! Frequencies at which a response has a given gain or is real, computed as eigenvalues of matrix pencils.
 
-use crate::matrices::{C, balance_system, eigenvalues, solve};
+use crate::matrices::{C, balance_system, eigenvalues, solve_linear_system};
 use crate::{Error, StateSpace};
 use nalgebra::DMatrix;
 
@@ -14,8 +14,8 @@ impl Pencil {
     /// Returns the finite eigenvalues of the pencil `M − s E` as `σ + 1 / μ`, where `μ` are the eigenvalues
     /// of `(M − σ E)⁻¹ E`. Infinite eigenvalues may be returned as large ones. If the pencil is singular for
     /// all `s`, the list is empty.
-    fn eigenvalues(&self, shift: f64) -> Vec<C> {
-        let inverse = solve("the pencil", &(&self.m - &self.e * shift), &self.e);
+    fn finite_eigenvalues(&self, shift: f64) -> Vec<C> {
+        let inverse = solve_linear_system("the pencil", &(&self.m - &self.e * shift), &self.e);
         let found = inverse.and_then(|inverse| eigenvalues(&inverse)).unwrap_or_default();
         let finite = found.iter().filter(|mu| mu.norm() > 0.0);
         finite.map(|mu| mu.inv() + shift).filter(|s| s.re.is_finite() && s.im.is_finite()).collect()
@@ -115,7 +115,7 @@ impl StateSpace {
         let mut found = Vec::new();
         for scale in scales {
             let shift = self.period.map_or(1.13 * scale, |h| (1.13 * scale * h).min(1.0).exp());
-            found.extend(pencil.eigenvalues(shift).into_iter().map(|s| self.frequency_of(s)));
+            found.extend(pencil.finite_eigenvalues(shift).into_iter().map(|s| self.frequency_of(s)));
         }
         found.retain(|w| *w > 0.0 && *w < self.highest_frequency());
         found.sort_by(f64::total_cmp);

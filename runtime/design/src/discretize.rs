@@ -1,6 +1,6 @@
 //! Discretisation of continuous linear systems, and its inverse.
 
-use crate::matrices::{C, exponential, logarithm, solve};
+use crate::matrices::{C, exponential, logarithm, solve_linear_system};
 use crate::{Error, StateSpace, ZerosPolesGain};
 use nalgebra::DMatrix;
 
@@ -24,7 +24,7 @@ fn check_period(period: f64) -> Result<(), Error> {
 }
 
 /// Returns the factor `a` of `s = a (z − 1) / (z + 1)`.
-fn bilinear(hold: Hold, h: f64) -> Result<f64, Error> {
+fn bilinear_factor(hold: Hold, h: f64) -> Result<f64, Error> {
     match hold {
         Hold::Prewarped(w) if !(w > 0.0 && w * h < std::f64::consts::PI) => {
             Err(Error::Range { what: "a frequency for prewarping", value: w })
@@ -81,12 +81,12 @@ impl StateSpace {
                 (a, b, self.c.clone(), d)
             }
             Hold::Tustin | Hold::Prewarped(_) => {
-                let s = bilinear(hold, period)?;
+                let s = bilinear_factor(hold, period)?;
                 let what = "I − A / s of Tustin's rule";
                 let m = DMatrix::identity(n, n) - &self.a / s;
-                let a = solve(what, &m, &(DMatrix::identity(n, n) + &self.a / s))?;
-                let b = solve(what, &m, &(&self.b * (2.0 / s)))?;
-                let c = solve(what, &m.transpose(), &self.c.transpose())?.transpose();
+                let a = solve_linear_system(what, &m, &(DMatrix::identity(n, n) + &self.a / s))?;
+                let b = solve_linear_system(what, &m, &(&self.b * (2.0 / s)))?;
+                let c = solve_linear_system(what, &m.transpose(), &self.c.transpose())?.transpose();
                 let d = &self.d + &self.c * &b * 0.5;
                 (a, b, c, d)
             }
@@ -115,13 +115,13 @@ impl StateSpace {
             }
             Hold::First => return self.undiscretize_first(period),
             Hold::Tustin | Hold::Prewarped(_) => {
-                let s = bilinear(hold, period)?;
+                let s = bilinear_factor(hold, period)?;
                 let what = "A + I of Tustin's rule";
                 let m = &self.a + &identity;
-                let a = solve(what, &m, &(&self.a - &identity))? * s;
-                let b = solve(what, &m, &self.b)? * s;
-                let c = solve(what, &m.transpose(), &self.c.transpose())?.transpose() * 2.0;
-                let d = &self.d - &self.c * solve(what, &m, &self.b)?;
+                let a = solve_linear_system(what, &m, &(&self.a - &identity))? * s;
+                let b = solve_linear_system(what, &m, &self.b)? * s;
+                let c = solve_linear_system(what, &m.transpose(), &self.c.transpose())?.transpose() * 2.0;
+                let d = &self.d - &self.c * solve_linear_system(what, &m, &self.b)?;
                 (a, b, c, d)
             }
         };
@@ -138,7 +138,7 @@ impl StateSpace {
         all.view_mut((n, 2 * n), (n, n)).fill_with_identity();
         let e = exponential(&all)?;
         let (one, two) = (e.view((0, n), (n, n)).into_owned(), e.view((0, 2 * n), (n, n)).into_owned());
-        let b = solve("the triangle hold", &(&one + &self.a * &two - &two), &self.b)?;
+        let b = solve_linear_system("the triangle hold", &(&one + &self.a * &two - &two), &self.b)?;
         let d = &self.d - &self.c * &two * &b;
         Ok(Self { a, b, d, period: None, ..self.clone() })
     }

@@ -188,7 +188,7 @@ impl fmt::Display for Error {
             Self::NotFinite { what } => write!(f, "{what} has an entry that is not finite"),
             Self::Unknown { kind, name, known } => {
                 write!(f, "no {kind} `{name}`")?;
-                if let Some(nearest) = nearest(name, known) {
+                if let Some(nearest) = nearest_known_name(name, known) {
                     write!(f, ", perhaps `{nearest}`")?;
                 }
                 write!(f, "; there are {}", known.join(", "))
@@ -268,14 +268,14 @@ impl fmt::Display for Listed<'_> {
 }
 
 /// Returns the known name of minimum edit distance, if at most a third of the characters differ.
-fn nearest<'a>(name: &str, known: &'a [String]) -> Option<&'a String> {
-    let edit_distance_to = |other: &String| edits(name, other);
+fn nearest_known_name<'a>(name: &str, known: &'a [String]) -> Option<&'a String> {
+    let edit_distance_to = |other: &String| edit_distance(name, other);
     let best = known.iter().min_by_key(|other| edit_distance_to(other))?;
     (edit_distance_to(best) <= name.chars().count().div_ceil(3)).then_some(best)
 }
 
 /// Returns the Levenshtein distance of two names.
-fn edits(one: &str, other: &str) -> usize {
+fn edit_distance(one: &str, other: &str) -> usize {
     let other: Vec<char> = other.chars().collect();
     let mut row: Vec<usize> = (0..=other.len()).collect();
     for (i, a) in one.chars().enumerate() {

@@ -1,6 +1,6 @@
 //! Frequency response: data of Bode and Nyquist diagrams.
 
-use crate::matrices::{C, CMatrix, balance_system, complex};
+use crate::matrices::{C, CMatrix, balance_system, complex_matrix};
 use crate::{Error, StateSpace};
 use nalgebra::{DMatrix, Hessenberg};
 
@@ -13,6 +13,8 @@ pub struct FrequencyMap {
     c: DMatrix<f64>,
     d: DMatrix<f64>,
     period: Option<f64>,
+    /// Whether `h` results from rounded rotations of the states.
+    is_transformed: bool,
 }
 
 impl FrequencyMap {
@@ -25,14 +27,14 @@ impl FrequencyMap {
         if let Some(value) = [s.re, s.im].into_iter().find(|part| !part.is_finite()) {
             return Err(Error::Range { what: "a frequency", value });
         }
-        let mut x = complex(&self.b);
-        self.factors(s)?.solve(&mut x);
-        Ok(complex(&self.c) * x + complex(&self.d))
+        let mut x = complex_matrix(&self.b);
+        self.factorise_at_frequency(s)?.solve_in_place(&mut x);
+        Ok(complex_matrix(&self.c) * x + complex_matrix(&self.d))
     }
 
     /// Factorises `s I − A` into row operations and a triangular matrix, by Gaussian elimination of a
     /// Hessenberg matrix.
-    fn factors(&self, s: C) -> Result<Factors, Error> {
+    fn factorise_at_frequency(&self, s: C) -> Result<Factors, Error> {
         let n = self.h.nrows();
         let mut u = CMatrix::from_fn(n, n, |i, j| {
             let entry = C::new(-self.h[(i, j)], 0.0);
@@ -64,15 +66,22 @@ impl FrequencyMap {
     /// # Errors
     ///
     /// [`Error::Singular`] at a pole.
-    pub(crate) fn sample(&self, s: C) -> Result<Sample, Error> {
-        let factors = self.factors(s)?;
-        let (mut x, mut y) = (complex(&self.b), complex(&self.c));
-        factors.solve(&mut x);
+    pub(crate) fn sample_channel(&self, s: C) -> Result<Sample, Error> {
+        let factors = self.factorise_at_frequency(s)?;
+        let (mut x, mut y) = (complex_matrix(&self.b), complex_matrix(&self.c));
+        factors.solve_in_place(&mut x);
         factors.solve_left(&mut y);
-        let value = (complex(&self.c) * &x)[(0, 0)] + self.d[(0, 0)];
-        // The entries of the matrices have rounding errors; this sums the effect of each on the value.
-        let (size_x, size_y) = (x.norm(), y.norm());
-        let through = size_y * ((self.h.norm() + s.norm()) * size_x + self.b.norm()) + self.c.norm() * size_x;
+        let value = (complex_matrix(&self.c) * &x)[(0, 0)] + self.d[(0, 0)];
+        // The entries of the matrices have rounding errors; this sums the effect of each on the value. The
+        // transformation to Hessenberg form has errors in proportion to the norm.
+        let through = if self.is_transformed {
+            let (size_x, size_y) = (x.norm(), y.norm());
+            size_y * ((self.h.norm() + s.norm()) * size_x + self.b.norm()) + self.c.norm() * size_x
+        } else {
+            let (size_x, size_y) = (x.map(|x| x.norm()), y.map(|y| y.norm()));
+            let sizes = factors.sizes(&size_x) + self.h.abs() * &size_x + &size_x * s.norm() + self.b.abs();
+            (size_y * sizes)[(0, 0)] + (self.c.abs() * size_x)[(0, 0)]
+        };
         let rounding = 4.0 * f64::EPSILON * (self.h.nrows() + 1) as f64;
         let error = rounding * (through + self.d[(0, 0)].abs());
         Ok(Sample { value, slope: -(y * x)[(0, 0)], error })
@@ -87,7 +96,7 @@ impl FrequencyMap {
         if !frequency.is_finite() {
             return Err(Error::Range { what: "a frequency", value: frequency });
         }
-        self.at(boundary(self.period, frequency))
+        self.at(stability_boundary_point(self.period, frequency))
     }
 }
 
@@ -101,7 +110,7 @@ struct Factors {
 
 impl Factors {
     /// Solves `M X = R` with the factorised matrix `M`; `X` replaces `R`.
-    fn solve(&self, x: &mut CMatrix) {
+    fn solve_in_place(&self, x: &mut CMatrix) {
         let n = self.u.nrows();
         for (k, (swapped, factor)) in self.steps.iter().enumerate() {
             if *swapped {
@@ -118,6 +127,19 @@ impl Factors {
                 x[(i, j)] = (x[(i, j)] - sum) / self.u[(i, i)];
             }
         }
+    }
+
+    /// Returns `|L| |U| x` for a vector of magnitudes, with the magnitudes of the entries of the factors of
+    /// `M = L U`: the rounding errors of a solution `x` are in proportion to it.
+    fn sizes(&self, x: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut sizes = self.u.map(|u| u.norm()).upper_triangle() * x;
+        for (k, (swapped, factor)) in self.steps.iter().enumerate().rev() {
+            sizes[k + 1] += factor.norm() * sizes[k];
+            if *swapped {
+                sizes.swap_rows(k, k + 1);
+            }
+        }
+        sizes
     }
 
     /// Solves `y M = r` with the factorised matrix `M`; the row vector `y` replaces `r`.
@@ -147,7 +169,7 @@ pub(crate) struct Sample {
 }
 
 /// Returns the point of the stability boundary for a frequency in rad/s: `iω`, or `e^{iωh}`.
-pub(crate) fn boundary(period: Option<f64>, frequency: f64) -> C {
+pub(crate) fn stability_boundary_point(period: Option<f64>, frequency: f64) -> C {
     match period {
         Some(h) => C::new(0.0, frequency * h).exp(),
         None => C::new(0.0, frequency),
@@ -225,11 +247,12 @@ impl StateSpace {
     pub fn frequency_map(&self) -> Result<FrequencyMap, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
         let (d, period) = (self.d.clone(), self.period);
-        if self.order() < 3 {
-            return Ok(FrequencyMap { h: a, b, c, d, period });
+        let is_hessenberg = (0..a.ncols()).all(|j| a.column(j).iter().skip(j + 2).all(|x| *x == 0.0));
+        if is_hessenberg {
+            return Ok(FrequencyMap { h: a, b, c, d, period, is_transformed: false });
         }
         let (q, h) = Hessenberg::new(a).unpack();
-        Ok(FrequencyMap { b: q.transpose() * b, c: c * q, h, d, period })
+        Ok(FrequencyMap { b: q.transpose() * b, c: c * q, h, d, period, is_transformed: true })
     }
 
     /// Returns `C (s I − A)⁻¹ B + D` at a complex frequency.

@@ -1,6 +1,7 @@
 //! Stability margins of a feedback loop: gain margins, phase margins and the distance from −1.
 
-use crate::frequency::{FrequencyMap, Sample, boundary};
+use crate::frequency::{FrequencyMap, Sample, stability_boundary_point};
+use crate::loop_polynomials::LoopPolynomials;
 use crate::matrices::C;
 use crate::norms::Extreme;
 use crate::{Error, PeakGain, StateSpace, TransferFunction};
@@ -117,7 +118,7 @@ pub(crate) fn root_between(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) 
 }
 
 /// Maximum relative rounding error of a response value that counts as reliable.
-const CERTAIN: f64 = 0.05;
+pub(crate) const CERTAIN: f64 = 0.05;
 
 /// Open loop whose stability margins are computed, with its sampling period.
 struct Loop {
@@ -127,16 +128,16 @@ struct Loop {
 
 impl Loop {
     /// Returns the response and its derivative with respect to frequency; `None` at a pole.
-    fn sample(&self, frequency: f64) -> Option<Sample> {
-        let s = boundary(self.period, frequency);
+    fn sample_response(&self, frequency: f64) -> Option<Sample> {
+        let s = stability_boundary_point(self.period, frequency);
         let turn = self.period.map_or(C::new(0.0, 1.0), |h| C::new(0.0, h) * s);
-        self.map.sample(s).ok().map(|sample| Sample { slope: sample.slope * turn, ..sample })
+        self.map.sample_channel(s).ok().map(|sample| Sample { slope: sample.slope * turn, ..sample })
     }
 
     /// Returns the frequencies where `f` changes its sign between neighbours of the grid. Points at which
     /// rounding decides the sign are skipped.
-    fn crossings(&self, grid: &[f64], samples: &[Sample], f: impl Fn(C) -> f64) -> Vec<f64> {
-        let value_at_frequency = |w: f64| self.sample(w).map_or(f64::NAN, |sample| f(sample.value));
+    fn sign_change_frequencies(&self, grid: &[f64], samples: &[Sample], f: impl Fn(C) -> f64) -> Vec<f64> {
+        let value_at_frequency = |w: f64| self.sample_response(w).map_or(f64::NAN, |sample| f(sample.value));
         let mut found = Vec::new();
         let mut before: Option<(f64, f64)> = None;
         for (w, sample) in grid.iter().zip(samples) {
@@ -175,9 +176,9 @@ impl StateSpace {
         self.check_single()?;
         let open = Loop { map: self.frequency_map()?, period: self.period };
         let (grid, samples): (Vec<f64>, Vec<Sample>) =
-            self.margin_grid()?.into_iter().filter_map(|w| Some((w, open.sample(w)?))).unzip();
+            self.margin_grid()?.into_iter().filter_map(|w| Some((w, open.sample_response(w)?))).unzip();
         let gain_margin_at_crossing = |frequency: f64| {
-            let Sample { value, error, .. } = open.sample(frequency)?;
+            let Sample { value, error, .. } = open.sample_response(frequency)?;
             // The sign also changes at a pole or zero on the stability boundary, where the value is
             // rounding error.
             let is_certain = error <= CERTAIN * value.norm();
@@ -185,12 +186,12 @@ impl StateSpace {
             (is_certain && is_negative).then_some(GainMargin { factor: -1.0 / value.re, frequency })
         };
         let ends = [0.0, self.highest_frequency()];
-        let crossings = open.crossings(&grid, &samples, |x| x.im);
+        let crossings = open.sign_change_frequencies(&grid, &samples, |x| x.im);
         let all = ends[..1].iter().chain(&crossings).chain(&ends[1..]);
         let gain = all.filter(|w| w.is_finite()).filter_map(|w| gain_margin_at_crossing(*w)).collect();
-        let phase = open.crossings(&grid, &samples, |x| x.norm() - 1.0).into_iter();
+        let phase = open.sign_change_frequencies(&grid, &samples, |x| x.norm() - 1.0).into_iter();
         let phase = phase.filter_map(|frequency| {
-            let degrees = (-open.sample(frequency)?.value).arg().to_degrees();
+            let degrees = (-open.sample_response(frequency)?.value).arg().to_degrees();
             Some(PhaseMargin { degrees, frequency })
         });
         Ok(Margins { gain, phase: phase.collect(), stability: self.stability_margin(&open)? })
@@ -202,6 +203,7 @@ impl StateSpace {
         let mut points = self.root_frequencies()?;
         points.extend(self.level_frequencies(1.0)?);
         points.extend(self.real_frequencies()?);
+        points.extend(self.factor_frequencies());
         points.sort_by(f64::total_cmp);
         points.dedup_by(|a, b| *a - *b <= 1e-12 * *b);
         let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
@@ -218,6 +220,16 @@ impl StateSpace {
         Ok(between.collect())
     }
 
+    /// Returns the frequencies of the crossings that follow from zeros, poles and gain. The eigenvalues of a
+    /// pencil miss some if crossings are decades apart.
+    fn factor_frequencies(&self) -> Vec<f64> {
+        let factors = self.zeros_poles_gain();
+        let found = factors.and_then(|factors| Ok(LoopPolynomials::from_factors(&factors)?.frequencies()));
+        let mut found = found.unwrap_or_default();
+        found.retain(|w| *w > 0.0 && *w < self.highest_frequency());
+        found
+    }
+
     /// Computes the minimum distance of the response from −1, which is the minimum gain of `1 + G`.
     fn stability_margin(&self, open: &Loop) -> Result<StabilityMargin, Error> {
         let mut shifted = self.clone();
@@ -226,9 +238,9 @@ impl StateSpace {
         // Near its minimum, the distance determines the frequency to half of the digits only. The sign
         // change of its derivative is more accurate.
         let distance_to_critical_point =
-            |w: f64| open.sample(w).map_or(f64::INFINITY, |x| (x.value + 1.0).norm());
+            |w: f64| open.sample_response(w).map_or(f64::INFINITY, |x| (x.value + 1.0).norm());
         let slope_of_squared_distance =
-            |w: f64| open.sample(w).map_or(f64::NAN, |x| (x.slope * (x.value + 1.0).conj()).re);
+            |w: f64| open.sample_response(w).map_or(f64::NAN, |x| (x.slope * (x.value + 1.0).conj()).re);
         let reach = [1e-8, 1e-7, 1e-6, 1e-5].map(|part| part * frequency);
         let sharper = reach.into_iter().find_map(|reach| {
             let (low, high) = (frequency - reach, frequency + reach);
@@ -244,12 +256,14 @@ impl StateSpace {
 }
 
 impl TransferFunction {
-    /// Computes the margins of this transfer function as the open loop of a negative feedback.
+    /// Computes the margins of this transfer function as the open loop of a negative feedback, with 32 digits
+    /// from its coefficients.
     ///
     /// # Errors
     ///
-    /// [`Error::Improper`], [`Error::NotConverged`].
+    /// [`Error::Improper`], [`Error::NotFinite`] if the squares of the coefficients overflow.
     pub fn margins(&self) -> Result<Margins, Error> {
-        self.state_space()?.margins()
+        self.check_proper()?;
+        Ok(LoopPolynomials::new(self)?.margins())
     }
 }

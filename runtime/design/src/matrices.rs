@@ -14,7 +14,7 @@ mod rank;
 mod riccati;
 mod schur;
 
-pub(crate) use balance::{balance_system, balanced};
+pub(crate) use balance::{balance_matrix, balance_system};
 pub use eigenvalues::eigenvalues;
 pub use exponential::exponential;
 pub use logarithm::logarithm;
@@ -31,7 +31,7 @@ pub(crate) type C = Complex<f64>;
 pub(crate) type CMatrix = DMatrix<C>;
 
 /// Reports an error for a matrix of another shape, or with entries that are not finite.
-pub(crate) fn check(
+pub(crate) fn check_matrix(
     matrix: &'static str,
     m: &DMatrix<f64>,
     rows: usize,
@@ -45,12 +45,12 @@ pub(crate) fn check(
 
 /// Returns the number of rows of a matrix, or an error if the matrix is not square or not finite.
 pub(crate) fn check_square(matrix: &'static str, m: &DMatrix<f64>) -> Result<usize, Error> {
-    check(matrix, m, m.nrows(), m.nrows())?;
+    check_matrix(matrix, m, m.nrows(), m.nrows())?;
     Ok(m.nrows())
 }
 
 /// Converts a real matrix to a complex one.
-pub(crate) fn complex(m: &DMatrix<f64>) -> CMatrix {
+pub(crate) fn complex_matrix(m: &DMatrix<f64>) -> CMatrix {
     m.map(|x| C::new(x, 0.0))
 }
 
@@ -60,12 +60,12 @@ pub(crate) fn norm_one(m: &DMatrix<f64>) -> f64 {
 }
 
 /// Returns the symmetric part of a matrix.
-pub(crate) fn symmetric(m: &DMatrix<f64>) -> DMatrix<f64> {
+pub(crate) fn symmetric_part(m: &DMatrix<f64>) -> DMatrix<f64> {
     (m + m.transpose()) * 0.5
 }
 
 /// Solves the linear system `M X = R` for `X`.
-pub(crate) fn solve(
+pub(crate) fn solve_linear_system(
     what: &'static str,
     m: &DMatrix<f64>,
     right: &DMatrix<f64>,

@@ -32,12 +32,12 @@ use linkwork::{Derivatives, LinearMotion, Mechanism, OutputDerivatives, OutputJa
 use nalgebra::{DMatrix, SMatrix, SVector};
 
 /// Converts a statically sized matrix to a dynamically sized one.
-fn dynamic<const R: usize, const C: usize>(m: &SMatrix<f64, R, C>) -> DMatrix<f64> {
+fn dynamic_matrix<const R: usize, const C: usize>(m: &SMatrix<f64, R, C>) -> DMatrix<f64> {
     DMatrix::from_fn(R, C, |i, j| m[(i, j)])
 }
 
 /// Returns the block matrix `[[a, b], [c, d]]`.
-fn blocks(rows: [[&DMatrix<f64>; 2]; 2]) -> DMatrix<f64> {
+fn block_matrix(rows: [[&DMatrix<f64>; 2]; 2]) -> DMatrix<f64> {
     let [[a, b], [c, d]] = rows;
     let mut m = DMatrix::zeros(a.nrows() + c.nrows(), a.ncols() + b.ncols());
     m.view_mut((0, 0), a.shape()).copy_from(a);
@@ -48,14 +48,14 @@ fn blocks(rows: [[&DMatrix<f64>; 2]; 2]) -> DMatrix<f64> {
 }
 
 /// Returns signals with names and units. The unit is empty for dimensionless and undetermined quantities.
-pub(crate) fn signals(names: &[&'static str], units: &[&'static str]) -> Vec<Signal> {
+pub(crate) fn signals_with_units(names: &[&'static str], units: &[&'static str]) -> Vec<Signal> {
     let printed_unit = |unit: &'static str| if matches!(unit, "any" | "1") { "" } else { unit };
     let unit_of_signal = |k: usize| units.get(k).copied().map_or("", printed_unit);
     names.iter().enumerate().map(|(k, name)| Signal::new(*name, unit_of_signal(k))).collect()
 }
 
 /// Returns the displacement signal of a velocity signal, with the unit integrated over time.
-fn displaced(speed: Signal) -> Signal {
+fn displacement_signal(speed: Signal) -> Signal {
     let unit = match speed.unit.strip_suffix("/s") {
         Some(unit) => unit.to_owned(),
         None if speed.unit.is_empty() => String::new(),
@@ -65,14 +65,14 @@ fn displaced(speed: Signal) -> Signal {
 }
 
 /// Returns the displacement signals of some of a mechanism's velocities.
-pub(crate) fn displacements<M, const NQ: usize, const NV: usize, const NU: usize>(
+pub(crate) fn displacement_signals<M, const NQ: usize, const NV: usize, const NU: usize>(
     which: impl IntoIterator<Item = usize>,
 ) -> Vec<Signal>
 where
     M: Mechanism<NQ, NV, NU>,
 {
-    let speeds = signals(&M::VELOCITIES, &M::VELOCITY_UNITS);
-    which.into_iter().filter_map(|k| speeds.get(k).cloned().map(displaced)).collect()
+    let speeds = signals_with_units(&M::VELOCITIES, &M::VELOCITY_UNITS);
+    which.into_iter().filter_map(|k| speeds.get(k).cloned().map(displacement_signal)).collect()
 }
 
 /// Returns the names and units of the states: displacements with the names of the velocities, then changes of
@@ -84,13 +84,13 @@ pub(crate) fn state_names<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Mechanism<NQ, NV, NU>,
 {
-    let all = signals(&M::VELOCITIES, &M::VELOCITY_UNITS);
+    let all = signals_with_units(&M::VELOCITIES, &M::VELOCITY_UNITS);
     let changes = speeds.into_iter().filter_map(|k| {
         let speed = all.get(k)?.clone();
         let is_state = k + M::FIRST_ORDER >= NV;
         Some(if is_state { speed } else { Signal { name: format!("{}'", speed.name), ..speed } })
     });
-    displacements::<M, NQ, NV, NU>(coordinates).into_iter().chain(changes).collect()
+    displacement_signals::<M, NQ, NV, NU>(coordinates).into_iter().chain(changes).collect()
 }
 
 /// Returns the names of the accelerations: the velocity names with two primes, or with one prime for
@@ -108,7 +108,7 @@ pub(crate) fn input_names<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Mechanism<NQ, NV, NU>,
 {
-    signals(&M::INPUTS, &M::INPUT_UNITS)
+    signals_with_units(&M::INPUTS, &M::INPUT_UNITS)
 }
 
 /// Returns the indices of states among all displacements and velocities. States of first order have no
@@ -177,10 +177,12 @@ fn of_motion<const NV: usize, const NU: usize>(
     first_order: usize,
 ) -> Result<StateSpace, Error> {
     let identity = DMatrix::identity(NV, NV);
-    let a =
-        blocks([[&dynamic(&motion.turning), &identity], [&dynamic(&motion.by_q), &dynamic(&motion.by_v)]]);
+    let a = block_matrix([
+        [&dynamic_matrix(&motion.turning), &identity],
+        [&dynamic_matrix(&motion.by_q), &dynamic_matrix(&motion.by_v)],
+    ]);
     let mut b = DMatrix::zeros(2 * NV, NU);
-    b.view_mut((NV, 0), (NV, NU)).copy_from(&dynamic(&motion.by_u));
+    b.view_mut((NV, 0), (NV, NU)).copy_from(&dynamic_matrix(&motion.by_u));
     let kept = state_indices(NV, first_order);
     let (a, b, n) = (a.select_rows(&kept).select_columns(&kept), b.select_rows(&kept), kept.len());
     StateSpace::new(a, b, DMatrix::identity(n, n), DMatrix::zeros(n, NU))
@@ -235,16 +237,18 @@ where
     let (c, d) = output_matrices(&seen);
     let system = StateSpace::new(system.a, system.b, c.select_columns(&state_indices(NV, n)), d)?;
     let system = system.with_states(state_names::<M, NQ, NV, NU>(0..NV.saturating_sub(n), 0..NV))?;
-    system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_outputs(signals(&M::OUTPUTS, &M::OUTPUT_UNITS))
+    system
+        .with_inputs(input_names::<M, NQ, NV, NU>())?
+        .with_outputs(signals_with_units(&M::OUTPUTS, &M::OUTPUT_UNITS))
 }
 
 fn output_matrices<const NY: usize, const NV: usize, const NU: usize>(
     seen: &OutputJacobians<f64, NY, NV, NU>,
 ) -> (DMatrix<f64>, DMatrix<f64>) {
     let mut c = DMatrix::zeros(NY, 2 * NV);
-    c.view_mut((0, 0), (NY, NV)).copy_from(&dynamic(&seen.by_q));
-    c.view_mut((0, NV), (NY, NV)).copy_from(&dynamic(&seen.by_v));
-    (c, dynamic(&seen.by_u))
+    c.view_mut((0, 0), (NY, NV)).copy_from(&dynamic_matrix(&seen.by_q));
+    c.view_mut((0, NV), (NY, NV)).copy_from(&dynamic_matrix(&seen.by_v));
+    (c, dynamic_matrix(&seen.by_u))
 }
 
 /// Converts the result of `linearize` of a mechanism with constraints to a system in independent coordinates
@@ -290,7 +294,7 @@ pub fn constrained_system<
 where
     M: linkwork::Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let (a, b) = (dynamic(&linear.a), dynamic(&linear.b));
+    let (a, b) = (dynamic_matrix(&linear.a), dynamic_matrix(&linear.b));
     let system = StateSpace::new(a, b, DMatrix::identity(NX, NX), DMatrix::zeros(NX, NU))?;
     let states =
         state_names::<M, NQ, NV, NU>(linear.coordinates.iter().copied(), linear.speeds.iter().copied());
@@ -309,7 +313,7 @@ where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
     if !M::FEEDBACK || M::CONSTRAINED {
-        return dynamic(&Mechanism::mass_matrix(m, t, q));
+        return dynamic_matrix(&Mechanism::mass_matrix(m, t, q));
     }
     let at_rest = Mechanism::inverse_dynamics(m, t, q, v, &SVector::zeros());
     let mut mass = DMatrix::zeros(NV, NV);
@@ -347,12 +351,12 @@ where
     }
     let motion = m.linear_motion(q, v, u);
     let mass = effective_mass(m, 0.0, q, v);
-    let (by_q, by_v) = (dynamic(&motion.by_q), dynamic(&motion.by_v));
-    let turning = dynamic(&motion.turning);
+    let (by_q, by_v) = (dynamic_matrix(&motion.by_q), dynamic_matrix(&motion.by_v));
+    let turning = dynamic_matrix(&motion.turning);
     // δv = δq̇ − T δq; hence δv̇ = δq̈ − T δq̇ about a steady motion.
     let velocity = -(&mass * (&by_v + &turning));
     let position = -(&mass * (&by_q - &by_v * &turning));
-    let input = &mass * dynamic(&motion.by_u);
+    let input = &mass * dynamic_matrix(&motion.by_u);
     let form = SecondOrderForm::new(mass, velocity, position, input)?;
-    form.with_names(displacements::<M, NQ, NV, NU>(0..NV), input_names::<M, NQ, NV, NU>())
+    form.with_names(displacement_signals::<M, NQ, NV, NU>(0..NV), input_names::<M, NQ, NV, NU>())
 }

@@ -3,7 +3,7 @@
 
 use crate::Error;
 use crate::margins::root_between;
-use crate::matrices::{C, CMatrix, Schur, balanced, complex};
+use crate::matrices::{C, CMatrix, Schur, balance_matrix, complex_matrix};
 use nalgebra::DMatrix;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -32,7 +32,12 @@ struct Term {
 impl Term {
     /// Returns the term of `c e^{T t} x`, or of `c Tᵗ x` if `sampled`, for a triangular matrix whose
     /// eigenvalues nearly coincide. Fast modes of sampled systems are `None`.
-    fn group(c: &CMatrix, t: &CMatrix, x: &CMatrix, sampled: bool) -> Result<Option<Self>, Error> {
+    fn sum_term_of_group(
+        c: &CMatrix,
+        t: &CMatrix,
+        x: &CMatrix,
+        sampled: bool,
+    ) -> Result<Option<Self>, Error> {
         let k = t.nrows();
         let center = t.diagonal().sum() / k as f64;
         if sampled && center.norm() < FAST {
@@ -62,23 +67,23 @@ impl Term {
     }
 
     /// Evaluates the polynomial factor of the term at an instant.
-    fn polynomial(&self, t: f64) -> C {
+    fn evaluate_polynomial(&self, t: f64) -> C {
         self.coefficients.iter().rev().fold(C::new(0.0, 0.0), |sum, c| sum * t + c)
     }
 
     /// Returns an upper bound of the magnitude from `low` to `high`.
-    fn bound(&self, low: f64, high: f64) -> f64 {
+    fn bound_on_interval(&self, low: f64, high: f64) -> f64 {
         let polynomial = self.coefficients.iter().rev().fold(0.0, |sum, c| sum * high + c.norm());
         if polynomial == 0.0 { 0.0 } else { (self.exponent.re * low).exp() * polynomial }
     }
 
     /// Returns an upper bound of the magnitude at all instants.
-    fn largest(&self) -> f64 {
+    fn bound_at_all_instants(&self) -> f64 {
         let bound_of_term = |(k, c): (usize, &C)| (c.norm().ln() + logarithm_of_peak(k, self.exponent)).exp();
         self.coefficients.iter().enumerate().map(bound_of_term).sum()
     }
 
-    fn derivative(&self) -> Self {
+    fn derivative_of_term(&self) -> Self {
         let next_coefficient =
             |k: usize| self.coefficients.get(k + 1).map_or(C::new(0.0, 0.0), |c| c * (k + 1) as f64);
         let own = self.coefficients.iter().enumerate();
@@ -109,7 +114,7 @@ fn logarithm_beside_one(m: &CMatrix) -> Result<CMatrix, Error> {
 
 /// Solves `T₁ X − X T₂ = −T₁₂` for `X`, where `T₁` has the leading `k` rows and columns of a triangular
 /// matrix.
-fn coupling(t: &CMatrix, k: usize) -> CMatrix {
+fn block_coupling(t: &CMatrix, k: usize) -> CMatrix {
     let m = t.nrows();
     let mut x = CMatrix::zeros(k, m - k);
     for j in 0..m - k {
@@ -177,8 +182,8 @@ impl ModalSum {
     ///
     /// [`Error::NotConverged`] if modes cannot be separated.
     pub fn new(c: &DMatrix<f64>, a: &DMatrix<f64>, x: &DMatrix<f64>, sampled: bool) -> Result<Self, Error> {
-        let (a, d) = balanced(a);
-        let mut rest = Schur::new(&complex(&a))?;
+        let (a, d) = balance_matrix(a);
+        let mut rest = Schur::new(&complex_matrix(&a))?;
         let mut c = CMatrix::from_fn(1, d.len(), |_, j| C::new(c[(0, j)] * d[j], 0.0));
         let mut x = CMatrix::from_fn(d.len(), 1, |i, _| C::new(x[(i, 0)] / d[i], 0.0));
         let mut terms = Vec::new();
@@ -186,7 +191,7 @@ impl ModalSum {
             let m = rest.t.nrows();
             let mut k = 1;
             let separate = loop {
-                let found = coupling(&rest.t, k);
+                let found = block_coupling(&rest.t, k);
                 if found.iter().all(|x| x.norm() <= MAX_COUPLING) {
                     break found;
                 }
@@ -200,7 +205,7 @@ impl ModalSum {
             let (own_c, others_x) = (c.columns(0, k).into_owned(), x.rows(k, m - k).into_owned());
             let own_x = x.rows(0, k) - &separate * &others_x;
             let block = rest.t.view((0, 0), (k, k)).into_owned();
-            terms.extend(Term::group(&own_c, &block, &own_x, sampled)?);
+            terms.extend(Term::sum_term_of_group(&own_c, &block, &own_x, sampled)?);
             (c, x) = (c.columns(k, m - k) + own_c * separate, others_x);
             let t = rest.t.view((k, k), (m - k, m - k)).into_owned();
             rest = Schur { q: CMatrix::identity(m - k, m - k), t };
@@ -209,17 +214,17 @@ impl ModalSum {
     }
 
     fn of_terms(terms: Vec<Term>, sampled: bool) -> Self {
-        let noise = 64.0 * f64::EPSILON * terms.iter().map(Term::largest).sum::<f64>().max(1.0);
+        let noise = 64.0 * f64::EPSILON * terms.iter().map(Term::bound_at_all_instants).sum::<f64>().max(1.0);
         // A term decays beyond the last maximum of its powers.
         let decay_time_of_term = |term: &Term| term.coefficients.len() as f64 / -term.exponent.re;
         let mut end = terms.iter().map(decay_time_of_term).fold(0.0, f64::max);
-        while terms.iter().map(|term| term.bound(end, end)).sum::<f64>() > noise {
+        while terms.iter().map(|term| term.bound_on_interval(end, end)).sum::<f64>() > noise {
             end *= 1.5;
         }
         let with_derivatives = |term: Term| {
-            let first = term.derivative();
-            let second = first.derivative();
-            let third = second.derivative();
+            let first = term.derivative_of_term();
+            let second = first.derivative_of_term();
+            let third = second.derivative_of_term();
             [term, first, second, third]
         };
         Self {
@@ -231,30 +236,32 @@ impl ModalSum {
     }
 
     /// Returns the derivative of this order at an instant.
-    fn derivative(&self, order: usize, t: f64) -> f64 {
-        let real_part_of_term = |all: &[Term; 4]| ((all[0].exponent * t).exp() * all[order].polynomial(t)).re;
+    fn derivative_at(&self, order: usize, t: f64) -> f64 {
+        let real_part_of_term =
+            |all: &[Term; 4]| ((all[0].exponent * t).exp() * all[order].evaluate_polynomial(t)).re;
         self.terms.iter().map(real_part_of_term).sum()
     }
 
     /// Returns the value of the modal sum at an instant.
     pub fn value(&self, t: f64) -> f64 {
-        self.derivative(0, t)
+        self.derivative_at(0, t)
     }
 
-    fn interval(&self, from: f64, to: f64) -> Interval {
+    fn enclose_interval(&self, from: f64, to: f64) -> Interval {
         let half = 0.5 * (to - from);
         let t = from + half;
         let (mut middle, mut near, mut slope, mut curvature, mut far) = (0.0, 0.0, 0.0, 0.0, 0.0);
         let (mut total_slope, mut total_curvature, mut bend, mut change) = (0.0, 0.0, 0.0, 0.0);
         for all in &self.terms {
             let oscillation = (all[0].exponent * t).exp();
-            let [value, first, second] = [0, 1, 2].map(|k| (oscillation * all[k].polynomial(t)).re);
-            let (largest, largest_second) = (all[0].bound(from, to), all[2].bound(from, to));
+            let [value, first, second] = [0, 1, 2].map(|k| (oscillation * all[k].evaluate_polynomial(t)).re);
+            let (largest, largest_second) =
+                (all[0].bound_on_interval(from, to), all[2].bound_on_interval(from, to));
             middle += value;
             total_slope += first;
             total_curvature += largest_second;
             bend += second;
-            change += all[3].bound(from, to);
+            change += all[3].bound_on_interval(from, to);
             // The term is bounded by its expansion about the midpoint, or by its magnitude if it
             // oscillates many times.
             if first.abs() * half + 0.5 * largest_second * half * half < largest {
@@ -278,16 +285,16 @@ impl ModalSum {
     }
 
     /// Divides a time interval into two halves, with bounds of the sum on each.
-    fn halves(&self, interval: &Interval) -> [Interval; 2] {
+    fn halves_of_interval(&self, interval: &Interval) -> [Interval; 2] {
         let middle = interval.from + 0.5 * (interval.to - interval.from);
         let middle = if self.sampled { middle.floor() } else { middle };
-        [self.interval(interval.from, middle), self.interval(middle, interval.to)]
+        [self.enclose_interval(interval.from, middle), self.enclose_interval(middle, interval.to)]
     }
 
     /// Divides a final interval at a local extremum of the sum, so that the sum is monotone on each piece.
-    fn pieces(&self, interval: &Interval) -> Vec<(f64, f64)> {
+    fn monotone_pieces(&self, interval: &Interval) -> Vec<(f64, f64)> {
         let (from, to) = (interval.from, interval.to);
-        let first_derivative = |t: f64| self.derivative(1, t);
+        let first_derivative = |t: f64| self.derivative_at(1, t);
         let mut ends = vec![from];
         if first_derivative(from) * first_derivative(to) < 0.0 {
             let turn = root_between(first_derivative, from, to);
@@ -322,14 +329,14 @@ impl ModalSum {
     ///
     /// [`Error::NotConverged`] after too many intervals.
     pub fn first_above(&self, level: f64, from: f64) -> Result<f64, Error> {
-        let mut open = vec![self.interval(from, self.end.max(from))];
+        let mut open = vec![self.enclose_interval(from, self.end.max(from))];
         let mut count = 0;
         while let Some(interval) = open.pop() {
             if interval.high + self.noise < level {
                 continue;
             }
             if self.is_last(&interval) {
-                for (low, high) in self.pieces(&interval) {
+                for (low, high) in self.monotone_pieces(&interval) {
                     if self.value(low) >= level {
                         return Ok(low);
                     }
@@ -338,7 +345,7 @@ impl ModalSum {
                     }
                 }
             } else {
-                let [left, right] = self.halves(&interval);
+                let [left, right] = self.halves_of_interval(&interval);
                 open.extend([right, left]);
             }
             count_interval(&mut count)?;
@@ -353,14 +360,14 @@ impl ModalSum {
     ///
     /// [`Error::NotConverged`] after too many intervals.
     pub fn last_outside(&self, band: f64, from: f64) -> Result<Option<f64>, Error> {
-        let mut open = vec![self.interval(from, self.end.max(from))];
+        let mut open = vec![self.enclose_interval(from, self.end.max(from))];
         let mut count = 0;
         while let Some(interval) = open.pop() {
             if interval.high.max(-interval.low) + self.noise <= band {
                 continue;
             }
             if self.is_last(&interval) {
-                for (low, high) in self.pieces(&interval).into_iter().rev() {
+                for (low, high) in self.monotone_pieces(&interval).into_iter().rev() {
                     if self.value(high).abs() > band {
                         return Ok(Some(high));
                     }
@@ -369,7 +376,7 @@ impl ModalSum {
                     }
                 }
             } else {
-                open.extend(self.halves(&interval));
+                open.extend(self.halves_of_interval(&interval));
             }
             count_interval(&mut count)?;
         }
@@ -388,7 +395,7 @@ impl ModalSum {
         let bound_of_interval =
             |interval: &Interval| self.noise + if sign > 0.0 { interval.high } else { -interval.low };
         let mut open = BinaryHeap::new();
-        let whole = self.interval(from, self.end.max(from));
+        let whole = self.enclose_interval(from, self.end.max(from));
         open.push(Ranked(bound_of_interval(&whole), whole));
         let mut count = 0;
         while let Some(Ranked(most, interval)) = open.pop() {
@@ -396,14 +403,14 @@ impl ModalSum {
                 break;
             }
             if self.is_last(&interval) {
-                for t in self.pieces(&interval).into_iter().flat_map(|(low, high)| [low, high]) {
+                for t in self.monotone_pieces(&interval).into_iter().flat_map(|(low, high)| [low, high]) {
                     let value = sign * self.value(t);
                     if value > best.1 {
                         best = (t, value);
                     }
                 }
             } else {
-                for half in self.halves(&interval) {
+                for half in self.halves_of_interval(&interval) {
                     if !self.sampled {
                         reached = reached.max(sign * half.middle);
                     }

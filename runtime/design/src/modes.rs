@@ -1,6 +1,6 @@
 //! Modes of linear systems: eigenvalues, mode shapes, participation factors and damping.
 
-use crate::matrices::{C, CMatrix, Schur, balanced, complex};
+use crate::matrices::{C, CMatrix, Schur, balance_matrix, complex_matrix};
 use crate::{Error, Signal, StateSpace};
 use std::f64::consts::{LN_2, TAU};
 use std::fmt;
@@ -164,8 +164,8 @@ impl StateSpace {
     ///
     /// [`Error::NotConverged`] if the QR algorithm does not converge.
     pub fn modes(&self) -> Result<Vec<Mode>, Error> {
-        let (a, d) = balanced(&self.a);
-        let schur = Schur::new(&complex(&a))?;
+        let (a, d) = balance_matrix(&self.a);
+        let schur = Schur::new(&complex_matrix(&a))?;
         let n = self.order();
         let mut taken = vec![false; n];
         let mut modes = Vec::new();
@@ -183,13 +183,13 @@ impl StateSpace {
                     .min_by(|i, j| distance_to_conjugate_pole(i).total_cmp(&distance_to_conjugate_pole(j)));
                 pair.into_iter().for_each(|k| taken[k] = true);
             }
-            modes.push(self.mode(pole, &schur.right_eigenvector(k), &schur.left_eigenvector(k), &d));
+            modes.push(self.mode_of_pole(pole, &schur.right_eigenvector(k), &schur.left_eigenvector(k), &d));
         }
         modes.sort_by(|a, b| a.frequency().total_cmp(&b.frequency()));
         Ok(modes)
     }
 
-    fn mode(&self, pole: C, right: &CMatrix, left: &CMatrix, d: &[f64]) -> Mode {
+    fn mode_of_pole(&self, pole: C, right: &CMatrix, left: &CMatrix, d: &[f64]) -> Mode {
         let product: C = left.iter().zip(right.iter()).map(|(w, v)| w.conj() * v).sum();
         // The balancing scales cancel in each product.
         let mut participation: Vec<f64> =

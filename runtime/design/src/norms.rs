@@ -1,7 +1,7 @@
 //! H₂ and H∞ norms of systems.
 
-use crate::frequency::{FrequencyMap, boundary};
-use crate::matrices::complex;
+use crate::frequency::{FrequencyMap, stability_boundary_point};
+use crate::matrices::complex_matrix;
 use crate::{Error, StateSpace};
 
 /// Peak gain: maximum gain of a system over all frequencies.
@@ -49,7 +49,7 @@ impl StateSpace {
     pub(crate) fn extreme_gain(&self, extreme: Extreme) -> Result<PeakGain, Error> {
         let map = self.frequency_map()?;
         let gain_at_frequency = |w: f64| {
-            let response = if w.is_finite() { map.response(w) } else { Ok(complex(&self.d)) };
+            let response = if w.is_finite() { map.response(w) } else { Ok(complex_matrix(&self.d)) };
             match response {
                 Ok(m) if m.is_empty() => 0.0,
                 // At a pole that a zero cancels, the value is rounding error and must not count as the
@@ -68,7 +68,7 @@ impl StateSpace {
             for w in frequencies {
                 let gain = gain_at_frequency(w);
                 // Smaller differences are rounding errors.
-                if extreme.is_beyond(gain, extreme.beyond(best.gain, 1e-14)) {
+                if extreme.is_beyond(gain, extreme.level_beyond(best.gain, 1e-14)) {
                     best = PeakGain { gain, frequency: w };
                 }
             }
@@ -79,7 +79,7 @@ impl StateSpace {
         // steps first.
         for step in [1e-3, 1e-6, 1e-9, 1e-12] {
             for _ in 0..60 {
-                let level = extreme.beyond(found.gain, step);
+                let level = extreme.level_beyond(found.gain, step);
                 if !(level > 0.0 && level.is_finite()) {
                     return Ok(found);
                 }
@@ -93,7 +93,7 @@ impl StateSpace {
                 let ends = ends.into_iter().flatten().filter(|w| *w < top);
                 let (before, now) = improve(&mut between.chain(ends).chain(crossings.iter().copied()));
                 found = now;
-                if !extreme.is_beyond(now.gain, extreme.beyond(before, step)) {
+                if !extreme.is_beyond(now.gain, extreme.level_beyond(before, step)) {
                     break;
                 }
             }
@@ -103,7 +103,8 @@ impl StateSpace {
 
     /// Returns whether rounding changes the response of a single channel by less than a thousandth.
     fn is_certain(&self, map: &FrequencyMap, frequency: f64) -> bool {
-        map.sample(boundary(self.period, frequency)).is_ok_and(|sample| sample.error < 1e-3)
+        map.sample_channel(stability_boundary_point(self.period, frequency))
+            .is_ok_and(|sample| sample.error < 1e-3)
     }
 }
 
@@ -123,7 +124,7 @@ impl Extreme {
     }
 
     /// Returns a level beyond a gain by a fraction of it: above for a maximum, below for a minimum.
-    fn beyond(self, gain: f64, part: f64) -> f64 {
+    fn level_beyond(self, gain: f64, part: f64) -> f64 {
         match self {
             Self::Largest => gain * (1.0 + part),
             Self::Least => gain * (1.0 - part),

@@ -25,7 +25,7 @@ mod panel;
 pub use chart::Chart;
 pub use modes::{modes, named_modes};
 
-fn title(response: &FrequencyResponse) -> String {
+fn diagram_title(response: &FrequencyResponse) -> String {
     format!("from {} to {}", response.input.name, response.output.name)
 }
 
@@ -48,8 +48,11 @@ pub fn bode(response: &FrequencyResponse) -> Result<String, Error> {
         curves: vec![Curve { name: String::new(), points: points_on_log_axis(values) }],
         ..Panel::default()
     };
-    let above =
-        bode_panel(format!("Bode diagram, {}", title(response)), "magnitude, dB", response.decibels());
+    let above = bode_panel(
+        format!("Bode diagram, {}", diagram_title(response)),
+        "magnitude, dB",
+        response.decibels(),
+    );
     panel::draw(&[above, bode_panel(String::new(), "phase, deg", response.degrees())], (720, 560))
 }
 
@@ -68,10 +71,10 @@ pub fn nyquist(response: &FrequencyResponse) -> Result<String, Error> {
     sizes.sort_by(f64::total_cmp);
     let typical = sizes.get(sizes.len() / 2).copied().unwrap_or(1.0).max(1.0);
     let reach = (-10.0 * typical, 10.0 * typical);
-    let smooth = smooth(&response.values);
+    let smooth = smooth_curve(&response.values);
     let nyquist_points = |sign: f64| smooth.iter().map(|x| (x.re, sign * x.im)).collect();
     let panel = Panel {
-        title: format!("Nyquist diagram, {}", title(response)),
+        title: format!("Nyquist diagram, {}", diagram_title(response)),
         x: "real part".into(),
         y: "imaginary part".into(),
         equal: true,
@@ -90,7 +93,7 @@ pub fn nyquist(response: &FrequencyResponse) -> Result<String, Error> {
 /// Interpolates values by a smooth curve with eight segments per interval. The curve is a centripetal
 /// Catmull–Rom spline: its knots are spaced by the square roots of the chords, which avoids sharp bends for
 /// unevenly spaced points (Barry and Goldman, *SIGGRAPH*, 1988).
-fn smooth(values: &[C]) -> Vec<C> {
+fn smooth_curve(values: &[C]) -> Vec<C> {
     const PARTS: u32 = 8;
     let mut all = Vec::with_capacity(values.len() * PARTS as usize);
     for (k, pair) in values.windows(2).enumerate() {
@@ -131,7 +134,7 @@ fn smooth(values: &[C]) -> Vec<C> {
 }
 
 /// Returns the points of the stability boundary: the imaginary axis or the unit circle.
-fn border(period: Option<f64>, reach: f64) -> Vec<(f64, f64)> {
+fn stability_boundary(period: Option<f64>, reach: f64) -> Vec<(f64, f64)> {
     match period {
         Some(_) => (0..=180).map(|k| (TAU * f64::from(k) / 180.0).sin_cos()).collect(),
         None => vec![(0.0, -reach), (0.0, reach)],
@@ -140,15 +143,15 @@ fn border(period: Option<f64>, reach: f64) -> Vec<(f64, f64)> {
 
 const MARKS: [(Mark, &str); 2] = [(Mark::Cross, "poles"), (Mark::Circle, "zeros")];
 
-fn marks(mark: Mark, roots: &[C]) -> impl Iterator<Item = (Mark, f64, f64)> {
+fn marks_of_roots(mark: Mark, roots: &[C]) -> impl Iterator<Item = (Mark, f64, f64)> {
     roots.iter().map(move |x| (mark, x.re, x.im))
 }
 
-fn reach(roots: &[C]) -> f64 {
+fn largest_reach(roots: &[C]) -> f64 {
     1.3 * roots.iter().map(|x| x.norm()).fold(0.0, f64::max).max(1e-3)
 }
 
-fn plane(heading: &str, period: Option<f64>) -> Panel {
+fn complex_plane_panel(heading: &str, period: Option<f64>) -> Panel {
     let unit = if period.is_some() { "" } else { ", 1/s" };
     Panel {
         title: heading.into(),
@@ -168,10 +171,10 @@ pub fn poles_and_zeros(system: &StateSpace) -> Result<String, Error> {
     let (poles, zeros) = (system.poles()?, system.zeros()?);
     let all = [poles.clone(), zeros.clone()].concat();
     let panel = Panel {
-        lines: vec![border(system.period(), reach(&all))],
-        marks: marks(Mark::Cross, &poles).chain(marks(Mark::Circle, &zeros)).collect(),
+        lines: vec![stability_boundary(system.period(), largest_reach(&all))],
+        marks: marks_of_roots(Mark::Cross, &poles).chain(marks_of_roots(Mark::Circle, &zeros)).collect(),
         mark_names: MARKS.into(),
-        ..plane("Poles and zeros", system.period())
+        ..complex_plane_panel("Poles and zeros", system.period())
     };
     panel::draw(&[panel], (640, 640))
 }
@@ -183,17 +186,19 @@ pub fn poles_and_zeros(system: &StateSpace) -> Result<String, Error> {
 /// [`Error::Picture`] for an empty locus or values that are not finite.
 pub fn root_locus(locus: &RootLocus) -> Result<String, Error> {
     let all = [locus.poles.clone(), locus.zeros.clone()].concat();
-    let far = 2.0 * reach(&all);
+    let far = 2.0 * largest_reach(&all);
     let curve_of_branch = |branch: &Vec<C>| Curve {
         name: String::new(),
         points: branch.iter().take_while(|x| x.norm() <= far).map(|x| (x.re, x.im)).collect(),
     };
     let panel = Panel {
         curves: locus.branches.iter().map(curve_of_branch).collect(),
-        lines: vec![border(locus.period, reach(&all))],
-        marks: marks(Mark::Cross, &locus.poles).chain(marks(Mark::Circle, &locus.zeros)).collect(),
+        lines: vec![stability_boundary(locus.period, largest_reach(&all))],
+        marks: marks_of_roots(Mark::Cross, &locus.poles)
+            .chain(marks_of_roots(Mark::Circle, &locus.zeros))
+            .collect(),
         mark_names: MARKS.into(),
-        ..plane("Root locus", locus.period)
+        ..complex_plane_panel("Root locus", locus.period)
     };
     panel::draw(&[panel], (640, 640))
 }

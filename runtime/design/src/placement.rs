@@ -1,12 +1,12 @@
 //! Pole placement by state feedback.
 
-use crate::matrices::{eigenvalues, is_fixed, solve, sylvester};
+use crate::matrices::{eigenvalues, is_fixed, solve_linear_system, sylvester};
 use crate::{Error, StateSpace};
 use nalgebra::{Complex, DMatrix};
 
 /// Returns a real matrix with the given eigenvalues and one eigenvector per distinct eigenvalue. A conjugate
 /// pair is a block of two rows.
-fn canonical(poles: &[Complex<f64>]) -> Result<DMatrix<f64>, Error> {
+fn real_matrix_with_poles(poles: &[Complex<f64>]) -> Result<DMatrix<f64>, Error> {
     let n = poles.len();
     let mut upper: Vec<_> = poles.iter().filter(|pole| pole.im >= 0.0).copied().collect();
     let has_matching_conjugate = |pole: &Complex<f64>| {
@@ -37,7 +37,7 @@ fn canonical(poles: &[Complex<f64>]) -> Result<DMatrix<f64>, Error> {
 }
 
 /// Returns deterministic pseudorandom numbers between −1 and 1.
-fn scattered(rows: usize, columns: usize, attempt: usize) -> DMatrix<f64> {
+fn pseudorandom_matrix(rows: usize, columns: usize, attempt: usize) -> DMatrix<f64> {
     let mut state = 0x9e37_79b9_u32.wrapping_mul(2 * u32::try_from(attempt).unwrap_or(0) + 1);
     DMatrix::from_fn(rows, columns, |_, _| {
         state ^= state << 13;
@@ -49,7 +49,7 @@ fn scattered(rows: usize, columns: usize, attempt: usize) -> DMatrix<f64> {
 
 /// Returns the largest distance between a required pole and its nearest computed pole, as a fraction of the
 /// tolerance. The tolerance grows with the multiplicity of the pole.
-fn miss(wanted: &[Complex<f64>], mut found: Vec<Complex<f64>>) -> f64 {
+fn largest_pole_distance(wanted: &[Complex<f64>], mut found: Vec<Complex<f64>>) -> f64 {
     let size = wanted.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
     let mut worst: f64 = 0.0;
     for pole in wanted {
@@ -102,7 +102,7 @@ impl StateSpace {
         if n == 0 {
             return Ok(DMatrix::zeros(m, 0));
         }
-        let wanted = canonical(poles)?;
+        let wanted = real_matrix_with_poles(poles)?;
         let modes = eigenvalues(&self.a)?;
         if let Some(mode) = modes.into_iter().find(|mode| is_fixed(&self.a, &self.b, *mode)) {
             return Err(Error::Unstabilizable { mode });
@@ -111,16 +111,18 @@ impl StateSpace {
         let mut best: Option<(f64, DMatrix<f64>)> = None;
         for attempt in 0..ATTEMPTS {
             // Except in the first attempt, a random gain displaces poles that are already present.
-            let away = scattered(m, n, attempt) * (if attempt == 0 { 0.0 } else { size });
+            let away = pseudorandom_matrix(m, n, attempt) * (if attempt == 0 { 0.0 } else { size });
             let moved = &self.a - &self.b * &away;
-            let Ok(x) = sylvester(&moved, &-&wanted, &(&self.b * scattered(m, n, ATTEMPTS + attempt))) else {
+            let Ok(x) =
+                sylvester(&moved, &-&wanted, &(&self.b * pseudorandom_matrix(m, n, ATTEMPTS + attempt)))
+            else {
                 continue;
             };
             let what = "the matrix of the eigenvectors";
-            let transposed = scattered(m, n, ATTEMPTS + attempt).transpose();
-            let Ok(gain) = solve(what, &x.transpose(), &transposed) else { continue };
+            let transposed = pseudorandom_matrix(m, n, ATTEMPTS + attempt).transpose();
+            let Ok(gain) = solve_linear_system(what, &x.transpose(), &transposed) else { continue };
             let gain = away + gain.transpose();
-            let found = miss(poles, eigenvalues(&(&self.a - &self.b * &gain))?);
+            let found = largest_pole_distance(poles, eigenvalues(&(&self.a - &self.b * &gain))?);
             let singular = x.singular_values();
             let measure = singular.max() / singular.min();
             if found <= 1.0 && best.as_ref().is_none_or(|(least, _)| measure < *least) {

@@ -129,7 +129,7 @@ impl Polynomial {
             out.push_str(sign);
             let power = n - k;
             if power == 0 || c.abs() != 1.0 {
-                out.push_str(&number(c.abs()));
+                out.push_str(&format_number(c.abs()));
                 out.push_str(if power > 0 { " " } else { "" });
             }
             if power > 0 {
@@ -146,7 +146,7 @@ impl Polynomial {
 }
 
 /// Formats a number with at most six significant digits.
-pub(crate) fn number(x: f64) -> String {
+pub(crate) fn format_number(x: f64) -> String {
     let size = x.abs();
     if size != 0.0 && !(1e-4..1e7).contains(&size) {
         let text = format!("{x:.5e}");
@@ -207,7 +207,7 @@ impl Mul for &Polynomial {
 }
 
 /// Formats roots as a product of factors: `(s + 1) (s² + s + 2)`.
-pub(crate) fn factors(roots: &[C], variable: &str) -> String {
+pub(crate) fn format_factors(roots: &[C], variable: &str) -> String {
     let mut out = String::new();
     for root in roots.iter().filter(|r| r.im >= 0.0) {
         let factor = match (root.im == 0.0, root.re == 0.0) {

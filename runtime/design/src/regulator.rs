@@ -62,9 +62,9 @@ impl StateSpace {
         let held = self.discretize(period, Hold::Zero)?;
         let (n, m) = self.b.shape();
         let k = n + m;
-        crate::matrices::check("Q", &cost.q, n, n)?;
-        crate::matrices::check("R", &cost.r, m, m)?;
-        crate::matrices::check("N", &cost.n, n, m)?;
+        crate::matrices::check_matrix("Q", &cost.q, n, n)?;
+        crate::matrices::check_matrix("R", &cost.r, m, m)?;
+        crate::matrices::check_matrix("N", &cost.n, n, m)?;
         // exp([−Fᵀ W; 0 F] h) = [·, F₃⁻ᵀ ∫; 0 F₃], where F is the matrix of state and input.
         let mut f = DMatrix::zeros(k, k);
         f.view_mut((0, 0), (n, n)).copy_from(&self.a);
@@ -80,7 +80,7 @@ impl StateSpace {
         all.view_mut((k, k), (k, k)).copy_from(&(f * period));
         let e = crate::matrices::exponential(&all)?;
         let sum = e.view((k, k), (k, k)).transpose() * e.view((0, k), (k, k));
-        let sum = crate::matrices::symmetric(&sum);
+        let sum = crate::matrices::symmetric_part(&sum);
         let cost = Cost {
             q: sum.view((0, 0), (n, n)).into_owned(),
             r: sum.view((n, n), (m, m)).into_owned(),
@@ -97,8 +97,8 @@ impl StateSpace {
     /// [`Error::Shape`] with the name of a noise covariance of another shape.
     pub fn kalman(&self, noise: &Noise) -> Result<Kalman, Error> {
         let (n, p) = (self.order(), self.outputs.len());
-        crate::matrices::check("the states' noise", &noise.states, n, n)?;
-        crate::matrices::check("the outputs' noise", &noise.outputs, p, p)?;
+        crate::matrices::check_matrix("the states' noise", &noise.states, n, n)?;
+        crate::matrices::check_matrix("the outputs' noise", &noise.outputs, p, p)?;
         let cost = Cost::new(noise.states.clone(), noise.outputs.clone());
         let dual = self.dual().lqr(&cost).map_err(|error| match error {
             Error::Unstabilizable { mode } => Error::Undetectable { mode },
@@ -114,7 +114,7 @@ impl StateSpace {
             Some(_) => {
                 let seen = &self.c * &dual.x;
                 let spread = &seen * self.c.transpose() + &noise.outputs;
-                crate::matrices::solve("the outputs' noise", &spread, &seen)?.transpose()
+                crate::matrices::solve_linear_system("the outputs' noise", &spread, &seen)?.transpose()
             }
         };
         Ok(Kalman { gain, correction, covariance: dual.x, poles: dual.poles })
@@ -128,8 +128,8 @@ impl StateSpace {
     /// [`Error::Shape`] for gains of another shape.
     pub fn compensator(&self, gain: &DMatrix<f64>, estimator: &DMatrix<f64>) -> Result<Self, Error> {
         let (n, m, p) = (self.order(), self.inputs.len(), self.outputs.len());
-        crate::matrices::check("the regulator's gain", gain, m, n)?;
-        crate::matrices::check("the estimator's gain", estimator, n, p)?;
+        crate::matrices::check_matrix("the regulator's gain", gain, m, n)?;
+        crate::matrices::check_matrix("the estimator's gain", estimator, n, p)?;
         let a = &self.a - &self.b * gain - estimator * &self.c + estimator * &self.d * gain;
         Ok(Self {
             a,

@@ -105,7 +105,7 @@ impl StateSpace {
     pub fn step_response<'a>(&self, input: impl Into<Port<'a>>, times: &[f64]) -> Result<Response, Error> {
         let column = self.input_index(input)?;
         let inputs = DMatrix::from_fn(self.inputs.len(), times.len(), |i, _| f64::from(i == column));
-        self.motion(times, &inputs, &DVector::zeros(self.order()), Hold::Zero)
+        self.simulate_motion(times, &inputs, &DVector::zeros(self.order()), Hold::Zero)
     }
 
     /// Computes the response to a unit impulse of one input from zero initial states; for a discrete system,
@@ -123,9 +123,9 @@ impl StateSpace {
                 if !times.is_empty() {
                     inputs[(column, 0)] = 1.0 / h;
                 }
-                self.motion(times, &inputs, &DVector::zeros(self.order()), Hold::Zero)
+                self.simulate_motion(times, &inputs, &DVector::zeros(self.order()), Hold::Zero)
             }
-            None => self.motion(times, &inputs, &self.b.column(column).into_owned(), Hold::Zero),
+            None => self.simulate_motion(times, &inputs, &self.b.column(column).into_owned(), Hold::Zero),
         }
     }
 
@@ -137,7 +137,7 @@ impl StateSpace {
     /// spaced from zero.
     pub fn initial_response(&self, state: &[f64], times: &[f64]) -> Result<Response, Error> {
         let inputs = DMatrix::zeros(self.inputs.len(), times.len());
-        self.motion(times, &inputs, &DVector::from_column_slice(state), Hold::Zero)
+        self.simulate_motion(times, &inputs, &DVector::from_column_slice(state), Hold::Zero)
     }
 
     /// Computes the response to inputs (one row per input, one column per instant) from an initial state.
@@ -155,10 +155,10 @@ impl StateSpace {
         times: &[f64],
         hold: Hold,
     ) -> Result<Response, Error> {
-        self.motion(times, inputs, &DVector::from_column_slice(state), hold)
+        self.simulate_motion(times, inputs, &DVector::from_column_slice(state), hold)
     }
 
-    fn motion(
+    fn simulate_motion(
         &self,
         times: &[f64],
         inputs: &DMatrix<f64>,
@@ -166,7 +166,7 @@ impl StateSpace {
         hold: Hold,
     ) -> Result<Response, Error> {
         let (n, count) = (self.order(), times.len());
-        crate::matrices::check("the inputs", inputs, self.inputs.len(), count)?;
+        crate::matrices::check_matrix("the inputs", inputs, self.inputs.len(), count)?;
         if state.len() != n {
             return Err(Error::Count { what: "initial states", expected: n, found: state.len() });
         }

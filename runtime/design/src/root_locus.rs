@@ -20,7 +20,7 @@ pub struct RootLocus {
 }
 
 /// Orders closed-loop poles by branch: each is matched with a near pole of the previous gain.
-fn follow(before: &[C], mut now: Vec<C>) -> Vec<C> {
+fn order_along_branches(before: &[C], mut now: Vec<C>) -> Vec<C> {
     let mut order = vec![C::new(0.0, 0.0); before.len()];
     let mut free: Vec<usize> = (0..before.len()).collect();
     // The nearest pair is matched first, so that no branch continues into another.
@@ -49,7 +49,7 @@ impl StateSpace {
         let mut before = poles.clone();
         for k in gains {
             let closed = self.feedback_gain(&DMatrix::from_element(1, 1, *k))?;
-            before = follow(&before, closed.poles()?);
+            before = order_along_branches(&before, closed.poles()?);
             branches.iter_mut().zip(&before).for_each(|(branch, pole)| branch.push(*pole));
         }
         Ok(RootLocus { gains: gains.to_vec(), branches, poles, zeros, period: self.period })
@@ -69,7 +69,11 @@ impl StateSpace {
         let size = all.map(|x| x.norm()).fold(1e-6, f64::max);
         let pole_shift = |k: f64| -> Result<f64, Error> {
             let closed = self.feedback_gain(&DMatrix::from_element(1, 1, k))?.poles()?;
-            Ok(follow(&poles, closed).iter().zip(&poles).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max))
+            Ok(order_along_branches(&poles, closed)
+                .iter()
+                .zip(&poles)
+                .map(|(a, b)| (a - b).norm())
+                .fold(0.0, f64::max))
         };
         let (mut low, mut high) = (1.0, 1.0);
         for _ in 0..60 {

@@ -1,6 +1,6 @@
 //! Second-order systems: mass, damping, gyroscopic, stiffness and circulatory matrices.
 
-use crate::matrices::{check, check_square, solve};
+use crate::matrices::{check_matrix, check_square, solve_linear_system};
 use crate::{Error, Signal, StateSpace};
 use nalgebra::DMatrix;
 
@@ -25,7 +25,7 @@ pub struct SecondOrderForm {
     inputs: Vec<Signal>,
 }
 
-fn parts(m: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+fn symmetric_and_skew_parts(m: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
     ((m + m.transpose()) * 0.5, (m - m.transpose()) * 0.5)
 }
 
@@ -42,10 +42,11 @@ impl SecondOrderForm {
         input: DMatrix<f64>,
     ) -> Result<Self, Error> {
         let n = check_square("M", &mass)?;
-        check("the matrix by velocities", &velocity, n, n)?;
-        check("the matrix by positions", &position, n, n)?;
-        check("B", &input, n, input.ncols())?;
-        let ((damping, gyroscopic), (stiffness, circulatory)) = (parts(&velocity), parts(&position));
+        check_matrix("the matrix by velocities", &velocity, n, n)?;
+        check_matrix("the matrix by positions", &position, n, n)?;
+        check_matrix("B", &input, n, input.ncols())?;
+        let ((damping, gyroscopic), (stiffness, circulatory)) =
+            (symmetric_and_skew_parts(&velocity), symmetric_and_skew_parts(&position));
         let coordinates = (1..=n).map(|k| Signal::from(format!("q{k}"))).collect();
         let inputs = (1..=input.ncols()).map(|k| Signal::from(format!("u{k}"))).collect();
         Ok(Self { mass, damping, gyroscopic, stiffness, circulatory, input, coordinates, inputs })
@@ -95,7 +96,7 @@ impl SecondOrderForm {
         right.view_mut((0, 0), (n, n)).copy_from(&-(&self.stiffness + &self.circulatory));
         right.view_mut((0, n), (n, n)).copy_from(&-(&self.damping + &self.gyroscopic));
         right.view_mut((0, 2 * n), (n, m)).copy_from(&self.input);
-        let solved = solve("M", &self.mass, &right)?;
+        let solved = solve_linear_system("M", &self.mass, &right)?;
         let mut a = DMatrix::zeros(2 * n, 2 * n);
         a.view_mut((0, n), (n, n)).fill_with_identity();
         a.view_mut((n, 0), (n, 2 * n)).copy_from(&solved.columns(0, 2 * n));

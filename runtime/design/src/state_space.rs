@@ -1,7 +1,7 @@
 //! Linear systems in state-space form.
 
 use crate::Error;
-use crate::matrices::{C, check, check_square, eigenvalues};
+use crate::matrices::{C, check_matrix, check_square, eigenvalues};
 use nalgebra::DMatrix;
 use std::fmt;
 
@@ -95,7 +95,7 @@ pub struct StateSpace {
     pub(crate) period: Option<f64>,
 }
 
-fn numbered(letter: char, n: usize) -> Vec<Signal> {
+fn numbered_signals(letter: char, n: usize) -> Vec<Signal> {
     (1..=n).map(|k| Signal::from(format!("{letter}{k}"))).collect()
 }
 
@@ -107,11 +107,11 @@ impl StateSpace {
     /// [`Error::Shape`] and [`Error::NotFinite`] with the name of the matrix.
     pub fn new(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>, d: DMatrix<f64>) -> Result<Self, Error> {
         let n = check_square("A", &a)?;
-        check("B", &b, n, b.ncols())?;
-        check("C", &c, c.nrows(), n)?;
-        check("D", &d, c.nrows(), b.ncols())?;
+        check_matrix("B", &b, n, b.ncols())?;
+        check_matrix("C", &c, c.nrows(), n)?;
+        check_matrix("D", &d, c.nrows(), b.ncols())?;
         let (states, inputs, outputs) =
-            (numbered('x', n), numbered('u', b.ncols()), numbered('y', c.nrows()));
+            (numbered_signals('x', n), numbered_signals('u', b.ncols()), numbered_signals('y', c.nrows()));
         Ok(Self { a, b, c, d, states, inputs, outputs, period: None })
     }
 
@@ -258,7 +258,7 @@ impl StateSpace {
     ///
     /// [`Error::Unknown`] with the list of existing names; [`Error::Repeated`] if a state is listed twice.
     pub fn of_states(&self, names: &[&str]) -> Result<Self, Error> {
-        let kept = names.iter().map(|name| place("state", &self.states, Port::Named(name)));
+        let kept = names.iter().map(|name| index_of_port("state", &self.states, Port::Named(name)));
         let kept = kept.collect::<Result<Vec<usize>, Error>>()?;
         let again = kept.iter().enumerate().find(|(i, k)| kept[..*i].contains(*k));
         if let Some((i, _)) = again {
@@ -286,7 +286,7 @@ impl StateSpace {
             None => -&self.a,
         };
         let what = "A, with a pole at rest,";
-        let x = crate::matrices::solve(what, &left, &self.b)?;
+        let x = crate::matrices::solve_linear_system(what, &left, &self.b)?;
         if crate::matrices::rank(&left, 0.0)? < n {
             return Err(Error::Singular { what });
         }
@@ -299,7 +299,7 @@ impl StateSpace {
     ///
     /// [`Error::Unknown`] with the list of existing names.
     pub fn input_index<'a>(&self, input: impl Into<Port<'a>>) -> Result<usize, Error> {
-        place("input", &self.inputs, input.into())
+        index_of_port("input", &self.inputs, input.into())
     }
 
     /// Returns the index of an output.
@@ -308,7 +308,7 @@ impl StateSpace {
     ///
     /// [`Error::Unknown`] with the list of existing names.
     pub fn output_index<'a>(&self, output: impl Into<Port<'a>>) -> Result<usize, Error> {
-        place("output", &self.outputs, output.into())
+        index_of_port("output", &self.outputs, output.into())
     }
 }
 
@@ -325,7 +325,7 @@ fn check_names<S: Into<Signal>>(
     }
 }
 
-fn place(kind: &'static str, signals: &[Signal], port: Port<'_>) -> Result<usize, Error> {
+fn index_of_port(kind: &'static str, signals: &[Signal], port: Port<'_>) -> Result<usize, Error> {
     let (found, name) = match port {
         Port::At(k) => (Some(k).filter(|k| *k < signals.len()), k.to_string()),
         Port::Named(name) => (signals.iter().position(|s| s.name == name), name.to_owned()),

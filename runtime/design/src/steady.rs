@@ -186,7 +186,7 @@ where
     Trim { constraints: Some((problem::bounds::<M, NQ, NV, NU, NH, NC>, multipliers)), ..Trim::new(m) }
 }
 
-fn owned<S: Into<String>>(names: impl IntoIterator<Item = S>) -> Vec<String> {
+fn owned_names<S: Into<String>>(names: impl IntoIterator<Item = S>) -> Vec<String> {
     names.into_iter().map(Into::into).collect()
 }
 
@@ -244,14 +244,14 @@ where
 
     /// Declares these coordinates to be the only unknown ones; the others keep their initial values.
     pub fn coordinates<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
-        self.coordinates = Some(owned(names));
+        self.coordinates = Some(owned_names(names));
         self
     }
 
     /// Fixes these coordinates at their initial values, while the forces along them must still balance.
     /// Examples are positions on a level road and the heading of an aircraft.
     pub fn fix<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
-        self.fixed.extend(owned(names));
+        self.fixed.extend(owned_names(names));
         self
     }
 
@@ -281,26 +281,26 @@ where
     /// # Ok::<(), linkwork_design::Error>(())
     /// ```
     pub fn hold<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
-        self.held.extend(owned(names));
+        self.held.extend(owned_names(names));
         self
     }
 
     /// Declares the named velocities as unknowns of the trim.
     pub fn speeds<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
-        self.speeds.extend(owned(names));
+        self.speeds.extend(owned_names(names));
         self
     }
 
     /// Declares the named inputs as unknowns of the trim.
     pub fn inputs<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
-        self.inputs.extend(owned(names));
+        self.inputs.extend(owned_names(names));
         self
     }
 
     /// Removes the conditions that the named accelerations are zero, for example for the position of a wheel
     /// that rolls in a circle.
     pub fn accelerating<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
-        self.accelerations.extend(owned(names).into_iter().map(|name| (name, None)));
+        self.accelerations.extend(owned_names(names).into_iter().map(|name| (name, None)));
         self
     }
 
@@ -453,7 +453,9 @@ where
         for guess in guesses {
             self.q = guess;
             match self.find() {
-                Ok(found) if all.iter().all(|other| self.differ(other, &found)) => all.push(found),
+                Ok(found) if all.iter().all(|other| self.has_significant_difference(other, &found)) => {
+                    all.push(found)
+                }
                 Ok(_) => {}
                 Err(e) => error = e,
             }
@@ -463,7 +465,11 @@ where
     }
 
     /// Returns whether two states differ by more than the accuracy of a solution.
-    fn differ(&self, one: &SteadyState<NQ, NV, NU>, other: &SteadyState<NQ, NV, NU>) -> bool {
+    fn has_significant_difference(
+        &self,
+        one: &SteadyState<NQ, NV, NU>,
+        other: &SteadyState<NQ, NV, NU>,
+    ) -> bool {
         const APART: f64 = 1e-6;
         let differs =
             |a: &[f64], b: &[f64]| a.iter().zip(b).any(|(a, b)| (a - b).abs() > APART * a.abs().max(1.0));

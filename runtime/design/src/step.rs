@@ -1,7 +1,7 @@
 //! Characteristic values of a step response: rise time, settling time, overshoot and others.
 
-use crate::frequency::boundary;
-use crate::matrices::solve;
+use crate::frequency::stability_boundary_point;
+use crate::matrices::solve_linear_system;
 use crate::modal_sum::{FIRST_SAMPLES, ModalSum};
 use crate::{Error, StateSpace, TransferFunction};
 use nalgebra::DMatrix;
@@ -54,7 +54,7 @@ struct Distance {
 
 impl Distance {
     /// Returns the first instant at which the modes alone describe the deviation.
-    fn start(&self) -> f64 {
+    fn start_of_modal_sum(&self) -> f64 {
         self.first.len() as f64
     }
 
@@ -62,22 +62,22 @@ impl Distance {
     fn first_above(&self, level: f64) -> Result<f64, Error> {
         match self.first.iter().position(|e| *e >= level) {
             Some(k) => Ok(k as f64),
-            None => self.modes.first_above(level, self.start()),
+            None => self.modes.first_above(level, self.start_of_modal_sum()),
         }
     }
 
     /// Returns the last instant at which the magnitude of the deviation exceeds a band.
     fn last_outside(&self, band: f64) -> Result<Option<f64>, Error> {
         let early = self.first.iter().rposition(|e| e.abs() > band).map(|k| k as f64);
-        Ok(self.modes.last_outside(band, self.start())?.or(early))
+        Ok(self.modes.last_outside(band, self.start_of_modal_sum())?.or(early))
     }
 
     /// Returns the instant and the value of the maximum (`sign` one) or minimum (`sign` −1) of the deviation
     /// after the time `from`. If the deviation only approaches zero, the result is zero at infinite time.
-    fn extreme(&self, sign: f64, from: f64) -> Result<(f64, f64), Error> {
+    fn extreme_deviation(&self, sign: f64, from: f64) -> Result<(f64, f64), Error> {
         let early = self.first.iter().enumerate().skip(from as usize).map(|(k, e)| (k as f64, *e));
         let early = early.reduce(|best, next| if sign * next.1 > sign * best.1 { next } else { best });
-        let late = self.modes.extreme(sign, from.max(self.start()))?;
+        let late = self.modes.extreme(sign, from.max(self.start_of_modal_sum()))?;
         let best = early.filter(|early| sign * early.1 >= sign * late.1).unwrap_or(late);
         let initial = self.first.get(from as usize).copied().unwrap_or_else(|| self.modes.value(from));
         Ok(if sign * best.1 > self.modes.noise {
@@ -129,12 +129,12 @@ impl StateSpace {
                 return Err(Error::Range { what, value });
             }
         }
-        let at_rest = self.frequency_map()?.sample(boundary(self.period, 0.0))?;
+        let at_rest = self.frequency_map()?.sample_channel(stability_boundary_point(self.period, 0.0))?;
         let final_value = at_rest.value.re;
         if final_value.abs() <= at_rest.error {
             return Err(Error::Range { what: "a final value", value: 0.0 });
         }
-        let distance = self.distance(final_value)?;
+        let distance = self.distance_from_final_value(final_value)?;
         let period = self.period.unwrap_or(1.0);
         let (from, to) = (distance.first_above(low - 1.0)?, distance.first_above(high - 1.0)?);
         let settling_time = match (distance.last_outside(limits.settling)?, self.period) {
@@ -142,10 +142,10 @@ impl StateSpace {
             (Some(last), None) => last,
             (Some(last), Some(_)) => last + 1.0,
         };
-        let (top, bottom) = (distance.extreme(1.0, 0.0)?, distance.extreme(-1.0, 0.0)?);
+        let (top, bottom) = (distance.extreme_deviation(1.0, 0.0)?, distance.extreme_deviation(-1.0, 0.0)?);
         let relative_extreme = |extreme: (f64, f64)| 1.0 + extreme.1;
         let peak = if relative_extreme(top).abs() >= relative_extreme(bottom).abs() { top } else { bottom };
-        let after_rise = [distance.extreme(1.0, to)?, distance.extreme(-1.0, to)?];
+        let after_rise = [distance.extreme_deviation(1.0, to)?, distance.extreme_deviation(-1.0, to)?];
         let after_rise = after_rise.map(|extreme| final_value * relative_extreme(extreme));
         Ok(StepFigures {
             final_value,
@@ -165,14 +165,14 @@ impl StateSpace {
     }
 
     /// Computes the deviation of the step response from its final value.
-    fn distance(&self, final_value: f64) -> Result<Distance, Error> {
+    fn distance_from_final_value(&self, final_value: f64) -> Result<Distance, Error> {
         let n = self.order();
         // The initial value of x − x∞ is −x∞.
         let (left, what) = match self.period {
             Some(_) => (DMatrix::identity(n, n) - &self.a, "I − A"),
             None => (-&self.a, "A"),
         };
-        let mut x = -solve(what, &left, &self.b)?;
+        let mut x = -solve_linear_system(what, &left, &self.b)?;
         let c = &self.c / final_value;
         let modes = ModalSum::new(&c, &self.a, &x, self.period.is_some())?;
         let mut first = Vec::new();

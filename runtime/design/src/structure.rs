@@ -37,7 +37,7 @@ pub struct KalmanRanks {
 }
 
 impl StateSpace {
-    fn scaled(&self) -> (Self, Vec<f64>) {
+    fn balanced_system(&self) -> (Self, Vec<f64>) {
         let (a, b, c, d) = balance_system(&self.a, &self.b, &self.c);
         (Self { a, b, c, ..self.clone() }, d)
     }
@@ -67,7 +67,7 @@ impl StateSpace {
         if !(0.0..1.0).contains(&tolerance) {
             return Err(Error::Range { what: "a tolerance", value: tolerance });
         }
-        let (scaled, scales) = self.scaled();
+        let (scaled, scales) = self.balanced_system();
         let n = self.order();
         let relative = if tolerance > 0.0 { tolerance } else { ROUNDING.max(10.0 * f64::EPSILON * n as f64) };
         let (size_a, size_b) = (scaled.a.norm(), scaled.b.norm());
@@ -91,7 +91,7 @@ impl StateSpace {
             steps.push(compression.rank);
             (before, top) = (top, top + compression.rank);
         }
-        clear(&mut a, &mut b, &steps, top);
+        clear_below_stairs(&mut a, &mut b, &steps, top);
         let transformation = DMatrix::from_fn(n, n, |i, j| scales[i] * t[(i, j)]);
         let states = (1..=n).map(|k| Signal::from(format!("z{k}"))).collect();
         let system = Self { c: &self.c * &transformation, a, b, states, ..self.clone() };
@@ -142,7 +142,7 @@ impl StateSpace {
     /// [`Error::Unstable`] with an unstable pole.
     pub fn controllability_gramian(&self) -> Result<DMatrix<f64>, Error> {
         self.check_stable()?;
-        let (scaled, d) = self.scaled();
+        let (scaled, d) = self.balanced_system();
         let q = &scaled.b * scaled.b.transpose();
         let w = match self.period {
             Some(_) => discrete_lyapunov(&scaled.a, &q)?,
@@ -178,7 +178,7 @@ impl StateSpace {
         let root = DMatrix::from_diagonal(&eigen.eigenvalues.map(|x| x.max(0.0).sqrt()));
         let l = eigen.eigenvectors * root;
         let middle = l.transpose() * o * l;
-        let values = crate::matrices::symmetric(&middle).symmetric_eigenvalues();
+        let values = crate::matrices::symmetric_part(&middle).symmetric_eigenvalues();
         let mut values: Vec<f64> = values.iter().map(|x| x.max(0.0).sqrt()).collect();
         values.sort_by(|a, b| b.total_cmp(a));
         Ok(values)
@@ -192,7 +192,7 @@ impl StateSpace {
     ///
     /// [`Error::NotConverged`].
     pub fn mode_controllability(&self) -> Result<Vec<(C, f64)>, Error> {
-        let (scaled, _) = self.scaled();
+        let (scaled, _) = self.balanced_system();
         let (n, m) = scaled.b.shape();
         let size = scaled.a.norm().max(f64::MIN_POSITIVE);
         let distance_to_uncontrollability = |pole: C| {
@@ -226,15 +226,16 @@ impl StateSpace {
     /// As for [`controllable_staircase`](Self::controllable_staircase).
     pub fn minimal(&self, tolerance: f64) -> Result<Self, Error> {
         let top = self.controllable_staircase(tolerance)?;
-        let controllable = if top.rank == self.order() { self.clone() } else { top.system.leading(top.rank) };
+        let controllable =
+            if top.rank == self.order() { self.clone() } else { top.system.leading_subsystem(top.rank) };
         let seen = controllable.dual().controllable_staircase(tolerance)?;
         if seen.rank == controllable.order() {
             return Ok(controllable);
         }
-        Ok(seen.system.leading(seen.rank).dual())
+        Ok(seen.system.leading_subsystem(seen.rank).dual())
     }
 
-    fn leading(&self, n: usize) -> Self {
+    fn leading_subsystem(&self, n: usize) -> Self {
         Self {
             a: self.a.view((0, 0), (n, n)).into_owned(),
             b: self.b.rows(0, n).into_owned(),
@@ -253,7 +254,7 @@ impl StateSpace {
     pub fn kalman_ranks(&self, tolerance: f64) -> Result<KalmanRanks, Error> {
         let top = self.controllable_staircase(tolerance)?;
         let observable = self.dual().controllable_staircase(tolerance)?.rank;
-        let both = top.system.leading(top.rank).dual().controllable_staircase(tolerance)?.rank;
+        let both = top.system.leading_subsystem(top.rank).dual().controllable_staircase(tolerance)?.rank;
         let (controllable_only, observable_only) =
             (top.rank - both.min(top.rank), observable.saturating_sub(both));
         let neither = self.order().saturating_sub(both + controllable_only + observable_only);
@@ -262,7 +263,7 @@ impl StateSpace {
 }
 
 /// Sets entries below the stairs, which are rounding errors, to zero.
-fn clear(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, steps: &[usize], top: usize) {
+fn clear_below_stairs(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, steps: &[usize], top: usize) {
     let n = a.nrows();
     let (mut row, mut column) = (0, 0);
     for (k, step) in steps.iter().enumerate() {

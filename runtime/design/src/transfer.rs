@@ -1,7 +1,7 @@
 //! Transfer functions of systems with one input and one output.
 
 use crate::matrices::C;
-use crate::polynomial::{factors, number};
+use crate::polynomial::{format_factors, format_number};
 use crate::{Error, Polynomial, StateSpace};
 use nalgebra::DMatrix;
 use std::fmt;
@@ -117,6 +117,12 @@ impl TransferFunction {
         self.numerator.degree() <= self.denominator.degree()
     }
 
+    /// Reports an error if the numerator has the higher degree.
+    pub(crate) fn check_proper(&self) -> Result<(), Error> {
+        let (numerator, denominator) = (self.numerator.degree(), self.denominator.degree());
+        if self.is_proper() { Ok(()) } else { Err(Error::Improper { numerator, denominator }) }
+    }
+
     /// Returns the roots of the denominator.
     ///
     /// # Errors
@@ -181,10 +187,8 @@ impl TransferFunction {
     ///
     /// [`Error::Improper`].
     pub fn state_space(&self) -> Result<StateSpace, Error> {
+        self.check_proper()?;
         let n = self.denominator.degree();
-        if !self.is_proper() {
-            return Err(Error::Improper { numerator: self.numerator.degree(), denominator: n });
-        }
         let direct = self.numerator.coefficient(n);
         let a = DMatrix::from_fn(n, n, |i, j| match i {
             0 => -self.denominator.coefficient(n - 1 - j),
@@ -259,7 +263,7 @@ impl TransferFunction {
         Ok(Self { period, ..Self::quotient(&numerator, &(&self.denominator * &other.numerator))? })
     }
 
-    fn variable(&self) -> &'static str {
+    fn variable_name(&self) -> &'static str {
         if self.period.is_some() { "z" } else { "s" }
     }
 }
@@ -292,7 +296,7 @@ impl Mul for &TransferFunction {
     }
 }
 
-fn fraction(above: &str, below: &str) -> String {
+fn format_fraction(above: &str, below: &str) -> String {
     let wrap_in_parentheses = |text: &str| {
         if text.contains(" + ") || text.contains(" - ") { format!("({text})") } else { text.to_owned() }
     };
@@ -305,8 +309,11 @@ fn fraction(above: &str, below: &str) -> String {
 
 impl fmt::Display for TransferFunction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let variable = self.variable();
-        f.write_str(&fraction(&self.numerator.written_in(variable), &self.denominator.written_in(variable)))
+        let variable = self.variable_name();
+        f.write_str(&format_fraction(
+            &self.numerator.written_in(variable),
+            &self.denominator.written_in(variable),
+        ))
     }
 }
 
@@ -336,8 +343,8 @@ impl fmt::Display for ZerosPolesGain {
     /// Writes the factors, with second-order factors for conjugate pairs: `2 (s + 1) / (s² + s + 2)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let variable = if self.period.is_some() { "z" } else { "s" };
-        let (above, below) = (factors(&self.zeros, variable), factors(&self.poles, variable));
-        let gain = number(self.gain);
+        let (above, below) = (format_factors(&self.zeros, variable), format_factors(&self.poles, variable));
+        let gain = format_number(self.gain);
         match (above.as_str(), gain.as_str()) {
             ("", _) => f.write_str(&gain)?,
             (_, "1") => f.write_str(&above)?,
@@ -362,10 +369,14 @@ impl StateSpace {
         output: impl Into<crate::Port<'a>>,
         input: impl Into<crate::Port<'a>>,
     ) -> Result<ZerosPolesGain, Error> {
-        let channel = self.channel(output, input)?.minimal(0.0)?;
-        let (zeros, poles) = (channel.zeros()?, channel.poles()?);
-        let direct = channel.d[(0, 0)];
-        let response = channel.frequency_map()?;
+        self.channel(output, input)?.minimal(0.0)?.zeros_poles_gain()
+    }
+
+    /// Returns the zeros, poles and gain of a system with one input and one output.
+    pub(crate) fn zeros_poles_gain(&self) -> Result<ZerosPolesGain, Error> {
+        let (zeros, poles) = (self.zeros()?, self.poles()?);
+        let direct = self.d[(0, 0)];
+        let response = self.frequency_map()?;
         // The gain is evaluated at a point that is far from all zeros and poles: on the real axis, right
         // of all of them by the geometric mean of their magnitudes.
         let sizes: Vec<f64> = zeros.iter().chain(&poles).map(|x| x.norm()).filter(|x| *x > 0.0).collect();

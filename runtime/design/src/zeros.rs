@@ -1,6 +1,6 @@
 //! Invariant zeros of linear systems.
 
-use crate::matrices::{C, Compression, balance_system, eigenvalues, solve};
+use crate::matrices::{C, Compression, balance_system, eigenvalues, solve_linear_system};
 use crate::{Error, StateSpace};
 use nalgebra::DMatrix;
 
@@ -51,7 +51,7 @@ impl Pencil {
 
     /// Eliminates states until `D` has full row rank. At a zero the outputs vanish. Outputs without
     /// feedthrough then restrict the states to a subspace, and the other states are removed.
-    fn reduce(mut self) -> Self {
+    fn eliminate_states(mut self) -> Self {
         loop {
             let (n, p) = (self.a.nrows(), self.d.nrows());
             let of_d = Compression::rows(&self.d, self.least);
@@ -106,7 +106,7 @@ impl StateSpace {
     ///
     /// [`Error::NotConverged`] if the eigenvalues of the reduced system do not converge.
     pub fn zeros(&self) -> Result<Vec<C>, Error> {
-        let reduced = Pencil::new(self).reduce().transpose().reduce().transpose();
+        let reduced = Pencil::new(self).eliminate_states().transpose().eliminate_states().transpose();
         let (n, m) = (reduced.a.nrows(), reduced.d.ncols());
         if n == 0 {
             return Ok(Vec::new());
@@ -115,7 +115,7 @@ impl StateSpace {
         if m > 0 {
             let values = reduced.d.clone().svd_unordered(false, false).singular_values;
             if values.min() > 0.01 * values.max() {
-                let held = solve("D", &reduced.d, &reduced.c)?;
+                let held = solve_linear_system("D", &reduced.d, &reduced.c)?;
                 return eigenvalues(&(&reduced.a - &reduced.b * held));
             }
         }
@@ -128,7 +128,8 @@ impl StateSpace {
         let kernel = compression.q.columns(m, n);
         let (u, x) = (kernel.rows(0, m), kernel.rows(m, n));
         let left = &reduced.a * x + &reduced.b * u;
-        let solved = solve("the reduced pencil", &x.into_owned().transpose(), &left.transpose())?;
+        let solved =
+            solve_linear_system("the reduced pencil", &x.into_owned().transpose(), &left.transpose())?;
         eigenvalues(&solved.transpose())
     }
 }

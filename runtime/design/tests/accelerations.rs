@@ -12,7 +12,7 @@ use num_dual::Dual64;
 const ROUNDING: f64 = 1e-10;
 
 /// Returns the derivatives at zero along `K` directions by dual numbers, which are exact up to rounding.
-fn slopes<const N: usize, const K: usize>(
+fn dual_derivatives<const N: usize, const K: usize>(
     f: impl Fn(SVector<Dual64, K>) -> SVector<Dual64, N>,
 ) -> DMatrix<f64> {
     let column_of_derivatives = |k: usize| {
@@ -22,12 +22,12 @@ fn slopes<const N: usize, const K: usize>(
     DMatrix::from_fn(N, K, |i, k| columns[k][i])
 }
 
-fn raised<const N: usize>(x: &SVector<f64, N>) -> SVector<Dual64, N> {
+fn to_dual_numbers<const N: usize>(x: &SVector<f64, N>) -> SVector<Dual64, N> {
     x.map(Dual64::from)
 }
 
 #[track_caller]
-fn agree(what: &str, found: &DMatrix<f64>, expected: &DMatrix<f64>) {
+fn assert_agreement(what: &str, found: &DMatrix<f64>, expected: &DMatrix<f64>) {
     assert_eq!(found.shape(), expected.shape(), "{what}");
     let (error, size) = ((found - expected).amax(), expected.amax().max(1e-3));
     assert!(error <= ROUNDING * size, "{what} is {error:e} off: found {found}expected {expected}");
@@ -74,7 +74,7 @@ struct Unsteady<T: Real> {
 static ANGLES: [f64; 5] = [-1.6, -0.5, 0.1, 0.6, 1.7];
 static LIFTS: [f64; 5] = [-0.3, -0.9, 0.6, 1.4, 0.2];
 
-fn unsteady<T: Real>(state: T) -> Unsteady<T> {
+fn unsteady_aircraft<T: Real>(state: T) -> Unsteady<T> {
     let constant_number = |x: f64| nalgebra::convert(x);
     let lift = Table::new([&ANGLES], &LIFTS).unwrap().smooth();
     Unsteady {
@@ -101,9 +101,9 @@ fn in_flight(k: usize) -> (SVector<f64, 7>, SVector<f64, 7>, SVector<f64, 2>) {
 fn linear_systems_are_those_of_automatic_differentiation() {
     for k in 0..4 {
         let (q, v, u) = in_flight(k);
-        let craft = unsteady(v[6]);
+        let craft = unsteady_aircraft(v[6]);
         let system = linear_system(&at(&craft.extended(), 0.0), &q, &v, &u).unwrap();
-        let dual = unsteady(Dual64::from(0.0));
+        let dual = unsteady_aircraft(Dual64::from(0.0));
         let whole = dual.extended();
         let zero = Dual64::from(0.0);
         let acceleration_of_whole =
@@ -111,24 +111,24 @@ fn linear_systems_are_those_of_automatic_differentiation() {
                 let tau = whole.generalized_forces(zero, q, v, u);
                 whole.forward_dynamics(zero, q, v, &tau)
             };
-        let (q, v, u) = (raised(&q), raised(&v), raised(&u));
+        let (q, v, u) = (to_dual_numbers(&q), to_dual_numbers(&v), to_dual_numbers(&u));
         let rows = system.a().rows(6, 7);
         let displaced_motion =
             |by: SVector<Dual64, 7>| acceleration_of_whole(&whole.integrate(&q, &by), &v, &u);
-        agree(
+        assert_agreement(
             "∂v̇/∂q",
             &rows.columns(0, 6).clone_owned(),
-            &slopes(displaced_motion).columns(0, 6).clone_owned(),
+            &dual_derivatives(displaced_motion).columns(0, 6).clone_owned(),
         );
-        agree(
+        assert_agreement(
             "∂v̇/∂v",
             &rows.columns(6, 7).clone_owned(),
-            &slopes(|by| acceleration_of_whole(&q, &(v + by), &u)),
+            &dual_derivatives(|by| acceleration_of_whole(&q, &(v + by), &u)),
         );
-        agree(
+        assert_agreement(
             "B",
             &system.b().rows(6, 7).clone_owned(),
-            &slopes(|by| acceleration_of_whole(&q, &v, &(u + by))),
+            &dual_derivatives(|by| acceleration_of_whole(&q, &v, &(u + by))),
         );
     }
 }
@@ -157,7 +157,7 @@ struct Coupled<T: Real> {
     pushed: Force,
 }
 
-fn coupled<T: Real>() -> Coupled<T> {
+fn coupled_mechanism<T: Real>() -> Coupled<T> {
     Coupled { gain: nalgebra::convert(0.2), share: nalgebra::convert(0.5), added: nalgebra::convert(0.7) }
 }
 
@@ -165,25 +165,25 @@ fn coupled<T: Real>() -> Coupled<T> {
 fn second_order_forms_are_those_of_inverse_dynamics() {
     for (q, v, u) in [([0.0, 0.0], [0.0, 0.0], [0.0]), ([0.3, -0.7], [0.5, 1.2], [2.0])] {
         let (q, v, u) = (q.into(), v.into(), u.into());
-        let form = second_order_form(&coupled::<f64>(), &q, &v, &u).unwrap();
-        let dual = coupled::<Dual64>();
-        let motion = linear_system(&coupled::<f64>(), &q, &v, &u).unwrap();
-        let forces = coupled::<f64>().generalized_forces(&q, &v, &u);
-        let a = raised(&coupled::<f64>().forward_dynamics(&q, &v, &forces));
-        let (q, v, u) = (raised(&q), raised(&v), raised(&u));
+        let form = second_order_form(&coupled_mechanism::<f64>(), &q, &v, &u).unwrap();
+        let dual = coupled_mechanism::<Dual64>();
+        let motion = linear_system(&coupled_mechanism::<f64>(), &q, &v, &u).unwrap();
+        let forces = coupled_mechanism::<f64>().generalized_forces(&q, &v, &u);
+        let a = to_dual_numbers(&coupled_mechanism::<f64>().forward_dynamics(&q, &v, &forces));
+        let (q, v, u) = (to_dual_numbers(&q), to_dual_numbers(&v), to_dual_numbers(&u));
         // Residual of the equations of motion: τ(q, v, a) − f(q, u).
         let missing =
             |q: &_, v: &_, a: &_, u: &_| dual.inverse_dynamics(q, v, a) - dual.generalized_forces(q, v, u);
-        agree("M", &form.mass, &slopes(|by| missing(&q, &v, &(a + by), &u)));
+        assert_agreement("M", &form.mass, &dual_derivatives(|by| missing(&q, &v, &(a + by), &u)));
         let velocity = &form.damping + &form.gyroscopic;
-        agree("D + G", &velocity, &slopes(|by| missing(&q, &(v + by), &a, &u)));
+        assert_agreement("D + G", &velocity, &dual_derivatives(|by| missing(&q, &(v + by), &a, &u)));
         let position = &form.stiffness + &form.circulatory;
-        agree("K + N", &position, &slopes(|by| missing(&(q + by), &v, &a, &u)));
-        agree("B", &form.input, &-slopes(|by| missing(&q, &v, &a, &(u + by))));
+        assert_agreement("K + N", &position, &dual_derivatives(|by| missing(&(q + by), &v, &a, &u)));
+        assert_agreement("B", &form.input, &-dual_derivatives(|by| missing(&q, &v, &a, &(u + by))));
         assert!((form.mass[(0, 1)] - form.mass[(1, 0)]).abs() > 0.01, "not symmetric");
         let again = form.state_space().unwrap();
-        agree("A", again.a(), motion.a());
-        agree("B", again.b(), motion.b());
+        assert_agreement("A", again.a(), motion.a());
+        assert_agreement("B", again.b(), motion.b());
     }
 }
 
@@ -262,7 +262,7 @@ fn energy_decides_on_symmetric_inertia_only() {
 #[test]
 fn states_of_first_order_have_no_second_order_form() {
     let (q, v, u) = in_flight(0);
-    let craft = unsteady(v[6]);
+    let craft = unsteady_aircraft(v[6]);
     let error = second_order_form(&at(&craft.extended(), 0.0), &q, &v, &u).unwrap_err();
     assert!(matches!(error, Error::Count { what: "states of first order", expected: 0, found: 1 }));
 }

@@ -7,7 +7,7 @@ use nalgebra::{Complex, DMatrix, dmatrix};
 type C = Complex<f64>;
 
 #[track_caller]
-fn close(found: f64, expected: f64, relative: f64) {
+fn assert_relatively_close(found: f64, expected: f64, relative: f64) {
     assert!(
         (found - expected).abs() <= relative * expected.abs().max(1e-3),
         "expected {expected}, found {found}"
@@ -15,7 +15,7 @@ fn close(found: f64, expected: f64, relative: f64) {
 }
 
 #[track_caller]
-fn contains(all: &[C], re: f64, im: f64, tolerance: f64) {
+fn assert_contains_pole(all: &[C], re: f64, im: f64, tolerance: f64) {
     let expected = C::new(re, im);
     assert!(
         all.iter().any(|x| (x - expected).norm() <= tolerance * expected.norm()),
@@ -25,7 +25,7 @@ fn contains(all: &[C], re: f64, im: f64, tolerance: f64) {
 
 /// Jet transport of "Yaw Damper Design for a 747" (Control System Toolbox): Mach 0.8, 40 000 ft, lateral
 /// motion.
-fn transport() -> StateSpace {
+fn jet_transport() -> StateSpace {
     let a = dmatrix![
         -0.0558, -0.9968, 0.0802, 0.0415;
         0.598, -0.115, -0.0318, 0.0;
@@ -47,16 +47,16 @@ fn transport() -> StateSpace {
 
 #[test]
 fn transport_modes() {
-    let system = transport();
+    let system = jet_transport();
     let poles = system.poles().unwrap();
-    contains(&poles, -0.032935458097396, 0.946653235187099, 1e-13);
-    contains(&poles, -0.562651115485759, 0.0, 1e-13);
-    contains(&poles, -0.007277968319449, 0.0, 1e-11);
+    assert_contains_pole(&poles, -0.032935458097396, 0.946653235187099, 1e-13);
+    assert_contains_pole(&poles, -0.562651115485759, 0.0, 1e-13);
+    assert_contains_pole(&poles, -0.007277968319449, 0.0, 1e-11);
     let modes = system.modes().unwrap();
     let dutch = modes.iter().find(|m| m.pole.im > 0.0).unwrap();
-    close(dutch.frequency(), 0.9472259984, 1e-9);
-    close(dutch.damping_ratio(), 0.03477043298, 1e-9);
-    close(dutch.time_to_half().unwrap(), 2.0_f64.ln() / 0.032935458097396, 1e-12);
+    assert_relatively_close(dutch.frequency(), 0.9472259984, 1e-9);
+    assert_relatively_close(dutch.damping_ratio(), 0.03477043298, 1e-9);
+    assert_relatively_close(dutch.time_to_half().unwrap(), 2.0_f64.ln() / 0.032935458097396, 1e-12);
     assert_eq!(modes[0].participants()[0].0, "bank", "the spiral is a bank: {}", modes[0]);
     assert!(!dutch.is_defective());
     assert!(dutch.participation.iter().sum::<f64>() - 1.0 < 1e-12);
@@ -64,47 +64,47 @@ fn transport_modes() {
 
 #[test]
 fn transport_channels() {
-    let system = transport();
+    let system = jet_transport();
     let yaw = system.transfer_function("yaw rate", "rudder").unwrap();
     let expected = [-0.475, -0.24788598, -0.118714058120, -0.056326124];
     for (found, expected) in yaw.numerator().coefficients().iter().zip(expected) {
-        close(*found, expected, 2e-8);
+        assert_relatively_close(*found, expected, 2e-8);
     }
     for (found, expected) in
         yaw.denominator().coefficients().iter().zip([1.0, 0.6358, 0.9388738, 0.51163125242, 0.003674147305])
     {
-        close(*found, expected, 1e-9);
+        assert_relatively_close(*found, expected, 1e-9);
     }
     let factored = system.factored("yaw rate", "rudder").unwrap();
-    contains(&factored.zeros, -0.49807942502556, 0.0, 1e-12);
-    contains(&factored.zeros, -0.011892898013536, 0.487786506836866, 1e-12);
-    close(system.gain_at_rest().unwrap()[(0, 0)], -15.330393510175284, 1e-11);
-    close(yaw.gain_at_rest(), -15.330393510175284, 1e-10);
+    assert_contains_pole(&factored.zeros, -0.49807942502556, 0.0, 1e-12);
+    assert_contains_pole(&factored.zeros, -0.011892898013536, 0.487786506836866, 1e-12);
+    assert_relatively_close(system.gain_at_rest().unwrap()[(0, 0)], -15.330393510175284, 1e-11);
+    assert_relatively_close(yaw.gain_at_rest(), -15.330393510175284, 1e-10);
     let bank = system.factored("bank", "aileron").unwrap();
-    contains(&bank.zeros, -0.095354092068606, 0.872291025792194, 1e-12);
-    close(system.gain_at_rest().unwrap()[(1, 1)], 30.098981297570756, 1e-11);
+    assert_contains_pole(&bank.zeros, -0.095354092068606, 0.872291025792194, 1e-12);
+    assert_relatively_close(system.gain_at_rest().unwrap()[(1, 1)], 30.098981297570756, 1e-11);
 }
 
 #[test]
 fn transport_frequency_response() {
     let frequencies = [0.1, 0.5, 1.0, 2.0, 10.0];
-    let response = transport().frequency_response("yaw rate", "rudder", &frequencies).unwrap();
+    let response = jet_transport().frequency_response("yaw rate", "rudder", &frequencies).unwrap();
     // Recomputed with 40 digits (mpmath).
     let decibels = [0.689751832758, -32.711509337895, 9.212440344215, -10.890151461415, -26.411682548156];
     let degrees = [95.609231117885, -133.522626934155, 124.176112301269, 93.643492162448, 90.654845532871];
     for (k, value) in response.values.iter().enumerate() {
-        close(response.decibels()[k], decibels[k], 1e-11);
-        close(value.arg().to_degrees(), degrees[k], 1e-11);
+        assert_relatively_close(response.decibels()[k], decibels[k], 1e-11);
+        assert_relatively_close(value.arg().to_degrees(), degrees[k], 1e-11);
     }
 }
 
 #[test]
 fn transport_yaw_damper() {
-    let yaw = transport().channel("yaw rate", "rudder").unwrap();
+    let yaw = jet_transport().channel("yaw rate", "rudder").unwrap();
     let closed = yaw.feedback_gain(&dmatrix![-2.85]).unwrap().poles().unwrap();
-    contains(&closed, -0.297221693126074, 0.60611851148743, 1e-12);
-    contains(&closed, -0.342216765800175, 0.0, 1e-12);
-    contains(&closed, -1.052889847947678, 0.0, 1e-12);
+    assert_contains_pole(&closed, -0.297221693126074, 0.60611851148743, 1e-12);
+    assert_contains_pole(&closed, -0.342216765800175, 0.0, 1e-12);
+    assert_contains_pole(&closed, -1.052889847947678, 0.0, 1e-12);
 }
 
 #[test]
@@ -112,11 +112,11 @@ fn riccati_of_maple() {
     let (a, b) = (dmatrix![-3.0, 2.0; 1.0, 1.0], dmatrix![0.0; 1.0]);
     let best = riccati(&a, &b, &Cost::new(dmatrix![1.0, -1.0; -1.0, 1.0], dmatrix![3.0])).unwrap();
     let x = [0.589517437276261, 1.821574724886083, 1.821574724886083, 8.818839806923112];
-    best.x.iter().zip(x).for_each(|(found, expected)| close(*found, expected, 1e-13));
-    close(best.gain[(0, 0)], 0.607191574962028, 1e-13);
-    close(best.gain[(0, 1)], 2.93961326897437, 1e-13);
-    contains(&best.poles, -3.502628911023546, 0.0, 1e-13);
-    contains(&best.poles, -1.436984357950825, 0.0, 1e-13);
+    best.x.iter().zip(x).for_each(|(found, expected)| assert_relatively_close(*found, expected, 1e-13));
+    assert_relatively_close(best.gain[(0, 0)], 0.607191574962028, 1e-13);
+    assert_relatively_close(best.gain[(0, 1)], 2.93961326897437, 1e-13);
+    assert_contains_pole(&best.poles, -3.502628911023546, 0.0, 1e-13);
+    assert_contains_pole(&best.poles, -1.436984357950825, 0.0, 1e-13);
 }
 
 #[test]
@@ -124,42 +124,42 @@ fn margins_and_routh() {
     let open = TransferFunction::new([1.0], [1.0, 2.0, 3.0, 4.0]).unwrap();
     let margins = open.margins().unwrap();
     let gain = margins.gain_increase().unwrap();
-    close(gain.factor, 2.0, 1e-12);
-    close(gain.frequency, 3.0_f64.sqrt(), 1e-12);
+    assert_relatively_close(gain.factor, 2.0, 1e-12);
+    assert_relatively_close(gain.frequency, 3.0_f64.sqrt(), 1e-12);
     assert!(margins.phase.is_empty());
-    close(margins.stability.distance, 0.4169761762, 1e-9);
-    close(margins.stability.frequency, 1.6620202928, 1e-8);
+    assert_relatively_close(margins.stability.distance, 0.4169761762, 1e-9);
+    assert_relatively_close(margins.stability.frequency, 1.6620202928, 1e-8);
     let ranges = Polynomial::new([1.0, 2.0, 3.0, 4.0]).stable_gains(&Polynomial::constant(1.0)).unwrap();
     assert_eq!(ranges.len(), 1);
-    close(ranges[0].low, -4.0, 1e-12);
-    close(ranges[0].high, 2.0, 1e-12);
+    assert_relatively_close(ranges[0].low, -4.0, 1e-12);
+    assert_relatively_close(ranges[0].high, 2.0, 1e-12);
 }
 
 #[test]
 fn step_responses() {
     let figures = TransferFunction::new([-1.0, 1.0], [1.0, 1.0, 1.0]).unwrap().step_figures().unwrap();
     // The published values are computed from samples; python-control's tests allow 2 %.
-    close(figures.rise_time, 1.242, 2e-2);
-    close(figures.settling_time, 9.110, 2e-2);
-    close(figures.overshoot, 20.840, 2e-2);
-    close(figures.undershoot, 28.0, 2e-2);
-    close(figures.peak, 1.208, 2e-2);
-    close(figures.peak_time, 4.282, 2e-2);
+    assert_relatively_close(figures.rise_time, 1.242, 2e-2);
+    assert_relatively_close(figures.settling_time, 9.110, 2e-2);
+    assert_relatively_close(figures.overshoot, 20.840, 2e-2);
+    assert_relatively_close(figures.undershoot, 28.0, 2e-2);
+    assert_relatively_close(figures.peak, 1.208, 2e-2);
+    assert_relatively_close(figures.peak_time, 4.282, 2e-2);
     // Exact: 1 − e^{−t/2} (cos ωt + √3 sin ωt) with ω = √3/2; its derivative is zero at ωt = π/6 and 7π/6.
     let omega = 0.75_f64.sqrt();
     let expected_step_response =
         |t: f64| 1.0 - (-t / 2.0).exp() * ((omega * t).cos() + 3.0_f64.sqrt() * (omega * t).sin());
     let turn = std::f64::consts::PI / 6.0;
-    close(figures.peak_time, 7.0 * turn / omega, 1e-12);
-    close(figures.peak, expected_step_response(7.0 * turn / omega), 1e-13);
-    close(figures.undershoot, -100.0 * expected_step_response(turn / omega), 1e-13);
-    close((expected_step_response(figures.settling_time) - 1.0).abs(), 0.02, 1e-10);
+    assert_relatively_close(figures.peak_time, 7.0 * turn / omega, 1e-12);
+    assert_relatively_close(figures.peak, expected_step_response(7.0 * turn / omega), 1e-13);
+    assert_relatively_close(figures.undershoot, -100.0 * expected_step_response(turn / omega), 1e-13);
+    assert_relatively_close((expected_step_response(figures.settling_time) - 1.0).abs(), 0.02, 1e-10);
     let figures = TransferFunction::new([-1.0, 1.0], [1.0, 1.0]).unwrap().step_figures().unwrap();
-    close(figures.rise_time, 9.0_f64.ln(), 1e-12);
-    close(figures.settling_time, 100.0_f64.ln(), 1e-12);
-    close(figures.overshoot, 0.0, 1e-9);
-    close(figures.undershoot, 100.0, 1e-12);
-    close(figures.peak, 1.0, 1e-12);
+    assert_relatively_close(figures.rise_time, 9.0_f64.ln(), 1e-12);
+    assert_relatively_close(figures.settling_time, 100.0_f64.ln(), 1e-12);
+    assert_relatively_close(figures.overshoot, 0.0, 1e-9);
+    assert_relatively_close(figures.undershoot, 100.0, 1e-12);
+    assert_relatively_close(figures.peak, 1.0, 1e-12);
 }
 
 /// Compares with the cruising Boeing 747 of Etkin and Reid, *Dynamics of Flight* (1996), in ft and s as
@@ -174,8 +174,8 @@ fn boeing_747() {
         0.0, 0.0, 1.0, 0.0
     ];
     let poles = eigenvalues(&longitudinal).unwrap();
-    contains(&poles, -0.371945, 0.887540, 1e-5);
-    contains(&poles, -0.00328948, 0.0672311, 1e-5);
+    assert_contains_pole(&poles, -0.371945, 0.887540, 1e-5);
+    assert_contains_pole(&poles, -0.00328948, 0.0672311, 1e-5);
     let lateral = dmatrix![
         -0.0558, 0.0, -774.0, 32.2;
         -0.003865, -0.4342, 0.4136, 0.0;
@@ -183,9 +183,9 @@ fn boeing_747() {
         0.0, 1.0, 0.0, 0.0
     ];
     let poles = eigenvalues(&lateral).unwrap();
-    contains(&poles, -0.0330114, 0.946546, 1e-5);
-    contains(&poles, -0.562480, 0.0, 1e-5);
-    contains(&poles, -0.00729733, 0.0, 1e-5);
+    assert_contains_pole(&poles, -0.0330114, 0.946546, 1e-5);
+    assert_contains_pole(&poles, -0.562480, 0.0, 1e-5);
+    assert_contains_pole(&poles, -0.00729733, 0.0, 1e-5);
     let own = dmatrix![
         -0.006866611275943936, 0.013943035674208383, 0.0, -9.81;
         -0.09050889360654447, -0.31489494006034713, 235.89334048404203, 0.0;
@@ -193,8 +193,8 @@ fn boeing_747() {
         0.0, 0.0, 1.0, 0.0
     ];
     let poles = eigenvalues(&own).unwrap();
-    contains(&poles, -0.37166215649674494, 0.8868788584671381, 1e-12);
-    contains(&poles, -0.003289206894193512, 0.06720807985472561, 1e-10);
+    assert_contains_pole(&poles, -0.37166215649674494, 0.8868788584671381, 1e-12);
+    assert_contains_pole(&poles, -0.003289206894193512, 0.06720807985472561, 1e-10);
     let own = dmatrix![
         -0.05576578472342987, 0.0, -235.9, 9.81;
         -0.01270078301241097, -0.4349018915599015, 0.4142375389921919, 0.0;
@@ -202,9 +202,9 @@ fn boeing_747() {
         0.0, 1.0, 0.0, 0.0
     ];
     let poles = eigenvalues(&own).unwrap();
-    contains(&poles, -0.033052210108050734, 0.9467852313277423, 1e-12);
-    contains(&poles, -0.5630776981191257, 0.0, 1e-12);
-    contains(&poles, -0.007277201746158317, 0.0, 1e-10);
+    assert_contains_pole(&poles, -0.033052210108050734, 0.9467852313277423, 1e-12);
+    assert_contains_pole(&poles, -0.5630776981191257, 0.0, 1e-12);
+    assert_contains_pole(&poles, -0.007277201746158317, 0.0, 1e-10);
 }
 
 /// Compares with the published matrices and eigenvalues of the benchmark bicycle (Meijaard, Papadopoulos,
@@ -231,7 +231,7 @@ fn whipple_bicycle() {
     ];
     for (v, expected) in published {
         let poles = bicycle_at_speed(v).poles().unwrap();
-        expected.iter().for_each(|(re, im)| contains(&poles, *re, *im, 1e-11));
+        expected.iter().for_each(|(re, im)| assert_contains_pole(&poles, *re, *im, 1e-11));
     }
     // The bicycle is self-stable between the weave speed and the capsize speed.
     for (v, stable) in
@@ -267,9 +267,9 @@ fn riccati_benchmarks() {
         let found = found.unwrap().x;
         let root = (1.0 + epsilon * epsilon).sqrt();
         let across = 1.0 / (2.0 + root);
-        close(found[(0, 0)], (1.0 + root) / (epsilon * epsilon), 1e-10);
-        close(found[(0, 1)], across, 1e-6);
-        close(found[(1, 1)], 0.25 * (1.0 - epsilon * epsilon * across * across), 1e-6);
+        assert_relatively_close(found[(0, 0)], (1.0 + root) / (epsilon * epsilon), 1e-10);
+        assert_relatively_close(found[(0, 1)], across, 1e-6);
+        assert_relatively_close(found[(1, 1)], 0.25 * (1.0 - epsilon * epsilon * across * across), 1e-6);
     }
     // Eigenvalues and costs of very different magnitudes.
     let turn = DMatrix::identity(3, 3) - DMatrix::from_element(3, 3, 2.0 / 3.0);
@@ -312,19 +312,23 @@ fn repeated_poles_have_their_margins() {
         let open = TransferFunction::quotient(&Polynomial::constant(0.9), &denominator).unwrap();
         let margin = open.margins().unwrap().gain_increase().unwrap();
         let angle = std::f64::consts::PI / n as f64;
-        close(margin.frequency, angle.tan(), 1e-9);
-        close(margin.factor, angle.cos().powi(-(n as i32)) / 0.9, 1e-9);
+        assert_relatively_close(margin.frequency, angle.tan(), 1e-9);
+        assert_relatively_close(margin.factor, angle.cos().powi(-(n as i32)) / 0.9, 1e-9);
         assert!(open.margins().unwrap().phase.is_empty());
     }
     for gain in [10.0, 100.0] {
         let margins = TransferFunction::new([gain], [1.0, 6.0, 5.0, 0.0]).unwrap().margins().unwrap();
         let margin = margins.nearest_gain().unwrap();
-        close(margin.factor, 30.0 / gain, 1e-12);
-        close(margin.frequency, 5.0_f64.sqrt(), 1e-12);
+        assert_relatively_close(margin.factor, 30.0 / gain, 1e-12);
+        assert_relatively_close(margin.frequency, 5.0_f64.sqrt(), 1e-12);
         let phase = margins.nearest_phase().unwrap();
         let w = phase.frequency;
-        close(phase.degrees, 90.0 - w.atan().to_degrees() - (w / 5.0).atan().to_degrees(), 1e-10);
-        close(w * (w * w + 1.0).sqrt() * (w * w + 25.0).sqrt(), gain, 1e-12);
+        assert_relatively_close(
+            phase.degrees,
+            90.0 - w.atan().to_degrees() - (w / 5.0).atan().to_degrees(),
+            1e-10,
+        );
+        assert_relatively_close(w * (w * w + 1.0).sqrt() * (w * w + 25.0).sqrt(), gain, 1e-12);
     }
 }
 

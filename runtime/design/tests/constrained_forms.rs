@@ -7,12 +7,12 @@ use linkwork_design::{Error, SecondOrderForm};
 use nalgebra::{DMatrix, dmatrix};
 
 #[track_caller]
-fn close(found: f64, expected: f64, relative: f64) {
+fn assert_relatively_close(found: f64, expected: f64, relative: f64) {
     assert!((found - expected).abs() <= relative * expected.abs(), "expected {expected}, found {found}");
 }
 
 #[track_caller]
-fn same(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64) {
+fn assert_same_matrix(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: f64) {
     assert!(
         (found - expected).amax() <= tolerance * expected.amax().max(1.0),
         "expected {expected}, found {found}"
@@ -49,10 +49,10 @@ fn a_particle_on_a_rod_in_wind() {
     let weight = mass * 9.81;
     let angle = wind.atan2(weight);
     let of_x = (length * angle.cos()).powi(2);
-    close(form.mass[0], mass * length * length / of_x, 1e-12);
-    close(form.damping[0], oil, 1e-12);
-    close(form.stiffness[0], length * weight.hypot(wind) / of_x, 1e-12);
-    close(form.input[0], 1.0, 1e-12);
+    assert_relatively_close(form.mass[0], mass * length * length / of_x, 1e-12);
+    assert_relatively_close(form.damping[0], oil, 1e-12);
+    assert_relatively_close(form.stiffness[0], length * weight.hypot(wind) / of_x, 1e-12);
+    assert_relatively_close(form.input[0], 1.0, 1e-12);
     let system = form.state_space().unwrap();
     assert_eq!(system.states()[0].to_string(), "place.x, m");
     // The linear system of the same equilibrium has the same matrices.
@@ -118,9 +118,13 @@ fn a_slider_crank_on_springs() {
     };
     let turned = r * c / root;
     let mass = 0.02 + 1.5 * r * r + 0.01 * turned * turned + 3.0 * first * first;
-    close(form.mass[0] * per * per, mass, 1e-10);
-    close(form.damping[0] * per * per, 25.0 * first * first, 1e-10);
-    close(form.stiffness[0] * per * per, 20.0 + 700.0 * (first * first + x * second), 1e-10);
+    assert_relatively_close(form.mass[0] * per * per, mass, 1e-10);
+    assert_relatively_close(form.damping[0] * per * per, 25.0 * first * first, 1e-10);
+    assert_relatively_close(
+        form.stiffness[0] * per * per,
+        20.0 + 700.0 * (first * first + x * second),
+        1e-10,
+    );
 }
 
 /// Particle in a rotating bowl, with drag from air at rest.
@@ -153,11 +157,11 @@ fn a_ball_in_a_turning_bowl() {
     let problem = constrained_equilibrium(&bowl).at_time(0.37);
     let form = problem.second_order_form(&problem.find().unwrap()).unwrap();
     let (one, turn) = (DMatrix::<f64>::identity(2, 2), dmatrix![0.0, -1.0; 1.0, 0.0]);
-    same(&form.mass, &(&one * mass), 1e-12);
-    same(&form.damping, &(&one * air), 1e-12);
-    same(&form.gyroscopic, &(&turn * (2.0 * mass * spin)), 1e-12);
-    same(&form.stiffness, &(&one * (mass * (9.81 / radius - spin * spin))), 1e-11);
-    same(&form.circulatory, &(&turn * (air * spin)), 1e-12);
+    assert_same_matrix(&form.mass, &(&one * mass), 1e-12);
+    assert_same_matrix(&form.damping, &(&one * air), 1e-12);
+    assert_same_matrix(&form.gyroscopic, &(&turn * (2.0 * mass * spin)), 1e-12);
+    assert_same_matrix(&form.stiffness, &(&one * (mass * (9.81 / radius - spin * spin))), 1e-11);
+    assert_same_matrix(&form.circulatory, &(&turn * (air * spin)), 1e-12);
 }
 
 /// Knife edge on ice. The force depends on the lateral position, and the edge prevents lateral velocity.

@@ -9,13 +9,13 @@ use linkwork_design::{Error, Signal, StateSpace};
 use nalgebra::Complex;
 
 #[track_caller]
-fn close(found: f64, expected: f64, relative: f64) {
+fn assert_relatively_close(found: f64, expected: f64, relative: f64) {
     let allowed = relative * expected.abs().max(1e-3);
     assert!((found - expected).abs() <= allowed, "expected {expected}, found {found}");
 }
 
 #[track_caller]
-fn contains(system: &StateSpace, re: f64, im: f64) {
+fn assert_contains_pole(system: &StateSpace, re: f64, im: f64) {
     let (all, expected) = (system.poles().unwrap(), Complex::new(re, im));
     assert!(
         all.iter().any(|pole| (pole - expected).norm() <= 1e-10 * expected.norm()),
@@ -47,8 +47,8 @@ fn phugoid_of_lanchester() {
     let modes = system.modes().unwrap();
     let phugoid = modes.iter().find(|mode| mode.pole.im > 0.0).unwrap();
     let period = std::f64::consts::TAU / phugoid.damped_frequency();
-    close(period, 106.8375214181, 1e-11);
-    close(period, std::f64::consts::PI * 2.0_f64.sqrt() * u0 / g, 1e-13);
+    assert_relatively_close(period, 106.8375214181, 1e-11);
+    assert_relatively_close(period, std::f64::consts::PI * 2.0_f64.sqrt() * u0 / g, 1e-13);
     assert!(phugoid.pole.re.abs() < 1e-12);
 }
 
@@ -83,8 +83,8 @@ fn glide_and_level_flight_without_outputs() {
     let weight = 300.0 * 9.81;
     let equilibrium_of_wing = || equilibrium(&wing).moving([30.0, 1.0].into()).fix(["place.x", "place.y"]);
     let glide = equilibrium_of_wing().speeds(["place.x", "place.y"]).find().unwrap();
-    close(glide.v[1].atan2(glide.v[0]), (0.45_f64 / 9.0).atan(), 1e-12);
-    close(0.6 * glide.v.norm_squared() * 9.0_f64.hypot(0.45), weight, 1e-12);
+    assert_relatively_close(glide.v[1].atan2(glide.v[0]), (0.45_f64 / 9.0).atan(), 1e-12);
+    assert_relatively_close(0.6 * glide.v.norm_squared() * 9.0_f64.hypot(0.45), weight, 1e-12);
 
     let trim_with_sink_rate = |w: f64| {
         let trim = equilibrium_of_wing().speeds(["place.x", "place.y"]).inputs(["thrust"]);
@@ -92,14 +92,14 @@ fn glide_and_level_flight_without_outputs() {
     };
     let level = trim_with_sink_rate(0.0);
     assert!(level.v[1].abs() < 1e-12);
-    close(level.u[0], weight * 0.05, 1e-11);
-    close(0.6 * level.v[0].powi(2) * 9.0, weight, 1e-11);
+    assert_relatively_close(level.u[0], weight * 0.05, 1e-11);
+    assert_relatively_close(0.6 * level.v[0].powi(2) * 9.0, weight, 1e-11);
     for w in [-3.0, 0.5, glide.v[1]] {
         let found = trim_with_sink_rate(w);
         let speed = found.v.norm();
-        close(found.v[1], w, 1e-11);
-        close(found.u[0], 0.6 * speed.powi(2) * 0.45 - weight * w / speed, 1e-9);
-        close(0.6 * speed.powi(2) * 9.0, weight * found.v[0] / speed, 1e-11);
+        assert_relatively_close(found.v[1], w, 1e-11);
+        assert_relatively_close(found.u[0], 0.6 * speed.powi(2) * 0.45 - weight * w / speed, 1e-9);
+        assert_relatively_close(0.6 * speed.powi(2) * 9.0, weight * found.v[0] / speed, 1e-11);
     }
 
     // A condition that cannot hold is reported by its name, and so is one that is given twice.
@@ -138,16 +138,16 @@ fn trim_finds_states_of_first_order() {
     // At 5 m/s the drag is 500 N; thrust and throttle must equal it.
     let trim = equilibrium(&whole).moving([5.0, 0.0].into()).fix(["way"]).inputs(["throttle"]);
     let found = trim.find().unwrap();
-    close(found.v[1], 500.0, 1e-12);
-    close(found.u[0], 500.0, 1e-12);
+    assert_relatively_close(found.v[1], 500.0, 1e-12);
+    assert_relatively_close(found.u[0], 500.0, 1e-12);
     let system = trim.linear_system(&found).unwrap();
     let names: Vec<&str> = system.states().iter().map(|state| state.name.as_str()).collect();
     assert_eq!(names, ["way", "way'", "thrust"]);
     let mut poles: Vec<f64> = system.poles().unwrap().iter().map(|pole| pole.re).collect();
     poles.sort_by(f64::total_cmp);
     // Poles: the lag, 2 k v / m of the drag, and zero for the position, on which nothing depends.
-    close(poles[0], -0.5, 1e-12);
-    close(poles[1], -0.25, 1e-12);
+    assert_relatively_close(poles[0], -0.5, 1e-12);
+    assert_relatively_close(poles[1], -0.25, 1e-12);
     assert!(poles[2].abs() < 1e-12);
     let whole = linear_system(&at(&whole, 0.0), &found.q, &found.v, &found.u).unwrap();
     assert!((whole.a() - system.a()).norm() < 1e-12 && (whole.b() - system.b()).norm() < 1e-12);
@@ -188,8 +188,8 @@ fn rotor_with_internal_damping() {
         let (m, c) = (3.0, 7.0);
         let root = (Complex::new(c * c - 4.0 * m * 1200.0, 4.0 * m * 5.0 * spin)).sqrt();
         for pole in [(root - c) / (2.0 * m), (-root - c) / (2.0 * m)] {
-            contains(&system_of(spin), pole.re, pole.im);
-            contains(&system_of(spin), pole.re, -pole.im);
+            assert_contains_pole(&system_of(spin), pole.re, pole.im);
+            assert_contains_pole(&system_of(spin), pole.re, -pole.im);
         }
     }
     let threshold = (1200.0_f64 / 3.0).sqrt() * (1.0 + 2.0 / 5.0);
@@ -222,7 +222,7 @@ fn gyroscope_nutates() {
     let (rotor, n) = (Rotor { axial: 0.03, across: 0.02 }, 70.0);
     let q = [0.0, std::f64::consts::FRAC_PI_2, 0.0].into();
     let system = linear_system(&rotor, &q, &[0.0, 0.0, n].into(), &[].into()).unwrap();
-    contains(&system, 0.0, rotor.axial * n / rotor.across);
+    assert_contains_pole(&system, 0.0, rotor.axial * n / rotor.across);
     let other = system.poles().unwrap();
     assert_eq!(other.iter().filter(|pole| pole.norm() < 1e-6).count(), 4);
 }
@@ -260,12 +260,12 @@ fn gravity_holds_a_satellite() {
     for t in [0.0, 1234.5] {
         let now = at(&satellite, t);
         let system = linear_system(&now, &now.neutral(), &SVector::zeros(), &[].into()).unwrap();
-        contains(&system, 0.0, rate * (3.0 * (roll - yaw) / pitch).sqrt());
+        assert_contains_pole(&system, 0.0, rate * (3.0 * (roll - yaw) / pitch).sqrt());
         let (k1, k3) = ((pitch - yaw) / roll, (pitch - roll) / yaw);
         let b = 1.0 + 3.0 * k1 + k1 * k3;
         for sign in [1.0, -1.0] {
             let squared = (b + sign * (b * b - 16.0 * k1 * k3).sqrt()) / 2.0;
-            contains(&system, 0.0, rate * squared.sqrt());
+            assert_contains_pole(&system, 0.0, rate * squared.sqrt());
         }
     }
 }
@@ -329,7 +329,7 @@ struct Carriage {
 fn displacements_under_constraints_are_not_independent() {
     let zero = SVector::zeros();
     let system = linear_system(&Carriage { mass: 2.0 }, &zero, &zero, &[0.0].into()).unwrap();
-    contains(&system, 0.0, (2.0_f64 * 9.81).sqrt());
+    assert_contains_pole(&system, 0.0, (2.0_f64 * 9.81).sqrt());
     let poles = system.poles().unwrap();
     assert!(poles.len() == 4 && poles.iter().filter(|pole| pole.norm() < 1e-7).count() == 2, "{poles:?}");
 }
@@ -343,8 +343,8 @@ fn decaying_constraints_have_their_exponents() {
     let system = linear_system(&at(&decaying, 0.0), &zero, &zero, &[0.0].into()).unwrap();
     // At the lowest point of y = x²: ẍ = F / m − 2 g x.
     let own = (2.0_f64 * 9.81).sqrt();
-    contains(&system, 0.0, own);
-    contains(&system, 0.0, -own);
+    assert_contains_pole(&system, 0.0, own);
+    assert_contains_pole(&system, 0.0, -own);
     let characteristic = system.channel("place.x", "push").unwrap();
     assert_eq!(system.poles().unwrap().len(), 4);
     let is_near_decay_rate = |pole: &Complex<f64>| (pole + rate).norm() < 1e-6 * rate;
@@ -355,7 +355,7 @@ fn decaying_constraints_have_their_exponents() {
     assert!((answer[0] - expected).norm() < 1e-12, "{answer} {expected}");
 }
 
-fn written(signals: &[Signal]) -> Vec<String> {
+fn signal_texts(signals: &[Signal]) -> Vec<String> {
     signals.iter().map(ToString::to_string).collect()
 }
 
@@ -367,14 +367,14 @@ fn signals_have_names_and_units() {
     let whole = sled.extended();
     let system =
         measured_system(&at(&whole, 0.0), 0.0, &[0.0].into(), &[3.0, 5.0].into(), &[5.0].into()).unwrap();
-    assert_eq!(written(system.states()), ["rail, m", "rail', m/s", "thrust, N"]);
-    assert_eq!(written(system.inputs()), ["throttle, N"]);
-    assert_eq!(written(system.outputs()), ["felt, m/s²", "gauge, N"]);
+    assert_eq!(signal_texts(system.states()), ["rail, m", "rail', m/s", "thrust, N"]);
+    assert_eq!(signal_texts(system.inputs()), ["throttle, N"]);
+    assert_eq!(signal_texts(system.outputs()), ["felt, m/s²", "gauge, N"]);
 
     let satellite = Satellite { mu: 4e14, radius: 7e6, rate: 1e-3, ixx: 100.0, iyy: 420.0, izz: 500.0 };
     let now = at(&satellite, 3.0);
     let system = linear_system(&now, &now.neutral(), &SVector::zeros(), &[].into()).unwrap();
-    assert_eq!(written(system.states())[2..4], ["attitude.wz, rad", "attitude.wx', rad/s"]);
+    assert_eq!(signal_texts(system.states())[2..4], ["attitude.wz, rad", "attitude.wx', rad/s"]);
 
     let (carriage, zero) = (Carriage { mass: 2.0 }, SVector::zeros());
     let linear = carriage.linearize(&zero, &zero, &[0.0].into(), &[0]).unwrap();
@@ -382,8 +382,8 @@ fn signals_have_names_and_units() {
     let problem = constrained_equilibrium(&carriage).moving([0.1, 0.0].into()).fix(["place.x"]);
     let of_states = problem.linear_system(&constrained_equilibrium(&carriage).find().unwrap()).unwrap();
     for system in [&of_state, &of_states] {
-        assert_eq!(written(system.states()), ["place.x, m", "place.x', m/s"]);
-        assert_eq!(written(system.inputs()), ["push, N"]);
+        assert_eq!(signal_texts(system.states()), ["place.x, m", "place.x', m/s"]);
+        assert_eq!(signal_texts(system.inputs()), ["push, N"]);
     }
     assert_eq!(<Carriage as linkwork::Outputs<2, 2, 1, 1>>::OUTPUT_UNITS, ["m/s"]);
     let form = second_order_form(
@@ -392,5 +392,5 @@ fn signals_have_names_and_units() {
         &[0.0].into(),
         &[0.0].into(),
     );
-    assert_eq!(written(form.unwrap().state_space().unwrap().states()), ["way, m", "way', m/s"]);
+    assert_eq!(signal_texts(form.unwrap().state_space().unwrap().states()), ["way, m", "way', m/s"]);
 }

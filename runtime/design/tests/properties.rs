@@ -18,21 +18,21 @@ impl Random {
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
-    fn matrix(&mut self, rows: usize, columns: usize) -> DMatrix<f64> {
+    fn random_matrix(&mut self, rows: usize, columns: usize) -> DMatrix<f64> {
         DMatrix::from_fn(rows, columns, |_, _| self.next())
     }
 
     /// Returns a random system whose states are scaled by factors of up to `10^spread`.
-    fn system(&mut self, n: usize, m: usize, p: usize, spread: f64) -> StateSpace {
+    fn random_system(&mut self, n: usize, m: usize, p: usize, spread: f64) -> StateSpace {
         let scales: Vec<f64> = (0..n).map(|_| 10f64.powf(spread * self.next())).collect();
         let a = DMatrix::from_fn(n, n, |i, j| self.next() * scales[i] / scales[j]);
         let b = DMatrix::from_fn(n, m, |i, _| self.next() * scales[i]);
         let c = DMatrix::from_fn(p, n, |_, j| self.next() / scales[j]);
-        StateSpace::new(a, b, c, self.matrix(p, m)).unwrap()
+        StateSpace::new(a, b, c, self.random_matrix(p, m)).unwrap()
     }
 
-    fn stable(&mut self, n: usize, m: usize, p: usize, spread: f64) -> StateSpace {
-        let system = self.system(n, m, p, spread);
+    fn random_stable_system(&mut self, n: usize, m: usize, p: usize, spread: f64) -> StateSpace {
+        let system = self.random_system(n, m, p, spread);
         let right = system.poles().unwrap().iter().map(|x| x.re).fold(0.0, f64::max);
         let a = system.a() - DMatrix::identity(n, n) * (right + 0.1);
         StateSpace::new(a, system.b().clone(), system.c().clone(), system.d().clone()).unwrap()
@@ -40,7 +40,7 @@ impl Random {
 }
 
 #[track_caller]
-fn small(what: &str, m: &DMatrix<f64>, size: f64, tolerance: f64) {
+fn assert_small_matrix(what: &str, m: &DMatrix<f64>, size: f64, tolerance: f64) {
     assert!(m.norm() <= tolerance * size, "{what}: {} beside {size}", m.norm());
 }
 
@@ -48,22 +48,27 @@ fn small(what: &str, m: &DMatrix<f64>, size: f64, tolerance: f64) {
 fn linear_matrix_equations() {
     let mut random = Random(1);
     for n in 1..12 {
-        let (a, b) = (random.matrix(n, n), random.matrix(n + 1, n + 1));
-        let c = random.matrix(n, n + 1);
+        let (a, b) = (random.random_matrix(n, n), random.random_matrix(n + 1, n + 1));
+        let c = random.random_matrix(n, n + 1);
         let x = sylvester(&a, &b, &c).unwrap();
-        small("sylvester", &(&a * &x + &x * &b - &c), c.norm() + x.norm(), 1e-13);
+        assert_small_matrix("sylvester", &(&a * &x + &x * &b - &c), c.norm() + x.norm(), 1e-13);
         let x = discrete_sylvester(&a, &b, &c).unwrap();
-        small("discrete", &(&a * &x * &b - &x + &c), c.norm() + x.norm(), 1e-13);
+        assert_small_matrix("discrete", &(&a * &x * &b - &x + &c), c.norm() + x.norm(), 1e-13);
         let q = &a * a.transpose();
         let x = lyapunov(&a, &q).unwrap();
-        small("lyapunov", &(&a * &x + &x * a.transpose() + &q), q.norm() + x.norm(), 1e-13);
+        assert_small_matrix("lyapunov", &(&a * &x + &x * a.transpose() + &q), q.norm() + x.norm(), 1e-13);
         let x = discrete_lyapunov(&a, &q).unwrap();
-        small("discrete lyapunov", &(&a * &x * a.transpose() - &x + &q), q.norm() + x.norm(), 1e-13);
+        assert_small_matrix(
+            "discrete lyapunov",
+            &(&a * &x * a.transpose() - &x + &q),
+            q.norm() + x.norm(),
+            1e-13,
+        );
     }
     let defective = dmatrix![-1.0, 1.0, 0.0; 0.0, -1.0, 1.0; 0.0, 0.0, -1.0];
     let x = lyapunov(&defective, &DMatrix::identity(3, 3)).unwrap();
     let residual = &defective * &x + &x * defective.transpose() + DMatrix::<f64>::identity(3, 3);
-    small("defective", &residual, x.norm(), 1e-14);
+    assert_small_matrix("defective", &residual, x.norm(), 1e-14);
     assert!(matches!(
         lyapunov(&dmatrix![0.0, 1.0; -1.0, 0.0], &DMatrix::identity(2, 2)),
         Err(Error::Singular { .. })
@@ -75,22 +80,22 @@ fn regulators_are_optimal() {
     let mut random = Random(2);
     for k in 0..60 {
         let (n, m) = (1 + k % 8, 1 + k % 3);
-        let system = random.system(n, m, 1, 0.5 * f64::from(u8::from(k % 4 == 3)));
+        let system = random.random_system(n, m, 1, 0.5 * f64::from(u8::from(k % 4 == 3)));
         let (a, b) = (system.a(), system.b());
-        let root = random.matrix(n, n);
+        let root = random.random_matrix(n, n);
         let cost = Cost::new(&root * root.transpose(), DMatrix::identity(m, m))
-            .with_products(&root * random.matrix(n, m) * 0.1);
+            .with_products(&root * random.random_matrix(n, m) * 0.1);
         let best = riccati(a, b, &cost).unwrap();
         let x = &best.x;
         let residual = a.transpose() * x + x * a + &cost.q - (x * b + &cost.n) * &best.gain;
-        small("continuous", &residual, (a.transpose() * x).norm() + cost.q.norm(), 1e-11);
+        assert_small_matrix("continuous", &residual, (a.transpose() * x).norm() + cost.q.norm(), 1e-11);
         // Eigenvalues of Hamiltonian matrices are symmetric about the imaginary axis; the stable half are
         // the regulator's.
         assert!(best.poles.iter().all(|p| p.re < 0.0));
         let best = discrete_riccati(a, b, &cost).unwrap();
         let x = &best.x;
         let residual = a.transpose() * x * a - x + &cost.q - (a.transpose() * x * b + &cost.n) * &best.gain;
-        small("discrete", &residual, x.norm() + cost.q.norm(), 1e-11);
+        assert_small_matrix("discrete", &residual, x.norm() + cost.q.norm(), 1e-11);
         assert!(best.poles.iter().all(|p| p.norm() < 1.0));
     }
     // A delay, whose matrix A is singular.
@@ -128,7 +133,7 @@ fn eigenvalues_of_hard_matrices() {
     let mut random = Random(3);
     for n in 2..20 {
         let diagonal: Vec<f64> = (0..n).map(|k| (k as f64) - 3.5).collect();
-        let t = random.matrix(n, n) + DMatrix::identity(n, n) * 3.0;
+        let t = random.random_matrix(n, n) + DMatrix::identity(n, n) * 3.0;
         let d = DMatrix::from_diagonal(&nalgebra::DVector::from_vec(diagonal.clone()));
         let a = t.clone() * d * t.try_inverse().unwrap();
         for (found, expected) in eigenvalues(&a).unwrap().iter().zip(diagonal) {
@@ -156,7 +161,7 @@ fn zeros_lose_rank() {
     let mut random = Random(4);
     for k in 0..80 {
         let (n, m) = (2 + k % 7, 1 + k % 3);
-        let mut system = random.system(n, m, m, if k % 5 == 4 { 3.0 } else { 0.0 });
+        let mut system = random.random_system(n, m, m, if k % 5 == 4 { 3.0 } else { 0.0 });
         if k % 2 == 0 {
             let d = DMatrix::zeros(m, m);
             system = StateSpace::new(system.a().clone(), system.b().clone(), system.c().clone(), d).unwrap();
@@ -179,7 +184,7 @@ fn zeros_lose_rank() {
 fn discretised_and_back() {
     let mut random = Random(5);
     for n in 1..8 {
-        let system = random.stable(n, 2, 2, 0.0);
+        let system = random.random_stable_system(n, 2, 2, 0.0);
         for hold in [Hold::Zero, Hold::First, Hold::Tustin, Hold::Prewarped(1.5)] {
             let back = system.discretize(0.1, hold).unwrap().undiscretize(hold).unwrap();
             for (found, expected) in [
@@ -188,7 +193,7 @@ fn discretised_and_back() {
                 (back.c(), system.c()),
                 (back.d(), system.d()),
             ] {
-                small(&format!("{hold:?}"), &(found - expected), expected.norm(), 1e-11);
+                assert_small_matrix(&format!("{hold:?}"), &(found - expected), expected.norm(), 1e-11);
             }
         }
         // Tustin with prewarping is exact at its frequency.
@@ -197,7 +202,7 @@ fn discretised_and_back() {
         let off = (system.at(one).unwrap() - discrete.at(two).unwrap()).norm();
         assert!(off < 1e-12 * (1.0 + system.at(one).unwrap().norm()), "{off}");
         let log = logarithm(&exponential(system.a()).unwrap()).unwrap();
-        small("logarithm", &(log - system.a()), system.a().norm(), 1e-11);
+        assert_small_matrix("logarithm", &(log - system.a()), system.a().norm(), 1e-11);
     }
 }
 
@@ -205,7 +210,7 @@ fn discretised_and_back() {
 fn energies_agree() {
     let mut random = Random(6);
     for n in 1..6 {
-        let system = random.stable(n, 1, 1, 0.0);
+        let system = random.random_stable_system(n, 1, 1, 0.0);
         let system =
             StateSpace::new(system.a().clone(), system.b().clone(), system.c().clone(), dmatrix![0.0])
                 .unwrap();
@@ -263,9 +268,9 @@ fn realisations_are_minimal() {
     let mut random = Random(8);
     for k in 0..40 {
         let n = 1 + k % 6;
-        let seen = random.stable(n, 1, 1, 0.0);
+        let seen = random.random_stable_system(n, 1, 1, 0.0);
         // In parallel with it, an uncontrollable and an unobservable system.
-        let hidden = random.stable(2, 1, 1, 0.0);
+        let hidden = random.random_stable_system(2, 1, 1, 0.0);
         let still =
             StateSpace::new(hidden.a() * 1.1, DMatrix::zeros(2, 1), hidden.c().clone(), dmatrix![0.0])
                 .unwrap();
@@ -273,7 +278,7 @@ fn realisations_are_minimal() {
             .unwrap();
         let both = seen.parallel(&still).unwrap().parallel(&mute).unwrap();
         // Similarity transformation to other states.
-        let t = random.matrix(n + 4, n + 4) + DMatrix::identity(n + 4, n + 4) * 3.0;
+        let t = random.random_matrix(n + 4, n + 4) + DMatrix::identity(n + 4, n + 4) * 3.0;
         let inverse = t.clone().try_inverse().unwrap();
         let mixed =
             StateSpace::new(&inverse * both.a() * &t, inverse * both.b(), both.c() * t, both.d().clone())
@@ -306,7 +311,7 @@ fn straight_inputs_are_exact() {
 #[test]
 fn connections() {
     let mut random = Random(9);
-    let (one, two) = (random.stable(3, 2, 2, 0.0), random.stable(2, 2, 2, 0.0));
+    let (one, two) = (random.random_stable_system(3, 2, 2, 0.0), random.random_stable_system(2, 2, 2, 0.0));
     let s = C::new(0.2, 0.9);
     let (g, h) = (one.at(s).unwrap(), two.at(s).unwrap());
     let assert_close_matrices = |found: DMatrix<C>, expected: DMatrix<C>| {
@@ -327,7 +332,7 @@ fn poles_are_put_where_they_should_be() {
     let mut random = Random(31);
     for k in 0..60 {
         let (n, m) = (2 + k % 6, 1 + k % 3);
-        let system = random.system(n, m, 1, if k % 4 == 3 { 1.0 } else { 0.0 });
+        let system = random.random_system(n, m, 1, if k % 4 == 3 { 1.0 } else { 0.0 });
         let mut poles: Vec<C> = match k % 5 {
             4 => system.poles().unwrap(),
             3 => vec![C::new(-1.0, 0.0); n.min(2)],
@@ -358,7 +363,7 @@ fn poles_are_put_where_they_should_be() {
 fn margins_miss_no_crossing() {
     let mut random = Random(7);
     for k in 0..21 {
-        let system = random.stable(2 + k % 7, 1, 1, if k % 3 == 0 { 2.0 } else { 0.0 });
+        let system = random.random_stable_system(2 + k % 7, 1, 1, if k % 3 == 0 { 2.0 } else { 0.0 });
         let size = 10f64.powf(2.0 * random.next());
         let loose = StateSpace::gain(dmatrix![size]).unwrap().series(&system).unwrap();
         let margins = loose.margins().unwrap();

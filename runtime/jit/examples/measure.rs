@@ -12,9 +12,9 @@ fn main() -> Result<(), Error> {
     let file = words.next().unwrap_or_else(|| "models/urdf/panda.urdf".to_string());
     let (options, name) = (words.next().unwrap_or_default(), words.next());
     let start = Instant::now();
-    let robot = loader(&file, &options, name.as_deref()).load()?;
+    let robot = loader_of_file(&file, &options, name.as_deref()).load()?;
     let loaded = start.elapsed();
-    let robot = filled(robot)?;
+    let robot = fill_missing_parameters(robot)?;
     if let Ok(f) = robot.function("inverse_dynamics") {
         let (q, zero) = (robot.neutral()?, vec![0.0; robot.nv()]);
         let mut arguments: Vec<&[f64]> = vec![q.as_slice(), &zero, &zero];
@@ -24,18 +24,22 @@ fn main() -> Result<(), Error> {
         robot.evaluate(&f, &arguments)?;
     }
     println!("{robot:?}");
-    println!("loaded in {:.2} ms, first inverse dynamics after {:.2} ms", ms(loaded), ms(start.elapsed()));
-    let oracle = loader(&file, &options, name.as_deref()).interpreted().load()?;
-    let oracle = filled(oracle)?;
+    println!(
+        "loaded in {:.2} ms, first inverse dynamics after {:.2} ms",
+        milliseconds(loaded),
+        milliseconds(start.elapsed())
+    );
+    let oracle = loader_of_file(&file, &options, name.as_deref()).interpreted().load()?;
+    let oracle = fill_missing_parameters(oracle)?;
     let mut worst: f64 = 0.0;
     println!("{:42} {:>9} {:>9} {:>9}", "function", "code, ms", "call, ns", "deviation");
     let mut total = 0.0;
     for f in robot.functions() {
         let start = Instant::now();
         let compiled = f.compile();
-        let code = ms(start.elapsed());
+        let code = milliseconds(start.elapsed());
         total += code;
-        let lists: Vec<Vec<f64>> = arguments(&robot, &f.arguments());
+        let lists: Vec<Vec<f64>> = argument_values(&robot, &f.arguments());
         let lists: Vec<&[f64]> = lists.iter().map(Vec::as_slice).collect();
         let mut out = vec![0.0; f.length()];
         robot.evaluate_into(&f, &lists, &mut out)?;
@@ -64,13 +68,13 @@ fn main() -> Result<(), Error> {
     Ok(())
 }
 
-fn loader(file: &str, options: &str, name: Option<&str>) -> Loader {
+fn loader_of_file(file: &str, options: &str, name: Option<&str>) -> Loader {
     let loader = Loader::file(file).options(options);
     name.map_or(loader.clone(), |name| loader.name(name))
 }
 
 /// Sets a value for each parameter that has none.
-fn filled(mut robot: Robot) -> Result<Robot, Error> {
+fn fill_missing_parameters(mut robot: Robot) -> Result<Robot, Error> {
     let names: Vec<String> = robot.parameters().iter().map(|p| p.name.clone()).collect();
     for (k, name) in names.iter().enumerate() {
         if robot.parameter(name)?.is_nan() {
@@ -81,7 +85,7 @@ fn filled(mut robot: Robot) -> Result<Robot, Error> {
 }
 
 /// Returns values for the arguments of a function; configurations have unit quaternions.
-fn arguments(robot: &Robot, list: &[(&str, usize)]) -> Vec<Vec<f64>> {
+fn argument_values(robot: &Robot, list: &[(&str, usize)]) -> Vec<Vec<f64>> {
     let sample_values = |seed: usize, n: usize| -> Vec<f64> {
         (0..n).map(|k| 0.4 * ((7 * k + 3 * seed + 1) as f64).sin()).collect()
     };
@@ -97,6 +101,6 @@ fn arguments(robot: &Robot, list: &[(&str, usize)]) -> Vec<Vec<f64>> {
     each.collect()
 }
 
-fn ms(time: std::time::Duration) -> f64 {
+fn milliseconds(time: std::time::Duration) -> f64 {
     time.as_secs_f64() * 1e3
 }

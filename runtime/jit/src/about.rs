@@ -20,7 +20,7 @@ impl About {
             unit: model.units.outputs.get(k).cloned().unwrap_or_default(),
         });
         About {
-            documentation: without_links(&source.mechanism.shell.documentation()),
+            documentation: without_links(&source.mechanism.shell.documentation_lines()),
             outputs: outputs.collect(),
         }
     }

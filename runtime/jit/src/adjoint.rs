@@ -53,16 +53,16 @@ impl Function {
     /// The function is composed of matrices of derivatives, or solves for constraint forces; or velocities
     /// are generalized speeds, and the function moves configurations.
     pub fn vector_jacobian(&self) -> Result<VectorJacobian, Error> {
-        let entry = &self.shared().entries[self.index()];
+        let entry = &self.shared_mechanism().entries[self.index()];
         let missing_adjoint_error =
             || Error::Value(format!("`{}` has no vector–Jacobian product", entry.name));
-        let parameters = self.shared().parameters.len();
-        let sizes = self.shared().sizes;
+        let parameters = self.shared_mechanism().parameters.len();
+        let sizes = self.shared_mechanism().sizes;
         let arguments: Vec<usize> = entry.arguments.iter().map(|a| sizes.length(*a)).collect();
         let program = match &entry.plan {
             Plan::Program(routine) => routine.program(),
             Plan::Frame(access, frame, routine) => {
-                routine.ensure(|| self.shared().frames.program(*access, *frame));
+                routine.ensure(|| self.shared_mechanism().frames.program(*access, *frame));
                 routine.program()
             }
             _ => None,
@@ -73,22 +73,22 @@ impl Function {
                 let given = Argument::Given(FACTORS, Supplied::ResultFactor, entry.length);
                 let all: Vec<Argument> = entry.arguments.iter().copied().chain([given]).collect();
                 let symbols = entry.arguments.iter().flat_map(|argument| {
-                    (0..sizes.length(*argument)).map(|k| symbol(*argument, k)).collect::<Vec<_>>()
+                    (0..sizes.length(*argument)).map(|k| symbol_of_entry(*argument, k)).collect::<Vec<_>>()
                 });
                 let symbols = symbols.chain((0..parameters).map(|k| Some(Quantity::Parameter(k).symbol())));
-                let reversed = reverse(program, symbols).ok_or_else(missing_adjoint_error)?;
+                let reversed = reverse_program(program, symbols).ok_or_else(missing_adjoint_error)?;
                 Product::Reversed(Box::new(
                     Routine::new(reversed, &all, inputs).ok_or_else(missing_adjoint_error)?,
                 ))
             }
-            (None, _) if self.shared().has_speeds => return Err(missing_adjoint_error()),
+            (None, _) if self.shared_mechanism().has_speeds => return Err(missing_adjoint_error()),
             (None, "integrate") => Product::Integrate,
             (None, "difference") => Product::Difference,
             (None, "tangent_rate") => Product::TangentRate,
             _ => return Err(missing_adjoint_error()),
         };
         Ok(VectorJacobian {
-            shared: self.shared().clone(),
+            shared: self.shared_mechanism().clone(),
             name: entry.name.clone(),
             kind,
             arguments,
@@ -99,7 +99,7 @@ impl Function {
 }
 
 /// Returns the symbol of an entry of an argument.
-fn symbol(argument: Argument, k: usize) -> Option<Symbol> {
+fn symbol_of_entry(argument: Argument, k: usize) -> Option<Symbol> {
     let quantity = match argument {
         Argument::T => Quantity::Time,
         Argument::Q => Quantity::Configuration(k),
@@ -183,7 +183,7 @@ struct Reversed {
 }
 
 /// Returns the program of the derivatives by inputs; `None` if an instruction has no derivative.
-fn reverse(program: &Program, inputs: impl Iterator<Item = Option<Symbol>>) -> Option<Program> {
+fn reverse_program(program: &Program, inputs: impl Iterator<Item = Option<Symbol>>) -> Option<Program> {
     let count = program.instructions.len();
     let mut reversed = Reversed {
         instructions: program.instructions.clone(),
@@ -195,7 +195,7 @@ fn reverse(program: &Program, inputs: impl Iterator<Item = Option<Symbol>>) -> O
     }
     for k in (0..count).rev() {
         if let Some(factor) = reversed.values[k] {
-            reversed.pass(program.instructions[k], Operand::Value(k), factor)?;
+            reversed.pass_derivative_on(program.instructions[k], Operand::Value(k), factor)?;
         }
     }
     let zero = Operand::Const(0.0);
@@ -203,12 +203,12 @@ fn reverse(program: &Program, inputs: impl Iterator<Item = Option<Symbol>>) -> O
         inputs.map(|symbol| symbol.and_then(|symbol| reversed.inputs.get(&symbol).copied()).unwrap_or(zero));
     let outputs = outputs.collect();
     let mut program = Program { instructions: reversed.instructions, outputs, ..Program::default() };
-    program.sweep();
+    program.remove_unused();
     Some(program)
 }
 
 impl Reversed {
-    fn push(&mut self, op: Op) -> Operand {
+    fn push_instruction(&mut self, op: Op) -> Operand {
         self.instructions.push(op);
         Operand::Value(self.instructions.len() - 1)
     }
@@ -221,14 +221,14 @@ impl Reversed {
     }
 
     /// Returns the derivative by an operand so far.
-    fn derivative(&mut self, operand: Operand) -> Option<Operand> {
+    fn derivative_by_operand(&mut self, operand: Operand) -> Option<Operand> {
         match operand {
             Operand::Symbol(symbol) => self.inputs.get(&symbol).copied(),
             operand => self.value_derivative(operand).and_then(|known| *known),
         }
     }
 
-    fn set(&mut self, operand: Operand, derivative: Operand) {
+    fn set_derivative(&mut self, operand: Operand, derivative: Operand) {
         match operand {
             Operand::Symbol(symbol) => {
                 self.inputs.insert(symbol, derivative);
@@ -246,23 +246,23 @@ impl Reversed {
         if matches!(operand, Operand::Const(_)) {
             return;
         }
-        let sum = match self.derivative(operand) {
+        let sum = match self.derivative_by_operand(operand) {
             None => term,
-            Some(before) => self.push(Op::Add(before, term)),
+            Some(before) => self.push_instruction(Op::Add(before, term)),
         };
-        self.set(operand, sum);
+        self.set_derivative(operand, sum);
     }
 
     /// Subtracts a term from the derivative with respect to an operand.
-    fn subtract(&mut self, operand: Operand, term: Operand) {
+    fn subtract_from_derivative(&mut self, operand: Operand, term: Operand) {
         if matches!(operand, Operand::Const(_)) {
             return;
         }
-        let sum = match self.derivative(operand) {
-            None => self.push(Op::Neg(term)),
-            Some(before) => self.push(Op::Sub(before, term)),
+        let sum = match self.derivative_by_operand(operand) {
+            None => self.push_instruction(Op::Neg(term)),
+            Some(before) => self.push_instruction(Op::Sub(before, term)),
         };
-        self.set(operand, sum);
+        self.set_derivative(operand, sum);
     }
 
     /// Adds a product to the derivative by an operand.
@@ -270,11 +270,11 @@ impl Reversed {
         if matches!(operand, Operand::Const(_)) || a == Operand::Const(0.0) || b == Operand::Const(0.0) {
             return;
         }
-        let sum = match self.derivative(operand) {
-            None => self.push(Op::Mul(a, b)),
-            Some(before) => self.push(Op::MulAdd(a, b, before)),
+        let sum = match self.derivative_by_operand(operand) {
+            None => self.push_instruction(Op::Mul(a, b)),
+            Some(before) => self.push_instruction(Op::MulAdd(a, b, before)),
         };
-        self.set(operand, sum);
+        self.set_derivative(operand, sum);
     }
 
     /// Subtracts a product from the derivative by an operand.
@@ -282,44 +282,44 @@ impl Reversed {
         if matches!(operand, Operand::Const(_)) || a == Operand::Const(0.0) || b == Operand::Const(0.0) {
             return;
         }
-        let sum = match self.derivative(operand) {
+        let sum = match self.derivative_by_operand(operand) {
             None => {
-                let product = self.push(Op::Mul(a, b));
-                self.push(Op::Neg(product))
+                let product = self.push_instruction(Op::Mul(a, b));
+                self.push_instruction(Op::Neg(product))
             }
-            Some(before) => self.push(Op::NegMulAdd(a, b, before)),
+            Some(before) => self.push_instruction(Op::NegMulAdd(a, b, before)),
         };
-        self.set(operand, sum);
+        self.set_derivative(operand, sum);
     }
 
-    fn call(&mut self, f: Elementary, x: Operand) -> Operand {
+    fn call_elementary(&mut self, f: Elementary, x: Operand) -> Operand {
         // Sines and cosines of one angle are computed once.
         let op = Op::Call(f, x);
         match self.instructions.iter().position(|known| *known == op) {
             Some(k) => Operand::Value(k),
-            None => self.push(op),
+            None => self.push_instruction(op),
         }
     }
 
     /// Propagates the derivative with respect to the value of an instruction to the operands of the
     /// instruction, as in reverse-mode differentiation.
-    fn pass(&mut self, op: Op, value: Operand, factor: Operand) -> Option<()> {
+    fn pass_derivative_on(&mut self, op: Op, value: Operand, factor: Operand) -> Option<()> {
         match op {
-            Op::Neg(a) => self.subtract(a, factor),
+            Op::Neg(a) => self.subtract_from_derivative(a, factor),
             Op::Add(a, b) => {
                 self.add(a, factor);
                 self.add(b, factor);
             }
             Op::Sub(a, b) => {
                 self.add(a, factor);
-                self.subtract(b, factor);
+                self.subtract_from_derivative(b, factor);
             }
             Op::Mul(a, b) => {
                 self.add_product(a, factor, b);
                 self.add_product(b, factor, a);
             }
             Op::Div(a, b) => {
-                let over = self.push(Op::Div(factor, b));
+                let over = self.push_instruction(Op::Div(factor, b));
                 self.add(a, over);
                 self.subtract_product(b, over, value);
             }
@@ -331,7 +331,7 @@ impl Reversed {
             Op::MulSub(a, b, c) => {
                 self.add_product(a, factor, b);
                 self.add_product(b, factor, a);
-                self.subtract(c, factor);
+                self.subtract_from_derivative(c, factor);
             }
             Op::NegMulAdd(a, b, c) => {
                 self.subtract_product(a, factor, b);
@@ -339,44 +339,44 @@ impl Reversed {
                 self.add(c, factor);
             }
             Op::Call(f, x) => {
-                let slope = self.slope(f, x, value);
+                let slope = self.slope_of_elementary(f, x, value);
                 self.add_product(x, factor, slope);
             }
             Op::Atan2(y, x) => {
-                let square = self.push(Op::Mul(y, y));
-                let square = self.push(Op::MulAdd(x, x, square));
-                let over = self.push(Op::Div(factor, square));
+                let square = self.push_instruction(Op::Mul(y, y));
+                let square = self.push_instruction(Op::MulAdd(x, x, square));
+                let over = self.push_instruction(Op::Div(factor, square));
                 self.add_product(y, over, x);
                 self.subtract_product(x, over, y);
             }
             Op::Pow(a, b) => {
                 // b aᵇ⁻¹ and aᵇ ln a.
-                let less = self.push(Op::Sub(b, Operand::Const(1.0)));
-                let power = self.push(Op::Pow(a, less));
-                let slope = self.push(Op::Mul(b, power));
+                let less = self.push_instruction(Op::Sub(b, Operand::Const(1.0)));
+                let power = self.push_instruction(Op::Pow(a, less));
+                let slope = self.push_instruction(Op::Mul(b, power));
                 self.add_product(a, factor, slope);
                 if !matches!(b, Operand::Const(_)) {
-                    let logarithm = self.call(Elementary::Ln, a);
-                    let slope = self.push(Op::Mul(value, logarithm));
+                    let logarithm = self.call_elementary(Elementary::Ln, a);
+                    let slope = self.push_instruction(Op::Mul(value, logarithm));
                     self.add_product(b, factor, slope);
                 }
             }
             Op::Extreme(which, a, b) => {
                 let difference = match which {
-                    Extreme::Max => self.push(Op::Sub(a, b)),
-                    Extreme::Min => self.push(Op::Sub(b, a)),
+                    Extreme::Max => self.push_instruction(Op::Sub(a, b)),
+                    Extreme::Min => self.push_instruction(Op::Sub(b, a)),
                 };
-                let sign = self.call(Elementary::Signum, difference);
+                let sign = self.call_elementary(Elementary::Signum, difference);
                 let half = Operand::Const(0.5);
-                let of_a = self.push(Op::MulAdd(half, sign, half));
-                let of_b = self.push(Op::NegMulAdd(half, sign, half));
+                let of_a = self.push_instruction(Op::MulAdd(half, sign, half));
+                let of_b = self.push_instruction(Op::NegMulAdd(half, sign, half));
                 self.add_product(a, factor, of_a);
                 self.add_product(b, factor, of_b);
             }
             Op::Table(lookup, a, b, c) => {
-                for (k, x) in [a, b, c].into_iter().take(lookup.variables()).enumerate() {
-                    if let Some(slope) = lookup.slope(k) {
-                        let slope = self.push(Op::Table(slope, a, b, c));
+                for (k, x) in [a, b, c].into_iter().take(lookup.variable_count()).enumerate() {
+                    if let Some(slope) = lookup.partial_derivative(k) {
+                        let slope = self.push_instruction(Op::Table(slope, a, b, c));
                         self.add_product(x, factor, slope);
                     }
                 }
@@ -387,38 +387,38 @@ impl Reversed {
     }
 
     /// Returns the derivative of an elementary function at `x`, where `value` is the function's value.
-    fn slope(&mut self, f: Elementary, x: Operand, value: Operand) -> Operand {
+    fn slope_of_elementary(&mut self, f: Elementary, x: Operand, value: Operand) -> Operand {
         let one = Operand::Const(1.0);
         match f {
-            Elementary::Sin => self.call(Elementary::Cos, x),
+            Elementary::Sin => self.call_elementary(Elementary::Cos, x),
             Elementary::Cos => {
-                let sine = self.call(Elementary::Sin, x);
-                self.push(Op::Neg(sine))
+                let sine = self.call_elementary(Elementary::Sin, x);
+                self.push_instruction(Op::Neg(sine))
             }
-            Elementary::Tan => self.push(Op::MulAdd(value, value, one)),
+            Elementary::Tan => self.push_instruction(Op::MulAdd(value, value, one)),
             Elementary::Asin | Elementary::Acos => {
-                let square = self.push(Op::NegMulAdd(x, x, one));
-                let root = self.call(Elementary::Sqrt, square);
+                let square = self.push_instruction(Op::NegMulAdd(x, x, one));
+                let root = self.call_elementary(Elementary::Sqrt, square);
                 let sign = if f == Elementary::Asin { 1.0 } else { -1.0 };
-                self.push(Op::Div(Operand::Const(sign), root))
+                self.push_instruction(Op::Div(Operand::Const(sign), root))
             }
             Elementary::Atan => {
-                let square = self.push(Op::MulAdd(x, x, one));
-                self.push(Op::Div(one, square))
+                let square = self.push_instruction(Op::MulAdd(x, x, one));
+                self.push_instruction(Op::Div(one, square))
             }
-            Elementary::Sinh => self.call(Elementary::Cosh, x),
-            Elementary::Cosh => self.call(Elementary::Sinh, x),
-            Elementary::Tanh => self.push(Op::NegMulAdd(value, value, one)),
+            Elementary::Sinh => self.call_elementary(Elementary::Cosh, x),
+            Elementary::Cosh => self.call_elementary(Elementary::Sinh, x),
+            Elementary::Tanh => self.push_instruction(Op::NegMulAdd(value, value, one)),
             Elementary::Exp => value,
-            Elementary::Ln => self.push(Op::Div(one, x)),
-            Elementary::Sqrt => self.push(Op::Div(Operand::Const(0.5), value)),
-            Elementary::Abs => self.call(Elementary::Signum, x),
+            Elementary::Ln => self.push_instruction(Op::Div(one, x)),
+            Elementary::Sqrt => self.push_instruction(Op::Div(Operand::Const(0.5), value)),
+            Elementary::Abs => self.call_elementary(Elementary::Signum, x),
             Elementary::Signum | Elementary::IsaLapseRate => Operand::Const(0.0),
-            Elementary::IsaTemperature => self.call(Elementary::IsaLapseRate, x),
+            Elementary::IsaTemperature => self.call_elementary(Elementary::IsaLapseRate, x),
             Elementary::IsaPressure => {
-                let temperature = self.call(Elementary::IsaTemperature, x);
-                let over = self.push(Op::Div(value, temperature));
-                self.push(Op::Mul(Operand::Const(-air::FALL_OVER_GAS), over))
+                let temperature = self.call_elementary(Elementary::IsaTemperature, x);
+                let over = self.push_instruction(Op::Div(value, temperature));
+                self.push_instruction(Op::Mul(Operand::Const(-air::FALL_OVER_GAS), over))
             }
         }
     }

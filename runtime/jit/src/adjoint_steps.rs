@@ -34,7 +34,12 @@ impl Gradient {
     }
 
     /// Evaluates the derivatives; arguments are passed by name, and those without a value are empty.
-    fn evaluate(&mut self, robot: &Robot, known: &[(&str, &[f64])], factors: &[f64]) -> Result<(), Error> {
+    fn evaluate_adjoint(
+        &mut self,
+        robot: &Robot,
+        known: &[(&str, &[f64])],
+        factors: &[f64],
+    ) -> Result<(), Error> {
         let argument_values =
             |name: &str| known.iter().find(|(own, _)| *own == name).map_or(&[][..], |(_, list)| list);
         let arguments: Vec<&[f64]> = self.arguments.iter().map(|(name, _)| argument_values(name)).collect();
@@ -119,7 +124,7 @@ impl AdjointStepper {
         derivatives: &mut Sensitivity<'_>,
     ) -> Result<[f64; 2], Error> {
         let [q, v, u] = start;
-        self.stepper.evaluate(t, start, h)?;
+        self.stepper.evaluate_step(t, start, h)?;
         let robot = self.stepper.robot.clone();
         robot.check_length("derivatives by q", q.len(), derivatives.q.len())?;
         robot.check_length("derivatives by v", v.len(), derivatives.v.len())?;
@@ -133,7 +138,14 @@ impl AdjointStepper {
         let n = v.len();
         let mut by_q = vec![0.0; q.len()];
         let mut by_displacement = vec![0.0; n];
-        integrate(charts, q, self.stepper.displacement(), derivatives.q, &mut by_q, &mut by_displacement);
+        integrate(
+            charts,
+            q,
+            self.stepper.last_displacement(),
+            derivatives.q,
+            &mut by_q,
+            &mut by_displacement,
+        );
         let after_v = derivatives.v.to_vec();
         let mut by_v = after_v.clone();
         let weighted =
@@ -155,14 +167,14 @@ impl AdjointStepper {
             let known = [("t", &time[..]), ("q", &stage.q), ("v", &stage.v), ("tau", &stage.tau), ("u", u)];
             let (mut stage_q, mut stage_v, mut tau) = (vec![0.0; q.len()], vec![0.0; n], vec![0.0; n]);
             let mut by_time = [0.0];
-            self.dynamics.evaluate(&robot, &known, &accelerations[i])?;
+            self.dynamics.evaluate_adjoint(&robot, &known, &accelerations[i])?;
             self.dynamics.add("q", &mut stage_q);
             self.dynamics.add("v", &mut stage_v);
             self.dynamics.add("tau", &mut tau);
             self.dynamics.add("t", &mut by_time);
             self.dynamics.add(PARAMETERS, derivatives.parameters);
             if let Some(forces) = &mut self.forces {
-                forces.evaluate(&robot, &known, &tau)?;
+                forces.evaluate_adjoint(&robot, &known, &tau)?;
                 forces.add("q", &mut stage_q);
                 forces.add("v", &mut stage_v);
                 forces.add("u", derivatives.u);
@@ -204,7 +216,7 @@ fn add_transposed(matrix: &DMatrix<f64>, factors: &[f64], to: &mut [f64]) {
     }
 }
 
-fn quaternion(list: &[f64]) -> Quaternion<f64> {
+fn quaternion_from_list(list: &[f64]) -> Quaternion<f64> {
     Quaternion::new(list[3], list[0], list[1], list[2])
 }
 
@@ -227,7 +239,7 @@ pub(crate) fn integrate(
             Chart::Plain(InQ(q0), InV(v0)) => tangent[v0] = factors[q0],
             Chart::Ball(InQ(q0), InV(v0)) => rotation_factors(&end[q0..], &factors[q0..], &mut tangent[v0..]),
             Chart::Free(InQ(q0), InV(v0)) => {
-                let rotation = UnitQuaternion::from_quaternion(quaternion(&end[q0 + 3..]));
+                let rotation = UnitQuaternion::from_quaternion(quaternion_from_list(&end[q0 + 3..]));
                 let force = rotation.inverse() * Vector3::from_column_slice(&factors[q0..q0 + 3]);
                 tangent[v0..v0 + 3].copy_from_slice(force.as_slice());
                 rotation_factors(&end[q0 + 3..], &factors[q0 + 3..], &mut tangent[v0 + 3..]);
@@ -251,7 +263,7 @@ fn add_configuration_factors(charts: &[Chart], q: &[f64], displacement: &[f64], 
                 add_quaternion_factors(&q[q0..], &displacement[v0..], &mut by_q[q0..]);
             }
             Chart::Free(InQ(q0), InV(v0)) => {
-                let rotation = UnitQuaternion::from_quaternion(quaternion(&q[q0 + 3..]));
+                let rotation = UnitQuaternion::from_quaternion(quaternion_from_list(&q[q0 + 3..]));
                 let force = rotation * Vector3::from_column_slice(&displacement[v0..v0 + 3]);
                 add(&mut by_q[q0..q0 + 3], force.as_slice());
                 add_quaternion_factors(&q[q0 + 3..], &displacement[v0 + 3..], &mut by_q[q0 + 3..]);
@@ -299,14 +311,14 @@ pub(crate) fn tangent_rate(
 /// Writes the factors of a rotation in body axes for factors of the entries of a unit quaternion, whose rate
 /// is half the product of the quaternion with the angular velocity.
 fn rotation_factors(q: &[f64], factors: &[f64], to: &mut [f64]) {
-    let product = quaternion(q).conjugate() * quaternion(factors);
+    let product = quaternion_from_list(q).conjugate() * quaternion_from_list(factors);
     to[..3].copy_from_slice(&[0.5 * product.i, 0.5 * product.j, 0.5 * product.k]);
 }
 
 /// Converts a gradient with respect to a rotation vector to one with respect to the entries of a quaternion
 /// of any norm, and adds that to a list.
 fn add_quaternion_factors(q: &[f64], factors: &[f64], to: &mut [f64]) {
-    let q = quaternion(q);
+    let q = quaternion_from_list(q);
     let product = q * Quaternion::new(0.0, factors[0], factors[1], factors[2]) * (2.0 / q.norm_squared());
     add(&mut to[..4], &[product.i, product.j, product.k, product.w]);
 }

@@ -39,11 +39,11 @@ impl Visitor for Asked<'_> {
         let velocity_result = |v: SVector<f64, N>| (v.as_slice()[..robot.nv()].to_vec(), None);
         let q = padded_vector(self.q);
         match self.question {
-            Question::Assemble(mode) => m.assembled(t, &q, held, mode).map(configuration_result),
+            Question::Assemble(mode) => m.assemble_configuration(t, &q, held, mode).map(configuration_result),
             Question::LeastViolation => {
-                linkwork::__private::least_violation(&m.loops(t), &q, held).map(configuration_result)
+                linkwork::__private::least_violation(&m.assembly_loops(t), &q, held).map(configuration_result)
             }
-            Question::Mode => Ok((Vec::new(), m.mode(t, &q, held))),
+            Question::Mode => Ok((Vec::new(), m.current_assembly_mode(t, &q, held))),
             Question::Project => {
                 Constrained::<N, N, N, N, N>::project_configuration(m, t, &q).map(configuration_result)
             }
@@ -60,7 +60,7 @@ impl Visitor for Asked<'_> {
 }
 
 impl Robot {
-    fn ask(
+    fn ask_question(
         &self,
         question: Question<'_>,
         q: &[f64],
@@ -78,7 +78,8 @@ impl Robot {
         if self.shared.constraints.names.is_empty() {
             return Err(Error::Value(format!("`{}` has no constraints", self.name())));
         }
-        let (found, mode) = self.visit(Asked { question, q, held })?.map_err(motion_error_at_time)?;
+        let (found, mode) =
+            self.visit_padded_robot(Asked { question, q, held })?.map_err(motion_error_at_time)?;
         Ok((DVector::from_vec(found), mode))
     }
 
@@ -90,7 +91,7 @@ impl Robot {
     /// There are no constraints, a slice has the wrong length, or no configuration is found
     /// ([`Error::Motion`]).
     pub fn assemble(&self, q: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
-        Ok(self.ask(Question::Assemble(None), q, held)?.0)
+        Ok(self.ask_question(Question::Assemble(None), q, held)?.0)
     }
 
     /// Returns a configuration near `q` that satisfies the constraints and has this assembly mode, see
@@ -100,7 +101,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn assemble_in_mode(&self, q: &[f64], held: &[usize], mode: i8) -> Result<DVector<f64>, Error> {
-        Ok(self.ask(Question::Assemble(Some(mode)), q, held)?.0)
+        Ok(self.ask_question(Question::Assemble(Some(mode)), q, held)?.0)
     }
 
     /// Returns the configuration to which steps of bounded length lead from `q` that reduce the violation of
@@ -111,7 +112,7 @@ impl Robot {
     /// As [`assemble`](Self::assemble).
     #[doc(hidden)]
     pub fn least_violation(&self, q: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
-        Ok(self.ask(Question::LeastViolation, q, held)?.0)
+        Ok(self.ask_question(Question::LeastViolation, q, held)?.0)
     }
 
     /// Returns the heights of terrain, m, at a position along its first two axes, m, for drawings.
@@ -137,7 +138,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn assembly_mode(&self, q: &[f64], held: &[usize]) -> Result<Option<i8>, Error> {
-        Ok(self.ask(Question::Mode, q, held)?.1)
+        Ok(self.ask_question(Question::Mode, q, held)?.1)
     }
 
     /// Returns the configuration nearest to `q` (`nq` entries) that satisfies the constraints, in the metric
@@ -147,7 +148,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn project_configuration(&self, q: &[f64]) -> Result<DVector<f64>, Error> {
-        Ok(self.ask(Question::Project, q, &[])?.0)
+        Ok(self.ask_question(Question::Project, q, &[])?.0)
     }
 
     /// Returns the velocity nearest to `v` (`nv` entries) that satisfies the constraints at `q`, in the
@@ -157,7 +158,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn project_velocity(&self, q: &[f64], v: &[f64]) -> Result<DVector<f64>, Error> {
-        Ok(self.ask(Question::ProjectVelocity(v), q, &[])?.0)
+        Ok(self.ask_question(Question::ProjectVelocity(v), q, &[])?.0)
     }
 
     /// Returns the velocity (`nv` entries) with the entries `held` of `v` that satisfies the constraints, see
@@ -167,7 +168,7 @@ impl Robot {
     ///
     /// As [`assemble`](Self::assemble).
     pub fn complete_velocity(&self, q: &[f64], v: &[f64], held: &[usize]) -> Result<DVector<f64>, Error> {
-        Ok(self.ask(Question::Velocity(v), q, held)?.0)
+        Ok(self.ask_question(Question::Velocity(v), q, held)?.0)
     }
 
     /// Returns the ratio of the smallest to the largest singular value of the matrix from joint velocities to
@@ -195,22 +196,22 @@ impl Robot {
 impl<const N: usize> Padded<N, N, N, &Robot> {
     /// Returns the constraints for assembly, whose displacements are joint velocities: declared speeds need
     /// not determine these.
-    fn assembled(
+    fn assemble_configuration(
         &self,
         t: f64,
         q: &SVector<f64, N>,
         held: &[usize],
         mode: Option<i8>,
     ) -> Result<SVector<f64, N>, ConstraintError> {
-        linkwork::__private::assemble(&self.loops(t), q, held, mode)
+        linkwork::__private::assemble(&self.assembly_loops(t), q, held, mode)
     }
 
-    fn mode(&self, t: f64, q: &SVector<f64, N>, held: &[usize]) -> Option<i8> {
-        linkwork::__private::assembly_mode(&self.loops(t), q, held)
+    fn current_assembly_mode(&self, t: f64, q: &SVector<f64, N>, held: &[usize]) -> Option<i8> {
+        linkwork::__private::assembly_mode(&self.assembly_loops(t), q, held)
     }
 
     #[allow(clippy::type_complexity, reason = "closures")]
-    fn loops(
+    fn assembly_loops(
         &self,
         t: f64,
     ) -> linkwork::__private::Loops<

@@ -30,7 +30,7 @@ pub(crate) const MOST_CONTACTS: usize = 64;
 
 impl Robot {
     /// Largest of the numbers of coordinates, velocities with states of first order, inputs, and constraints.
-    fn dimension(&self) -> usize {
+    fn largest_dimension(&self) -> usize {
         let velocities = self.nv() + self.shared.states.len();
         [self.nq(), velocities, self.nu(), self.shared.constraints.names.len()]
             .into_iter()
@@ -39,7 +39,7 @@ impl Robot {
 
     /// Whether the matrices of the runtime need more stack than threads usually have.
     pub(crate) fn needs_stack(&self) -> bool {
-        self.dimension() > 24 || self.shared.contacts.len() > 8
+        self.largest_dimension() > 24 || self.shared.contacts.len() > 8
     }
 
     fn too_large(&self, what: &str, count: usize, most: usize) -> Error {
@@ -51,8 +51,8 @@ impl Robot {
     }
 
     /// Passes the robot with suitable dimensions to code of the runtime.
-    pub(crate) fn visit<V: Visitor>(&self, visitor: V) -> Result<V::Output, Error> {
-        match self.dimension() {
+    pub(crate) fn visit_padded_robot<V: Visitor>(&self, visitor: V) -> Result<V::Output, Error> {
+        match self.largest_dimension() {
             ..=8 => Ok(visitor.visit(&Padded::<8, 8, 8, _>::new(self)?)),
             9..=24 => Ok(visitor.visit(&Padded::<24, 24, 24, _>::new(self)?)),
             25..=LARGEST => Ok(visitor.visit(&Padded::<LARGEST, LARGEST, LARGEST, _>::new(self)?)),
@@ -64,7 +64,7 @@ impl Robot {
     pub(crate) fn visit_contacts<V: ContactVisitor>(&self, visitor: V) -> Result<V::Output, Error> {
         let (count, rates) = (self.shared.contacts.len(), self.shared.contact_rates);
         let is_few = count <= 8 && rates <= 24;
-        match self.dimension() {
+        match self.largest_dimension() {
             ..=8 if is_few => Ok(visitor.visit(&PaddedContacts::<8, 8, 8, 8, 24, _>::new(self)?)),
             ..=24 if is_few => Ok(visitor.visit(&PaddedContacts::<24, 24, 24, 8, 24, _>::new(self)?)),
             ..=24 if count <= 32 => Ok(visitor.visit(&PaddedContacts::<24, 24, 24, 32, 96, _>::new(self)?)),

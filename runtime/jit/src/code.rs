@@ -69,19 +69,19 @@ impl Code {
     /// Compiles a program whose first `results` outputs are separate from the others.
     pub fn compile(program: &Program, layout: &Layout, results: usize) -> Result<Code, String> {
         #[cfg(target_arch = "x86_64")]
-        return Code::assembled(program, layout, results);
+        return Code::assemble_x86_code(program, layout, results);
         #[cfg(target_arch = "aarch64")]
         return Code::by_cranelift(program, layout, results);
     }
 
     /// Compiles a program to instructions of this x86-64 processor.
     #[cfg(target_arch = "x86_64")]
-    fn assembled(program: &Program, layout: &Layout, results: usize) -> Result<Code, String> {
+    fn assemble_x86_code(program: &Program, layout: &Layout, results: usize) -> Result<Code, String> {
         if !x86::is_supported() {
             return Err("the processor has neither AVX2 nor FMA".to_string());
         }
         let mut plan = Allocation::new(program, layout, results, x86::REGISTERS)?;
-        let bytes = x86::write(&mut plan, results, helper)?;
+        let bytes = x86::write(&mut plan, results, helper_address)?;
         let memory = memmap2::MmapMut::map_anon(bytes.len()).and_then(|mut memory| {
             memory.copy_from_slice(&bytes);
             memory.make_exec()
@@ -95,7 +95,7 @@ impl Code {
     #[cfg(any(test, target_arch = "aarch64"))]
     fn by_cranelift(program: &Program, layout: &Layout, results: usize) -> Result<Code, String> {
         let plan = Allocation::new(program, layout, results, cranelift::REGISTERS)?;
-        let (module, address) = cranelift::translate(&plan, results, helper)?;
+        let (module, address) = cranelift::translate(&plan, results, helper_address)?;
         let outputs = [results, program.outputs.len() - results];
         Ok(Code::new(plan, outputs, address, Executable::Module(Box::new(module))))
     }
@@ -136,7 +136,7 @@ impl Code {
 }
 
 /// Returns the address of a function that generated code calls.
-fn helper(name: &str) -> Option<*const u8> {
+fn helper_address(name: &str) -> Option<*const u8> {
     macro_rules! unary {
         ($($f:ident)+) => {
             match name {
@@ -144,10 +144,10 @@ fn helper(name: &str) -> Option<*const u8> {
                 "pow" => pow as *const u8,
                 "min" => minimum as *const u8,
                 "max" => maximum as *const u8,
-                "lookup" => lookup as *const u8,
-                "sines" => sines as *const u8,
-                $(_ if name == Elementary::$f.name() => {
-                    called! { fn f(x: f64) -> f64 { Elementary::$f.apply(x) } }
+                "lookup" => look_up_table as *const u8,
+                "sines" => write_sines_and_cosines as *const u8,
+                $(_ if name == Elementary::$f.function_name() => {
+                    called! { fn f(x: f64) -> f64 { Elementary::$f.evaluate_at(x) } }
                     f as *const u8
                 })+
                 _ => return None,
@@ -177,15 +177,15 @@ called! {
     }
 
     /// Looks a table up. The orders of differentiation are two bits each.
-    fn lookup(tables: *const AnyTable, table: u64, orders: u64, x: f64, y: f64, z: f64) -> f64 {
+    fn look_up_table(tables: *const AnyTable, table: u64, orders: u64, x: f64, y: f64, z: f64) -> f64 {
         // SAFETY: generated code passes an index below the number of tables, which `Code::call` checks.
         let table = unsafe { &*tables.add(table as usize) };
-        table.value([x, y, z], [0, 2, 4].map(|shift| (orders >> shift & 3) as u8))
+        table.derivative_value([x, y, z], [0, 2, 4].map(|shift| (orders >> shift & 3) as u8))
     }
 
     /// Writes the sines, then the cosines, of `count` angles into the array after the angles. `count` is one,
     /// two, four, or a multiple of [`TOGETHER`].
-    fn sines(array: *mut f64, count: u64) {
+    fn write_sines_and_cosines(array: *mut f64, count: u64) {
         let count = count as usize;
         // SAFETY: generated code passes an array of `3 * count` numbers on its stack.
         let array = unsafe { std::slice::from_raw_parts_mut(array, 3 * count) };
@@ -203,16 +203,16 @@ impl Evaluate<0, (&mut [f64], usize)> for SinesAndCosines {
         let (angles, results) = array.split_at_mut(count);
         let (sines, cosines) = results.split_at_mut(count);
         match count {
-            1 => some::<A, 1>(angles, sines, cosines),
-            2 => some::<A, 2>(angles, sines, cosines),
-            4 => some::<A, 4>(angles, sines, cosines),
-            _ => some::<A, TOGETHER>(angles, sines, cosines),
+            1 => sines_in_registers::<A, 1>(angles, sines, cosines),
+            2 => sines_in_registers::<A, 2>(angles, sines, cosines),
+            4 => sines_in_registers::<A, 4>(angles, sines, cosines),
+            _ => sines_in_registers::<A, TOGETHER>(angles, sines, cosines),
         }
     }
 }
 
 #[inline(always)]
-fn some<A: Arithmetic, const N: usize>(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
+fn sines_in_registers<A: Arithmetic, const N: usize>(angles: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
     let (angles, _) = angles.as_chunks::<N>();
     let ((sines, _), (cosines, _)) = (sines.as_chunks_mut::<N>(), cosines.as_chunks_mut::<N>());
     for ((angles, sines), cosines) in angles.iter().zip(sines).zip(cosines) {

@@ -77,7 +77,7 @@ impl Robot {
     ) -> Result<(), Error> {
         let [time @ .., q, v, tau] = arguments else { return Ok(()) };
         let t = time.first().and_then(|t| t.first()).copied().unwrap_or_default();
-        self.visit(Call { kind, t, q, v, tau, out })
+        self.visit_padded_robot(Call { kind, t, q, v, tau, out })
     }
 }
 

@@ -28,18 +28,18 @@ impl Loader {
     ///
     /// As [`load`](Self::load).
     pub fn drawing(self) -> Result<Drawing, Error> {
-        Loader::on_thread(move || self.draw())
+        Loader::on_thread(move || self.draw_figure())
     }
 
-    fn draw(&self) -> Result<Drawing, Error> {
-        let mut source = self.source()?;
+    fn draw_figure(&self) -> Result<Drawing, Error> {
+        let mut source = self.read_source()?;
         let requests = &mut source.mechanism.requests;
         (requests.prepare, requests.batch, requests.packed) = (false, false, false);
         (requests.drawing, requests.derivatives) = (true, false);
         let (graph, cx) = (Graph::new(), &mut Diagnostics::new());
         let passes = Passes { lanes: false, ..Passes::default() };
         let compiled = compile_with(&source, &graph, passes, cx);
-        let Some((model, _)) = compiled.filter(|_| cx.is_empty()) else { return Err(self.report(cx)) };
+        let Some((model, _)) = compiled.filter(|_| cx.is_empty()) else { return Err(self.report_errors(cx)) };
         let (mut pieces, mut numbers) = (Vec::new(), Vec::new());
         for piece in &model.drawing {
             pieces.push(drawn(piece, numbers.len()));
@@ -59,17 +59,17 @@ impl Drawing {
     /// Returns the numbers of all pieces, m and rad, for the values of the parameters of a robot.
     #[must_use]
     pub fn numbers(&self, robot: &Robot) -> Vec<f64> {
-        evaluate(&self.numbers, robot, [f64::NAN; 2])
+        evaluate_program(&self.numbers, robot, [f64::NAN; 2])
     }
 
     /// Returns the height of each terrain, m, at a position along its first two axes, m.
     #[must_use]
     pub fn heights(&self, robot: &Robot, position: [f64; 2]) -> Vec<f64> {
-        evaluate(&self.heights, robot, position)
+        evaluate_program(&self.heights, robot, position)
     }
 }
 
-fn evaluate(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f64> {
+fn evaluate_program(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f64> {
     let value_of_symbol = |symbol: Symbol| {
         let value = match Quantity::from_symbol(symbol) {
             Quantity::Parameter(k) => robot.parameter_values().get(k),
@@ -79,8 +79,11 @@ fn evaluate(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f64> {
         value.copied().unwrap_or(f64::NAN)
     };
     let value_of_table = |lookup: Lookup, x| {
-        let orders = [0, 1, 2].map(|k| lookup.order(k) as u8);
-        robot.table_values().get(lookup.table()).map_or(f64::NAN, |table| table.value(x, orders))
+        let orders = [0, 1, 2].map(|k| lookup.derivative_order(k) as u8);
+        robot
+            .table_values()
+            .get(lookup.table_index())
+            .map_or(f64::NAN, |table| table.derivative_value(x, orders))
     };
     program.run_with(&value_of_symbol, &value_of_table)
 }
@@ -89,16 +92,16 @@ fn evaluate(program: &Program, robot: &Robot, given: [f64; 2]) -> Vec<f64> {
 /// The texts in it are never freed.
 pub fn drawn(piece: &mechanism::Piece<'_>, first: usize) -> Piece {
     Piece {
-        name: interned(&piece.name),
-        role: role(piece.role),
-        kind: kind(&piece.kind),
+        name: intern_text(&piece.name),
+        role: role_of_piece(piece.role),
+        kind: kind_of_piece(&piece.kind),
         frames: piece.frames,
         first,
     }
 }
 
 /// Returns a text with static lifetime. Equal texts are stored once and never freed.
-fn interned(text: &str) -> &'static str {
+fn intern_text(text: &str) -> &'static str {
     static TEXTS: Mutex<Option<HashSet<&'static str>>> = Mutex::new(None);
     let mut texts = TEXTS.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let texts = texts.get_or_insert_default();
@@ -110,7 +113,7 @@ fn interned(text: &str) -> &'static str {
     new
 }
 
-fn role(role: mechanism::Role) -> Role {
+fn role_of_piece(role: mechanism::Role) -> Role {
     match role {
         mechanism::Role::Body => Role::Body,
         mechanism::Role::Link => Role::Link,
@@ -123,7 +126,7 @@ fn role(role: mechanism::Role) -> Role {
     }
 }
 
-fn kind(kind: &PieceKind) -> Kind {
+fn kind_of_piece(kind: &PieceKind) -> Kind {
     match kind {
         PieceKind::Rod => Kind::Rod,
         PieceKind::Ring => Kind::Ring,
@@ -154,6 +157,6 @@ fn kind(kind: &PieceKind) -> Kind {
         PieceKind::Torque(k) => Kind::Torque(*k),
         PieceKind::Gravity => Kind::Gravity,
         PieceKind::Terrain(k) => Kind::Terrain(*k),
-        PieceKind::Mesh(path) => Kind::Mesh(interned(path)),
+        PieceKind::Mesh(path) => Kind::Mesh(intern_text(path)),
     }
 }

@@ -97,13 +97,13 @@ impl std::error::Error for Error {}
 
 impl Error {
     /// Returns the error for an unknown name, with the nearest known name as help.
-    pub(crate) fn unknown<'a>(
+    pub(crate) fn unknown_name_error<'a>(
         kind: &'static str,
         name: &str,
         known: impl IntoIterator<Item = &'a str>,
     ) -> Error {
         let known: Vec<&str> = known.into_iter().collect();
-        let help = match linkwork_compiler::diag::nearest(name, &known) {
+        let help = match linkwork_compiler::diag::nearest_candidate(name, &known) {
             Some(nearest) => format!("did you mean `{nearest}`?"),
             None if known.is_empty() => format!("the mechanism has no {kind}s"),
             None => format!("known are {}", known.join(", ")),

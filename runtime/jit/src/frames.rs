@@ -23,7 +23,7 @@ impl Access {
     pub const ALL: [Access; 4] =
         [Access::Placement, Access::Velocity, Access::Acceleration, Access::Jacobian];
 
-    fn name(self) -> &'static str {
+    fn access_name(self) -> &'static str {
         match self {
             Access::Placement => "frame_placement",
             Access::Velocity => "frame_velocity",
@@ -32,7 +32,7 @@ impl Access {
         }
     }
 
-    fn documentation(self, frame: &str) -> String {
+    fn access_documentation(self, frame: &str) -> String {
         match self {
             Access::Placement => format!(
                 "Placement of `{frame}` in the ground: the rotation matrix from the axes of the frame to \
@@ -112,9 +112,9 @@ impl Frames {
                 let routine = Routine::deferred(&arguments, length)?;
                 let name = &self.names[frame];
                 let plan = Plan::Frame(access, frame, routine);
-                let documentation = access.documentation(name);
+                let documentation = access.access_documentation(name);
                 let rank = if matches!(access, Access::Placement | Access::Jacobian) { 2 } else { 1 };
-                let name = format!("{}({name})", access.name());
+                let name = format!("{}({name})", access.access_name());
                 Some(Entry { rank, ..Entry::new(&name, documentation, arguments, results, plan) })
             })
         };
@@ -123,7 +123,7 @@ impl Frames {
 
     /// Returns the indices of the links on the path from the ground to a frame, the link nearest to the
     /// ground first.
-    fn path(&self, frame: usize) -> Vec<usize> {
+    fn links_to_frame(&self, frame: usize) -> Vec<usize> {
         let parent_link = |link: &usize| self.links[*link].parent;
         let mut path: Vec<usize> = std::iter::successors(self.frames[frame].link, parent_link).collect();
         path.reverse();
@@ -138,7 +138,7 @@ impl Frames {
         let mut outputs = Vec::new();
         for (frame, steps) in self.frames.iter().enumerate() {
             let mut placement = identity();
-            for link in self.path(frame) {
+            for link in self.links_to_frame(frame) {
                 placement = links[link]
                     .get_or_insert_with(|| {
                         append_given(&mut merged, &[&placement], &self.links[link].placement)
@@ -171,7 +171,8 @@ impl Frames {
         let mut twist = vec![Operand::Const(0.0); TWIST];
         let mut acceleration = twist.clone();
         let mut placements = Vec::new();
-        let path: Vec<&LinkSteps> = self.path(frame).into_iter().map(|link| &self.links[link]).collect();
+        let path: Vec<&LinkSteps> =
+            self.links_to_frame(frame).into_iter().map(|link| &self.links[link]).collect();
         for link in &path {
             placement = append_given(&mut merged, &[&placement], &link.placement);
             placements.push(placement.clone());
@@ -206,7 +207,7 @@ impl Frames {
                         for (i, entry) in column.iter().enumerate() {
                             // Joints that follow one coordinate share a column.
                             let at = TWIST * v + i;
-                            jacobian[at] = sum(&mut merged, jacobian[at], *entry);
+                            jacobian[at] = sum_of_operands(&mut merged, jacobian[at], *entry);
                         }
                     }
                 }
@@ -251,7 +252,7 @@ fn append_given(merged: &mut Merged, values: &[&[Operand]], program: &Program) -
     merged.append(program)
 }
 
-fn sum(merged: &mut Merged, a: Operand, b: Operand) -> Operand {
+fn sum_of_operands(merged: &mut Merged, a: Operand, b: Operand) -> Operand {
     match (a, b) {
         (Operand::Const(0.0), other) | (other, Operand::Const(0.0)) => other,
         (a, b) => merged.push(Op::Add(a, b)),

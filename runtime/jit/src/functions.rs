@@ -152,9 +152,9 @@ impl Entry {
                 routine.run(values, out, more);
                 let (forces, matrix) = out.split_at_mut(2 * n * n);
                 inverse.complete(matrix, more, work);
-                solve(*n, matrix, forces, columns, work);
+                solve_for_accelerations(*n, matrix, forces, columns, work);
             }
-            Plan::CalledForward(called) => called.run(shared, values, &self.arguments, out, work),
+            Plan::CalledForward(called) => called.run_plan(shared, values, &self.arguments, out, work),
             Plan::Linear { routine, columns, n, m } => {
                 let (all, work) = work.split_at_mut(4 * n * n + n * m);
                 routine.run(values, all, &mut []);
@@ -191,7 +191,7 @@ impl Entry {
 }
 
 impl CalledForward {
-    fn run(
+    fn run_plan(
         &self,
         shared: &Shared,
         values: Values<'_>,
@@ -209,7 +209,7 @@ impl CalledForward {
         self.inverse.complete(matrix, beside, rest);
         self.inverse.solve(matrix, beside, a, rest);
         shared.call(self.forces, values, arguments, &[(Argument::A, a)], forces, rest);
-        solve(n, matrix, forces, &self.columns, rest);
+        solve_for_accelerations(n, matrix, forces, &self.columns, rest);
         let known = &mut rest[..n * self.places.len()];
         self.known.run(values, known, &mut []);
         for (column, place) in known.chunks_exact(n).zip(&self.places) {
@@ -219,7 +219,13 @@ impl CalledForward {
 }
 
 /// Replaces derivatives of forces by derivatives of accelerations.
-fn solve(n: usize, inverse: &[f64], forces: &mut [f64], columns: &[Vec<Columns>; 2], work: &mut [f64]) {
+fn solve_for_accelerations(
+    n: usize,
+    inverse: &[f64],
+    forces: &mut [f64],
+    columns: &[Vec<Columns>; 2],
+    work: &mut [f64],
+) {
     let (by_q, by_v) = forces.split_at_mut(n * n);
     kernels::minus_products(n, inverse, [by_q, by_v], columns, work);
 }
@@ -254,7 +260,7 @@ pub(crate) struct Maker<'a, 'g> {
 }
 
 impl Maker<'_, '_> {
-    fn find(&self, id: Id) -> Option<&derive::Function> {
+    fn find_function(&self, id: Id) -> Option<&derive::Function> {
         self.output.functions.iter().find(|f| f.id == id)
     }
 
@@ -267,18 +273,18 @@ impl Maker<'_, '_> {
     pub fn add_derived(&mut self) {
         let output = self.output;
         for f in &output.functions {
-            let made = self.entry(f);
+            let made = self.entry_of_function(f);
             self.entries.extend(made);
         }
     }
 
-    fn entry(&self, f: &derive::Function) -> Option<Entry> {
+    fn entry_of_function(&self, f: &derive::Function) -> Option<Entry> {
         let hidden = is_internal(f.id);
-        let has_dynamics = self.find(Id::ForwardDynamics).is_some();
+        let has_dynamics = self.find_function(Id::ForwardDynamics).is_some();
         let name = match f.id {
             Id::InputDerivatives => "generalized_forces_derivatives",
             Id::Reaction if has_dynamics && !f.arguments.iter().any(is_contact_forces) => {
-                return self.reaction(f);
+                return self.reaction_entry(f);
             }
             // Variants that write to several matrices: here all functions do.
             Id::InverseDynamicsDerivativesInto | Id::ForwardDynamicsDerivativesInto => return None,
@@ -313,8 +319,8 @@ impl Maker<'_, '_> {
             }
             Shape::Forward(_) => {
                 let inverse = new_inverse();
-                let work = inverse.further_length() + inverse.work().max(kernels::work(n));
-                let columns = self.columns(f, &is_zero_entry(0));
+                let work = inverse.further_length() + inverse.work().max(kernels::work_space_size(n));
+                let columns = self.multiplied_columns(f, &is_zero_entry(0));
                 // The accelerations, which come last, have a function of their own.
                 let kept: Vec<usize> = (0..3 * n * n + inverse.further_length()).collect();
                 let routine = Routine::new(program.clone().with_outputs(&kept), &arguments, 3 * n * n)?;
@@ -322,14 +328,14 @@ impl Maker<'_, '_> {
             }
             Shape::Accelerated(_) | Shape::Symmetric(_) => return None,
             Shape::CalledForward(_) => {
-                let accelerations = self.find(Id::AccelerationsAndInverse)?;
+                let accelerations = self.find_function(Id::AccelerationsAndInverse)?;
                 let inverse = Inverse::new(&accelerations.structure.inverse, n);
                 let forces = self.index("inverse_dynamics_derivatives")?;
                 let known = f.structure.known.iter().zip([0, n]);
                 let places: Vec<usize> =
                     known.flat_map(|(known, first)| known.iter().map(move |k| first + k)).collect();
-                let columns = self.columns(f, &|_, _| false);
-                let rest = inverse.work().max(kernels::work(n)).max(n * places.len());
+                let columns = self.multiplied_columns(f, &|_, _| false);
+                let rest = inverse.work().max(kernels::work_space_size(n)).max(n * places.len());
                 let work = n + n * n + inverse.further_length() + rest.max(self.entries[forces].work);
                 let called = CalledForward {
                     accelerations: Routine::new(self.whole(&accelerations.program), &arguments, n)?,
@@ -344,13 +350,13 @@ impl Maker<'_, '_> {
             }
             Shape::Linear(..) => {
                 let columns = linear_columns([0, n * n, 3 * n * n]);
-                let work = 4 * n * n + n * m + kernels::work(n);
+                let work = 4 * n * n + n * m + kernels::work_space_size(n);
                 (Plan::Linear { routine: routine_with_results(outputs)?, columns, n, m }, work)
             }
             Shape::CalledLinear(..) => {
                 let columns = linear_columns([n, n + n * n, n + 2 * n * n]);
                 let derivatives = self.index("forward_dynamics_derivatives")?;
-                let rest = kernels::work(n).max(self.entries[derivatives].work);
+                let rest = kernels::work_space_size(n).max(self.entries[derivatives].work);
                 let work = n + 6 * n * n + n * m + rest;
                 (
                     Plan::CalledLinear {
@@ -370,14 +376,18 @@ impl Maker<'_, '_> {
             }
             _ => (Plan::Program(routine_with_results(outputs)?), 0),
         };
-        let results = results(f.shape, outputs);
+        let results = matrices_of_shape(f.shape, outputs);
         let documentation = f.docs.join("\n\n");
-        let rank = rank(f.shape);
+        let rank = rank_of_shape(f.shape);
         Some(Entry { hidden, work, rank, ..Entry::new(name, documentation, arguments, results, plan) })
     }
 
     /// Returns the columns of `∂τ/∂q` and `∂τ/∂v` that are multiplied by the inverse.
-    fn columns(&self, f: &derive::Function, is_zero: &dyn Fn(usize, usize) -> bool) -> [Vec<Columns>; 2] {
+    fn multiplied_columns(
+        &self,
+        f: &derive::Function,
+        is_zero: &dyn Fn(usize, usize) -> bool,
+    ) -> [Vec<Columns>; 2] {
         let n = self.model.nv();
         let zeros = &f.structure.zeros;
         [0, 1].map(|k| {
@@ -392,7 +402,7 @@ impl Maker<'_, '_> {
 
     /// Returns a program preceded by the programs of the passive forces that it uses.
     pub fn whole(&self, program: &Program) -> Program {
-        let symbols = program.symbols();
+        let symbols = program.used_symbols();
         let takes_called_argument = |called: Called| {
             symbols
                 .iter()
@@ -403,7 +413,7 @@ impl Maker<'_, '_> {
             (Called::PassiveForces, Id::PassiveForces, Quantity::PassiveForce as fn(usize) -> Quantity),
             (Called::PassiveDerivatives, Id::PassiveDerivatives, Quantity::PassiveDerivative),
         ] {
-            let Some(f) = self.find(id).filter(|_| takes_called_argument(called)) else { continue };
+            let Some(f) = self.find_function(id).filter(|_| takes_called_argument(called)) else { continue };
             for (k, output) in merged.append(&f.program).into_iter().enumerate() {
                 merged.bind(quantity(k).symbol(), output);
             }
@@ -413,17 +423,17 @@ impl Maker<'_, '_> {
     }
 
     /// Returns the function of an output with reactions: of the motion that state and inputs determine.
-    fn reaction(&self, f: &derive::Function) -> Option<Entry> {
+    fn reaction_entry(&self, f: &derive::Function) -> Option<Entry> {
         let name = f.name.strip_prefix(REACTION)?;
         let mut merged = Merged::default();
-        let inputs = self.find(Id::GeneralizedForces).filter(|_| self.model.nu() > 0);
+        let inputs = self.find_function(Id::GeneralizedForces).filter(|_| self.model.nu() > 0);
         let n = self.model.nv();
         let tau = match inputs {
             Some(f) => merged.append(&self.whole(&f.program)),
             None => vec![Operand::Const(0.0); n],
         };
         (0..n).zip(tau).for_each(|(k, tau)| merged.bind(Quantity::Force(k).symbol(), tau));
-        let a = merged.append(&self.whole(&self.find(Id::ForwardDynamics)?.program));
+        let a = merged.append(&self.whole(&self.find_function(Id::ForwardDynamics)?.program));
         (0..n).zip(a).for_each(|(k, a)| merged.bind(Quantity::Acceleration(k).symbol(), a));
         let outputs = merged.append(&self.whole(&f.program));
         let time = self.model.time.then_some(Argument::T);
@@ -432,9 +442,14 @@ impl Maker<'_, '_> {
         let length = outputs.len();
         let routine = Routine::new(merged.finish(outputs), &arguments, length)?;
         let documentation = format!("Output `{name}` of the motion that state and inputs determine.");
-        let entry =
-            Entry::new(name, documentation, arguments, results(f.shape, length), Plan::Program(routine));
-        Some(Entry { rank: rank(f.shape), ..entry })
+        let entry = Entry::new(
+            name,
+            documentation,
+            arguments,
+            matrices_of_shape(f.shape, length),
+            Plan::Program(routine),
+        );
+        Some(Entry { rank: rank_of_shape(f.shape), ..entry })
     }
 }
 
@@ -464,8 +479,8 @@ impl Entry {
 }
 
 /// Returns names and dimensions of the results of a function; scalars and plain arrays are named `result`.
-fn results(shape: Shape, outputs: usize) -> Vec<Matrix> {
-    let arrays = shape.arrays();
+fn matrices_of_shape(shape: Shape, outputs: usize) -> Vec<Matrix> {
+    let arrays = shape.result_arrays();
     match arrays.is_empty() {
         true => vec![Matrix { name: "result", rows: outputs, columns: 1 }],
         false => arrays.into_iter().map(|(name, rows, columns)| Matrix { name, rows, columns }).collect(),
@@ -493,7 +508,7 @@ fn is_internal(id: Id) -> bool {
 }
 
 /// Returns the number of dimensions of the results.
-fn rank(shape: Shape) -> usize {
+fn rank_of_shape(shape: Shape) -> usize {
     match shape {
         Shape::Scalar => 0,
         Shape::Vector(_) | Shape::Array(_) => 1,

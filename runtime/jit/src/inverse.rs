@@ -39,7 +39,7 @@ impl Inverse {
     /// Completes the inverse from its columns and the further outputs.
     pub fn complete(&self, matrix: &mut [f64], beside: &[f64], work: &mut [f64]) {
         if !self.trunk.is_empty() || self.limbs.is_some() {
-            kernels::run(self.n, Completion { inverse: self, matrix, beside, work });
+            kernels::run_kernel(self.n, Completion { inverse: self, matrix, beside, work });
         }
     }
 
@@ -65,7 +65,7 @@ impl Inverse {
     /// Inverts a mass matrix of a trunk and limbs: the matrix has the inverse of the block of each limb,
     /// `borders` the rows of the trunk.
     #[inline(always)]
-    fn invert(
+    fn invert_with_limbs(
         &self,
         limbs: &[Option<usize>],
         matrix: &mut [f64],
@@ -90,7 +90,7 @@ impl Inverse {
                 add_multiple(*by, &borders[k * width..(k + 1) * width], column, mul_add);
             }
         }
-        invert(width, inner, mul_add);
+        invert_positive_definite(width, inner, mul_add);
         for (c, trunk) in self.trunk.iter().enumerate() {
             for i in 0..n {
                 let products = g[i * width..].iter().zip(&inner[c * width..(c + 1) * width]);
@@ -108,7 +108,10 @@ impl Inverse {
     /// it does for mechanisms with limbs in SIMD lanes.
     pub fn solve(&self, inverse: &[f64], beside: &[f64], column: &mut [f64], work: &mut [f64]) {
         if let Some(limbs) = &self.limbs {
-            kernels::run(self.n, Solution { inverse: self, limbs, matrix: inverse, beside, column, work });
+            kernels::run_kernel(
+                self.n,
+                Solution { inverse: self, limbs, matrix: inverse, beside, column, work },
+            );
         }
     }
 }
@@ -127,7 +130,7 @@ impl Kernel for Completion<'_> {
         let Completion { inverse, matrix, beside, work } = self;
         match &inverse.limbs {
             None => inverse.add_trunk(matrix, beside, mul_add),
-            Some(limbs) => inverse.invert(limbs, matrix, beside, work, mul_add),
+            Some(limbs) => inverse.invert_with_limbs(limbs, matrix, beside, work, mul_add),
         }
     }
 }
@@ -171,7 +174,7 @@ impl Kernel for Solution<'_> {
 /// Inverts a symmetric positive definite matrix in place by Gauss–Jordan elimination without interchanges
 /// (Golub and Van Loan 2013, section 3.2).
 #[inline(always)]
-fn invert(n: usize, m: &mut [f64], mul_add: impl Fn(f64, f64, f64) -> f64 + Copy) {
+fn invert_positive_definite(n: usize, m: &mut [f64], mul_add: impl Fn(f64, f64, f64) -> f64 + Copy) {
     for k in 0..n {
         let by = 1.0 / m[k * n + k];
         m[k * n + k] = 1.0;

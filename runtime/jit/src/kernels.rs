@@ -15,23 +15,23 @@ pub(crate) trait Kernel {
 }
 
 /// Runs a loop over matrices of `n` rows.
-pub(crate) fn run(n: usize, kernel: impl Kernel) {
+pub(crate) fn run_kernel(n: usize, kernel: impl Kernel) {
     #[cfg(target_arch = "x86_64")]
     {
         #[target_feature(enable = "avx2,fma")]
-        fn fused(kernel: impl Kernel) {
+        fn run_with_fused_multiply_add(kernel: impl Kernel) {
             kernel.run(f64::mul_add);
         }
         #[target_feature(enable = "avx2,fma,avx512f,avx512vl")]
-        fn long(kernel: impl Kernel) {
+        fn run_with_long_registers(kernel: impl Kernel) {
             kernel.run(f64::mul_add);
         }
         use std::arch::is_x86_feature_detected as has;
         if has!("avx2") && has!("fma") {
             // SAFETY: the processor has these features.
             return match n >= LONG && has!("avx512f") && has!("avx512vl") {
-                true => unsafe { long(kernel) },
-                false => unsafe { fused(kernel) },
+                true => unsafe { run_with_long_registers(kernel) },
+                false => unsafe { run_with_fused_multiply_add(kernel) },
             };
         }
     }
@@ -85,7 +85,7 @@ pub(crate) fn add_multiple(
 }
 
 /// Number of values of work space that products of matrices with `n` rows need.
-pub(crate) fn work(n: usize) -> usize {
+pub(crate) fn work_space_size(n: usize) -> usize {
     Columns::MOST * n
 }
 
@@ -98,7 +98,7 @@ pub(crate) fn minus_products<const K: usize>(
     columns: &[Vec<Columns>; K],
     work: &mut [f64],
 ) {
-    run(n, Products { n, square, matrices, columns, work });
+    run_kernel(n, Products { n, square, matrices, columns, work });
 }
 
 struct Products<'a, const K: usize> {
@@ -116,7 +116,7 @@ impl<const K: usize> Kernel for Products<'_, K> {
         macro_rules! small {
             ($($n:literal)*) => {
                 match n {
-                    $($n => return small::<$n>(square, matrices, columns, mul_add),)*
+                    $($n => return multiply_small::<$n>(square, matrices, columns, mul_add),)*
                     _ => {}
                 }
             };
@@ -125,10 +125,10 @@ impl<const K: usize> Kernel for Products<'_, K> {
         for (matrix, groups) in matrices.into_iter().zip(columns) {
             for group in groups {
                 match group.columns.len() {
-                    1 => tiles::<1>(n, square, matrix, group, work, mul_add),
-                    2 => tiles::<2>(n, square, matrix, group, work, mul_add),
-                    3 => tiles::<3>(n, square, matrix, group, work, mul_add),
-                    _ => tiles::<4>(n, square, matrix, group, work, mul_add),
+                    1 => multiply_in_tiles::<1>(n, square, matrix, group, work, mul_add),
+                    2 => multiply_in_tiles::<2>(n, square, matrix, group, work, mul_add),
+                    3 => multiply_in_tiles::<3>(n, square, matrix, group, work, mul_add),
+                    _ => multiply_in_tiles::<4>(n, square, matrix, group, work, mul_add),
                 }
             }
         }
@@ -137,7 +137,7 @@ impl<const K: usize> Kernel for Products<'_, K> {
 
 /// Replaces columns of matrices with `N` rows by minus their products with a square matrix.
 #[inline(always)]
-fn small<'a, const N: usize>(
+fn multiply_small<'a, const N: usize>(
     square: &[f64],
     matrices: impl IntoIterator<Item = &'a mut [f64]>,
     columns: &[Vec<Columns>],
@@ -162,7 +162,7 @@ fn small<'a, const N: usize>(
 
 /// Products of more than [`ROWS`] rows with `M` columns.
 #[inline(always)]
-fn tiles<const M: usize>(
+fn multiply_in_tiles<const M: usize>(
     n: usize,
     square: &[f64],
     matrix: &mut [f64],

@@ -16,7 +16,10 @@ use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{self, Model};
 use linkwork_compiler::passes::Passes;
 use linkwork_compiler::syntax::{Printed, RATE_OF_STATE};
-use linkwork_compiler::{DeclaredStruct, Source, compile_with, declarations, derive_above, import, read};
+use linkwork_compiler::{
+    DeclaredStruct, Source, compile_with, derive_above, import, mechanism_declarations, read_source,
+    reject_reproducible,
+};
 use proc_macro2::TokenStream;
 use std::collections::HashMap;
 use std::io::Read;
@@ -134,11 +137,11 @@ impl Loader {
     ) -> Result<T, Error> {
         let thread = std::thread::Builder::new().name("linkwork".to_string()).stack_size(STACK);
         let thread = thread.spawn(run).map_err(|error| Error::Internal(error.to_string()))?;
-        thread.join().map_err(|panic| Error::Internal(message(&*panic)))?
+        thread.join().map_err(|panic| Error::Internal(panic_message(&*panic)))?
     }
 
     fn compile(self) -> Result<Shared, Error> {
-        let mut source = self.source()?;
+        let mut source = self.read_source()?;
         without_rust(&mut source);
         let requests = &mut source.mechanism.requests;
         requests.drawing = false;
@@ -147,14 +150,17 @@ impl Loader {
         }
         let (graph, cx) = (Graph::new(), &mut Diagnostics::new());
         let passes = Passes { lanes: false, ..Passes::default() };
-        let compiled = compile_with(&source, &graph, passes, cx);
-        let Some((model, output)) = compiled.filter(|_| cx.is_empty()) else { return Err(self.report(cx)) };
-        Ok(shared(&source, &model, output))
+        let allowed = reject_reproducible(&source, "loaded mechanisms", cx);
+        let compiled = allowed.and_then(|()| compile_with(&source, &graph, passes, cx));
+        let Some((model, output)) = compiled.filter(|_| cx.is_empty()) else {
+            return Err(self.report_errors(cx));
+        };
+        Ok(shared_mechanism(&source, &model, output))
     }
 
     /// Reads the declaration of the mechanism and adds the options of the loader.
-    pub(crate) fn source(&self) -> Result<Source, Error> {
-        let (mut declaration, folder) = self.declaration()?;
+    pub(crate) fn read_source(&self) -> Result<Source, Error> {
+        let (mut declaration, folder) = self.read_declaration()?;
         let options: TokenStream = self
             .options
             .parse()
@@ -165,19 +171,19 @@ impl Loader {
             cx.add(derive_above(attribute));
         }
         let DeclaredStruct { arguments, item, .. } = declaration;
-        let source = read(arguments, item, &folder, cx);
-        source.filter(|_| cx.is_empty()).ok_or_else(|| self.report(cx))
+        let source = read_source(arguments, item, &folder, cx);
+        source.filter(|_| cx.is_empty()).ok_or_else(|| self.report_errors(cx))
     }
 
     /// Returns the declaration of the mechanism, and the folder of the files that it names.
-    fn declaration(&self) -> Result<(DeclaredStruct, PathBuf), Error> {
+    fn read_declaration(&self) -> Result<(DeclaredStruct, PathBuf), Error> {
         let current_folder = || match &self.folder {
             Some(folder) => Ok(folder.clone()),
             None => std::env::current_dir()
                 .map_err(|error| Error::File { path: PathBuf::from("."), reason: error.to_string() }),
         };
         match &self.origin {
-            Origin::Text(text) => Ok((self.chosen(text, "the text")?, current_folder()?)),
+            Origin::Text(text) => Ok((self.choose_declaration(text, "the text")?, current_folder()?)),
             Origin::File(path) => {
                 let text = text_of(path)?;
                 if !is_rust(path) {
@@ -187,13 +193,13 @@ impl Loader {
                     Some(folder) => folder.clone(),
                     None => path.parent().unwrap_or(Path::new("")).to_path_buf(),
                 };
-                Ok((self.chosen(&text, &path.display().to_string())?, folder))
+                Ok((self.choose_declaration(&text, &path.display().to_string())?, folder))
             }
         }
     }
 
-    fn chosen(&self, text: &str, origin: &str) -> Result<DeclaredStruct, Error> {
-        let mut found = declarations(text).map_err(|error| {
+    fn choose_declaration(&self, text: &str, origin: &str) -> Result<DeclaredStruct, Error> {
+        let mut found = mechanism_declarations(text).map_err(|error| {
             let at = error.span().start();
             Error::Syntax(format!("{origin}: line {}, column {}: {error}", at.line, at.column + 1))
         })?;
@@ -201,7 +207,7 @@ impl Loader {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         if let Some(name) = &self.name {
             let at = names.iter().position(|known| known == name);
-            let at = at.ok_or_else(|| Error::unknown("mechanism", name, names.iter().copied()))?;
+            let at = at.ok_or_else(|| Error::unknown_name_error("mechanism", name, names.iter().copied()))?;
             return Ok(found.swap_remove(at));
         }
         match found.len() {
@@ -215,18 +221,18 @@ impl Loader {
     }
 
     /// Returns the errors of a mechanism with their positions, as compilers print them.
-    pub(crate) fn report(&self, cx: &Diagnostics) -> Error {
-        let messages: Vec<String> = cx.distinct().map(|one| self.message(one)).collect();
+    pub(crate) fn report_errors(&self, cx: &Diagnostics) -> Error {
+        let messages: Vec<String> = cx.distinct_errors().map(|one| self.diagnostic_message(one)).collect();
         match messages.is_empty() {
             true => Error::Internal("the mechanism could not be compiled".to_string()),
             false => Error::Mechanism(messages),
         }
     }
 
-    fn message(&self, one: &Diagnostic) -> String {
-        let start = one.place().span.start();
+    fn diagnostic_message(&self, one: &Diagnostic) -> String {
+        let start = one.source_position().span.start();
         let here = format!("{}:{}", start.line, start.column + 1);
-        let position = match (&one.place().file, &self.origin) {
+        let position = match (&one.source_position().file, &self.origin) {
             (Some(at), _) => format!("{}:{}:{}", at.file, at.line, at.column),
             (None, Origin::Text(_)) => format!("declaration:{here}"),
             (None, Origin::File(path)) if is_rust(path) => format!("{}:{here}", path.display()),
@@ -244,7 +250,7 @@ fn is_rust(path: &Path) -> bool {
 }
 
 /// Returns the message of a panic.
-fn message(panic: &(dyn std::any::Any + Send)) -> String {
+fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(ToString::to_string);
     text.or_else(|| panic.downcast_ref::<String>().cloned())
         .unwrap_or_else(|| "the compiler panicked".to_string())
@@ -270,7 +276,7 @@ fn text_of(path: &Path) -> Result<String, Error> {
 #[doc(hidden)]
 #[must_use]
 pub fn compiled(source: &Source, model: &Model<'_>, output: linkwork_compiler::derive::Output) -> Robot {
-    Robot::new(Arc::new(shared(source, model, output)), false)
+    Robot::new(Arc::new(shared_mechanism(source, model, output)), false)
 }
 
 /// Removes the options that only generated Rust has.
@@ -281,7 +287,11 @@ pub fn without_rust(source: &mut Source) {
 }
 
 /// Extracts the data of a compiled mechanism that its robots share.
-fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::derive::Output) -> Shared {
+fn shared_mechanism(
+    source: &Source,
+    model: &Model<'_>,
+    mut output: linkwork_compiler::derive::Output,
+) -> Shared {
     let frames = Frames::new(model, &mut output);
     let mut maker = Maker { model, output: &output, entries: Vec::new() };
     maker.add_derived();
@@ -327,9 +337,9 @@ fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::der
         inputs: quantities_with_units(&mut model.inputs.iter().map(|(name, _)| name), &model.units.inputs),
         parameters: quantities_with_units(&mut model.parameters.iter(), &model.units.parameters),
         defaults,
-        tables: source.tables(),
+        tables: source.tables_with_variable_counts(),
         limits: model.limits.iter().map(|limit| (limit.v.0, limit.bounds().map(|b| b.is_some()))).collect(),
-        requirements: model.requirements.iter().map(|r| requirement(model, r)).collect(),
+        requirements: model.requirements.iter().map(|r| requirement_of_model(model, r)).collect(),
         equations: output.equations.plain.clone(),
         time: model.time,
         kinematic: model.kinematic,
@@ -337,7 +347,7 @@ fn shared(source: &Source, model: &Model<'_>, mut output: linkwork_compiler::der
         has_feedback: !model.acceleration_forces.is_empty(),
         constraints: constraints_of(model),
         contact_rates: model.contacts.iter().map(|contact| contact.rates.len()).sum(),
-        contacts: contacts(model),
+        contacts: contacts_of_model(model),
         states,
         charts: output.charts.clone(),
         frames,
@@ -356,7 +366,7 @@ fn constraints_of(model: &Model<'_>) -> Constraints {
     };
     Constraints {
         names: model.constraints.iter().map(|constraint| constraint.name.clone()).collect(),
-        holonomic: model.holonomic(),
+        holonomic: model.holonomic_count(),
         groups: model.constraints.iter().map(|constraint| constraint.group).collect(),
         slipping: matching_constraint_indices(|constraint| !constraint.friction.is_empty()),
         determining: matching_constraint_indices(|constraint| constraint.determines),
@@ -367,7 +377,7 @@ fn constraints_of(model: &Model<'_>) -> Constraints {
     }
 }
 
-fn contacts(model: &Model<'_>) -> Vec<Contact> {
+fn contacts_of_model(model: &Model<'_>) -> Vec<Contact> {
     let mut first = 0;
     let numbered_contact = |(k, contact): (usize, &mechanism::Contact<'_>)| {
         let count = contact.rates.len();
@@ -382,7 +392,7 @@ fn contacts(model: &Model<'_>) -> Vec<Contact> {
     model.contacts.iter().enumerate().map(numbered_contact).collect()
 }
 
-fn requirement(model: &Model<'_>, requirement: &mechanism::Requirement<'_>) -> Requirement {
+fn requirement_of_model(model: &Model<'_>, requirement: &mechanism::Requirement<'_>) -> Requirement {
     use mechanism::Rule as Known;
     let rule = match requirement.rule {
         Known::Finite => Rule::Finite,

@@ -18,7 +18,7 @@ impl Merged {
     pub fn append(&mut self, program: &Program) -> Vec<Operand> {
         let mut values: Vec<Operand> = Vec::with_capacity(program.instructions.len());
         for op in &program.instructions {
-            let op = op.mapped(|operand| self.renamed(operand, &values));
+            let op = op.map_operands(|operand| self.renamed_operand(operand, &values));
             let known = self.calls.iter().find(|(known, _)| *known == op).map(|(_, value)| *value);
             values.push(known.unwrap_or_else(|| {
                 let value = self.push(op);
@@ -28,13 +28,13 @@ impl Merged {
                 value
             }));
         }
-        program.outputs.iter().map(|output| self.renamed(*output, &values)).collect()
+        program.outputs.iter().map(|output| self.renamed_operand(*output, &values)).collect()
     }
 
-    fn renamed(&self, operand: Operand, values: &[Operand]) -> Operand {
+    fn renamed_operand(&self, operand: Operand, values: &[Operand]) -> Operand {
         match operand {
             Operand::Symbol(symbol) => self.bound.get(&symbol).copied().unwrap_or(operand),
-            other => other.among(values),
+            other => other.translate_value(values),
         }
     }
 
@@ -52,7 +52,7 @@ impl Merged {
     /// Completes the merged program with the given outputs.
     pub fn finish(mut self, outputs: Vec<Operand>) -> Program {
         self.program.outputs = outputs;
-        self.program.sweep();
+        self.program.remove_unused();
         self.program
     }
 }
@@ -76,7 +76,7 @@ mod tests {
         merged.bind(y.symbol(), outputs[0]);
         let outputs = merged.append(&sine);
         let program = merged.finish(outputs);
-        let found = program.run(&|symbol| if symbol == x.symbol() { 0.3 } else { f64::NAN });
+        let found = program.interpret_program(&|symbol| if symbol == x.symbol() { 0.3 } else { f64::NAN });
         assert_eq!(found, [0.6_f64.sin()]);
     }
 }

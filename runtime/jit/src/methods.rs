@@ -9,22 +9,24 @@ impl Robot {
     fn index_of(&self, method: Method) -> Result<usize, Error> {
         let name = METHODS[method as usize];
         let index = self.shared.methods[method as usize];
-        index.ok_or_else(|| Error::unknown("function", name, self.shared.names()))
+        index.ok_or_else(|| Error::unknown_name_error("function", name, self.shared.names()))
     }
 
-    fn frame(&self, function: &str, frame: &str) -> Result<usize, Error> {
-        self.shared
-            .index
-            .get(&format!("{function}({frame})"))
-            .copied()
-            .ok_or_else(|| Error::unknown("frame", frame, self.frames().iter().map(String::as_str)))
+    fn frame_index(&self, function: &str, frame: &str) -> Result<usize, Error> {
+        self.shared.index.get(&format!("{function}({frame})")).copied().ok_or_else(|| {
+            Error::unknown_name_error("frame", frame, self.frames().iter().map(String::as_str))
+        })
     }
 
-    fn vector(&self, method: Method, state: State<'_>) -> Result<DVector<f64>, Error> {
+    fn vector_of_method(&self, method: Method, state: State<'_>) -> Result<DVector<f64>, Error> {
         self.state_call(self.index_of(method)?, state).map(DVector::from_vec)
     }
 
-    fn matrices<const N: usize>(&self, index: usize, state: State<'_>) -> Result<[DMatrix<f64>; N], Error> {
+    fn matrices_of_function<const N: usize>(
+        &self,
+        index: usize,
+        state: State<'_>,
+    ) -> Result<[DMatrix<f64>; N], Error> {
         let values = self.state_call(index, state)?;
         let results = &self.shared.entries[index].results;
         let mut first = 0;
@@ -42,7 +44,7 @@ impl Robot {
     ///
     /// The mechanism has no such frame, or a slice has the wrong length.
     pub fn frame_placement(&self, frame: &str, q: &[f64]) -> Result<Isometry3<f64>, Error> {
-        let index = self.frame("frame_placement", frame)?;
+        let index = self.frame_index("frame_placement", frame)?;
         let mut values = [0.0; 12];
         self.state_call_into(index, State { q, ..State::default() }, &mut values)?;
         let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_column_slice(&values[..9]));
@@ -56,7 +58,7 @@ impl Robot {
     ///
     /// The mechanism has no such frame, or a slice has the wrong length.
     pub fn frame_velocity(&self, frame: &str, q: &[f64], v: &[f64]) -> Result<DVector<f64>, Error> {
-        let index = self.frame("frame_velocity", frame)?;
+        let index = self.frame_index("frame_velocity", frame)?;
         self.state_call(index, State { q, v, ..State::default() }).map(DVector::from_vec)
     }
 
@@ -72,7 +74,7 @@ impl Robot {
         v: &[f64],
         a: &[f64],
     ) -> Result<DVector<f64>, Error> {
-        let index = self.frame("frame_acceleration", frame)?;
+        let index = self.frame_index("frame_acceleration", frame)?;
         self.state_call(index, State { q, v, a, ..State::default() }).map(DVector::from_vec)
     }
 
@@ -82,8 +84,8 @@ impl Robot {
     ///
     /// The mechanism has no such frame, or a slice has the wrong length.
     pub fn frame_jacobian(&self, frame: &str, q: &[f64]) -> Result<DMatrix<f64>, Error> {
-        let index = self.frame("frame_jacobian", frame)?;
-        let [jacobian] = self.matrices(index, State { q, ..State::default() })?;
+        let index = self.frame_index("frame_jacobian", frame)?;
+        let [jacobian] = self.matrices_of_function(index, State { q, ..State::default() })?;
         Ok(jacobian)
     }
 }
@@ -140,13 +142,13 @@ macro_rules! methods {
         $self.state_call_into($self.index_of(Method::$name)?, $state, &mut value)?;
         Ok(value[0])
     }};
-    (@body vector $self:ident $name:ident $state:ident) => { $self.vector(Method::$name, $state) };
+    (@body vector $self:ident $name:ident $state:ident) => { $self.vector_of_method(Method::$name, $state) };
     (@body matrix $self:ident $name:ident $state:ident) => {{
-        let [matrix] = $self.matrices($self.index_of(Method::$name)?, $state)?;
+        let [matrix] = $self.matrices_of_function($self.index_of(Method::$name)?, $state)?;
         Ok(matrix)
     }};
     (@body $some:ident $self:ident $name:ident $state:ident) => {
-        $self.matrices($self.index_of(Method::$name)?, $state)
+        $self.matrices_of_function($self.index_of(Method::$name)?, $state)
     };
 }
 
@@ -193,7 +195,7 @@ macro_rules! others {
                 ///
                 /// A slice has the wrong length, or a parameter has no value.
                 pub fn $name(&self, $($argument: &[f64]),*) -> Result<DVector<f64>, Error> {
-                    self.vector(Method::$name, $state)
+                    self.vector_of_method(Method::$name, $state)
                 }
 
                 #[doc = concat!("Writes the result of [`", stringify!($name), "`](Self::", stringify!($name), ") \

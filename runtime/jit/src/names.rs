@@ -17,9 +17,9 @@ pub(crate) enum List {
 const COUNT: usize = 1000;
 /// Number of digits of each placeholder number.
 const DIGITS: usize = 4;
-const TABLE: &[[u8; DIGITS]; 5 * COUNT] = &table();
+const TABLE: &[[u8; DIGITS]; 5 * COUNT] = &digit_table();
 
-const fn table() -> [[u8; DIGITS]; 5 * COUNT] {
+const fn digit_table() -> [[u8; DIGITS]; 5 * COUNT] {
     let mut all = [[0; DIGITS]; 5 * COUNT];
     let mut k = 0;
     while k < all.len() {
@@ -35,7 +35,7 @@ const fn table() -> [[u8; DIGITS]; 5 * COUNT] {
 }
 
 /// Returns the numbers of the first names of a list.
-pub(crate) const fn numbers<const N: usize>(list: List) -> [&'static str; N] {
+pub(crate) const fn numbers_of_names<const N: usize>(list: List) -> [&'static str; N] {
     let mut all = [""; N];
     let mut k = 0;
     while k < N && k < COUNT {
@@ -48,8 +48,8 @@ pub(crate) const fn numbers<const N: usize>(list: List) -> [&'static str; N] {
 }
 
 impl Shared {
-    /// Returns the name that a number of [`numbers`] stands for.
-    fn numbered(&self, number: usize) -> Option<&str> {
+    /// Returns the name that a number of [`numbers_of_names`] stands for.
+    fn name_of_number(&self, number: usize) -> Option<&str> {
         let k = number % COUNT;
         match number / COUNT {
             0 => self.configuration.get(k).map(|one| one.name.as_str()),
@@ -66,7 +66,7 @@ impl Shared {
         let mut text = parts.next().unwrap_or_default().to_string();
         for part in parts {
             let is_number = part.len() == DIGITS && part.bytes().all(|digit| digit.is_ascii_digit());
-            let name = part.parse().ok().filter(|_| is_number).and_then(|number| self.numbered(number));
+            let name = part.parse().ok().filter(|_| is_number).and_then(|number| self.name_of_number(number));
             text.push('`');
             text.push_str(name.unwrap_or(part));
         }

@@ -8,7 +8,7 @@ pub use contacts::PaddedContacts;
 
 use crate::error::Error;
 use crate::internal::Internal;
-use crate::names::{List, numbers};
+use crate::names::{List, numbers_of_names};
 use crate::robot::{Robot, State};
 use linkwork::constraint::Projected;
 use linkwork::integrate::{Features, Hooks};
@@ -108,35 +108,35 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Number of velocities, and number of velocities and states of first order.
-    fn velocities(&self) -> [usize; 2] {
+    fn velocity_counts(&self) -> [usize; 2] {
         let robot = self.robot();
         [robot.nv(), robot.nv() + robot.shared.states.len()]
     }
 
-    fn configuration<'a>(&self, q: &'a SVector<f64, NQ>) -> &'a [f64] {
+    fn configuration_entries<'a>(&self, q: &'a SVector<f64, NQ>) -> &'a [f64] {
         &q.as_slice()[..self.robot().nq()]
     }
 
-    fn velocity<'a>(&self, v: &'a SVector<f64, NV>) -> &'a [f64] {
+    fn velocity_entries<'a>(&self, v: &'a SVector<f64, NV>) -> &'a [f64] {
         &v.as_slice()[..self.robot().nv()]
     }
 
-    fn instant<'a>(&self, t: f64, q: &'a SVector<f64, NQ>) -> State<'a> {
-        State { t: Some(t), q: self.configuration(q), ..State::default() }
+    fn state_without_velocity<'a>(&self, t: f64, q: &'a SVector<f64, NQ>) -> State<'a> {
+        State { t: Some(t), q: self.configuration_entries(q), ..State::default() }
     }
 
-    fn state<'a>(&self, t: f64, q: &'a SVector<f64, NQ>, v: &'a SVector<f64, NV>) -> State<'a> {
-        let [n, all] = self.velocities();
-        State { v: self.velocity(v), x: &v.as_slice()[n..all], ..self.instant(t, q) }
+    fn state_with_velocity<'a>(&self, t: f64, q: &'a SVector<f64, NQ>, v: &'a SVector<f64, NV>) -> State<'a> {
+        let [n, all] = self.velocity_counts();
+        State { v: self.velocity_entries(v), x: &v.as_slice()[n..all], ..self.state_without_velocity(t, q) }
     }
 
     /// Returns whether the robot has a function.
-    fn has(&self, f: Internal) -> bool {
+    fn has_function(&self, f: Internal) -> bool {
         self.robot().shared.internal[f as usize].is_some()
     }
 
     /// Evaluates a function of the robot. After an error, such as an absent function, the results are NaN.
-    fn call(&self, f: Internal, state: State<'_>, out: &mut [f64]) {
+    fn call_function(&self, f: Internal, state: State<'_>, out: &mut [f64]) {
         let robot = self.robot();
         let index = robot.shared.internal[f as usize];
         if index.is_none_or(|index| robot.state_call_into(index, state, out).is_err()) {
@@ -145,19 +145,19 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Evaluates a function whose results are the first `count` entries of a vector.
-    fn vector<const N: usize>(
+    fn fill_vector<const N: usize>(
         &self,
         f: Internal,
         state: State<'_>,
         count: usize,
         mut all: SVector<f64, N>,
     ) -> SVector<f64, N> {
-        self.call(f, state, &mut all.as_mut_slice()[..count]);
+        self.call_function(f, state, &mut all.as_mut_slice()[..count]);
         all
     }
 
     /// Fills the first rows and columns of a matrix.
-    fn matrix<const N: usize, const M: usize>(
+    fn fill_matrix<const N: usize, const M: usize>(
         &self,
         f: Internal,
         state: State<'_>,
@@ -165,11 +165,11 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         mut all: SMatrix<f64, N, M>,
     ) -> SMatrix<f64, N, M> {
         if rows == N {
-            self.call(f, state, &mut all.as_mut_slice()[..rows * columns]);
+            self.call_function(f, state, &mut all.as_mut_slice()[..rows * columns]);
         } else {
             let mut found = SMatrix::<f64, N, M>::zeros();
             let found = &mut found.as_mut_slice()[..rows * columns];
-            self.call(f, state, found);
+            self.call_function(f, state, found);
             write_block(&mut all, rows, found);
         }
         all
@@ -192,11 +192,11 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     fn add_free_rates(&self, state: State<'_>, factor: f64, to: &mut SVector<f64, NV>) {
         if !self.robot().shared.states.is_empty() {
             let u = SVector::<f64, NU>::zeros();
-            self.add_state_rates(State { u: self.inputs(&u), ..state }, factor, to);
+            self.add_state_rates(State { u: self.input_entries(&u), ..state }, factor, to);
         }
     }
 
-    fn inputs<'a>(&self, u: &'a SVector<f64, NU>) -> &'a [f64] {
+    fn input_entries<'a>(&self, u: &'a SVector<f64, NU>) -> &'a [f64] {
         &u.as_slice()[..self.robot().nu()]
     }
 }
@@ -213,7 +213,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
 {
     #[inline]
     fn features(&self) -> Features {
-        let (robot, [_, velocities]) = (self.robot(), self.velocities());
+        let (robot, [_, velocities]) = (self.robot(), self.velocity_counts());
         let shared = &robot.shared;
         Features {
             constrained: !shared.constraints.names.is_empty(),
@@ -275,20 +275,25 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
         let charts = &self.robot().shared.charts;
         let mut out = *v;
         if !self.robot().shared.has_speeds {
-            crate::space::carry(charts, dv.as_slice(), v.as_slice(), out.as_mut_slice());
+            crate::space::transport_velocity(charts, dv.as_slice(), v.as_slice(), out.as_mut_slice());
             return out;
         }
         let n = self.robot().nv();
-        let at = State { q: self.configuration(q), ..State::default() };
+        let at = State { q: self.configuration_entries(q), ..State::default() };
         let coordinate_rates = |state: State<'_>, v: &SVector<f64, NV>| {
-            self.vector(Internal::RatesOfSpeeds, State { v: self.velocity(v), ..state }, n, *v)
+            self.fill_vector(Internal::RatesOfSpeeds, State { v: self.velocity_entries(v), ..state }, n, *v)
         };
         let way = coordinate_rates(at, dv);
         let mut there = *q;
         crate::space::integrate(charts, q.as_slice(), way.as_slice(), there.as_mut_slice());
-        crate::space::carry(charts, way.as_slice(), coordinate_rates(at, v).as_slice(), out.as_mut_slice());
-        let at = State { q: self.configuration(&there), ..State::default() };
-        self.vector(Internal::SpeedsOfRates, State { v: self.velocity(&out), ..at }, n, out)
+        crate::space::transport_velocity(
+            charts,
+            way.as_slice(),
+            coordinate_rates(at, v).as_slice(),
+            out.as_mut_slice(),
+        );
+        let at = State { q: self.configuration_entries(&there), ..State::default() };
+        self.fill_vector(Internal::SpeedsOfRates, State { v: self.velocity_entries(&out), ..at }, n, out)
     }
 }
 
@@ -297,16 +302,16 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
 {
     type Scalar = f64;
 
-    const CONFIGURATION: [&'static str; NQ] = numbers(List::Configuration);
-    const VELOCITIES: [&'static str; NV] = numbers(List::Velocities);
-    const INPUTS: [&'static str; NU] = numbers(List::Inputs);
+    const CONFIGURATION: [&'static str; NQ] = numbers_of_names(List::Configuration);
+    const VELOCITIES: [&'static str; NV] = numbers_of_names(List::Velocities);
+    const INPUTS: [&'static str; NU] = numbers_of_names(List::Inputs);
 
     fn neutral(&self) -> SVector<f64, NQ> {
-        self.vector(Internal::Neutral, State::default(), self.robot().nq(), SVector::zeros())
+        self.fill_vector(Internal::Neutral, State::default(), self.robot().nq(), SVector::zeros())
     }
 
     fn integrate(&self, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> SVector<f64, NQ> {
-        let (nq, [_, nv]) = (self.robot().nq(), self.velocities());
+        let (nq, [_, nv]) = (self.robot().nq(), self.velocity_counts());
         let mut all = *q;
         for (to, by) in all.iter_mut().skip(nq).zip(dv.iter().skip(nv)) {
             *to += by;
@@ -317,22 +322,22 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
             return all;
         }
         let state = State {
-            q: self.configuration(q),
-            v: self.velocity(dv),
-            other: [self.velocity(dv), &[], &[]],
+            q: self.configuration_entries(q),
+            v: self.velocity_entries(dv),
+            other: [self.velocity_entries(dv), &[], &[]],
             ..State::default()
         };
-        self.vector(Internal::Integrate, state, nq, all)
+        self.fill_vector(Internal::Integrate, state, nq, all)
     }
 
     fn difference(&self, from: &SVector<f64, NQ>, to: &SVector<f64, NQ>) -> SVector<f64, NV> {
-        let (nq, [n, nv]) = (self.robot().nq(), self.velocities());
+        let (nq, [n, nv]) = (self.robot().nq(), self.velocity_counts());
         let mut all = SVector::<f64, NV>::zeros();
         for (entry, (to, from)) in all.iter_mut().skip(nv).zip(to.iter().zip(from).skip(nq)) {
             *entry = to - from;
         }
-        let other = [self.configuration(from), self.configuration(to), &[]];
-        self.vector(Internal::Difference, State { other, ..State::default() }, n, all)
+        let other = [self.configuration_entries(from), self.configuration_entries(to), &[]];
+        self.fill_vector(Internal::Difference, State { other, ..State::default() }, n, all)
     }
 
     fn tangent_rate(&self, dv: &SVector<f64, NV>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
@@ -357,22 +362,22 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
             return self.tangent_rate(dv, v);
         }
         let state = State {
-            q: self.configuration(q),
-            v: self.velocity(v),
-            other: [self.velocity(dv), &[], &[]],
+            q: self.configuration_entries(q),
+            v: self.velocity_entries(v),
+            other: [self.velocity_entries(dv), &[], &[]],
             ..State::default()
         };
-        self.vector(Internal::DisplacementRate, state, self.robot().nv(), *v)
+        self.fill_vector(Internal::DisplacementRate, state, self.robot().nv(), *v)
     }
 
     fn mass_matrix(&self, t: f64, q: &SVector<f64, NQ>) -> SMatrix<f64, NV, NV> {
         let n = self.robot().nv();
-        self.matrix(Internal::MassMatrix, self.instant(t, q), (n, n), SMatrix::identity())
+        self.fill_matrix(Internal::MassMatrix, self.state_without_velocity(t, q), (n, n), SMatrix::identity())
     }
 
     fn bias_forces(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        let state = self.state(t, q, v);
-        let mut all = self.vector(Internal::BiasForces, state, self.robot().nv(), SVector::zeros());
+        let state = self.state_with_velocity(t, q, v);
+        let mut all = self.fill_vector(Internal::BiasForces, state, self.robot().nv(), SVector::zeros());
         self.add_free_rates(state, -1.0, &mut all);
         all
     }
@@ -384,8 +389,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
         v: &SVector<f64, NV>,
         a: &SVector<f64, NV>,
     ) -> SVector<f64, NV> {
-        let state = State { a: self.velocity(a), ..self.state(t, q, v) };
-        let mut all = self.vector(Internal::InverseDynamics, state, self.robot().nv(), *a);
+        let state = State { a: self.velocity_entries(a), ..self.state_with_velocity(t, q, v) };
+        let mut all = self.fill_vector(Internal::InverseDynamics, state, self.robot().nv(), *a);
         self.add_free_rates(state, -1.0, &mut all);
         all
     }
@@ -400,8 +405,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
         if self.is_constrained() {
             return Constrained::<NQ, NV, NU, NV, NV>::constrained_dynamics(self, t, q, v, tau).0;
         }
-        let state = State { tau: self.velocity(tau), ..self.state(t, q, v) };
-        let mut all = self.vector(Internal::ForwardDynamics, state, self.robot().nv(), *tau);
+        let state = State { tau: self.velocity_entries(tau), ..self.state_with_velocity(t, q, v) };
+        let mut all = self.fill_vector(Internal::ForwardDynamics, state, self.robot().nv(), *tau);
         self.add_free_rates(state, 1.0, &mut all);
         all
     }
@@ -430,8 +435,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
         if self.robot().nu() == 0 {
             return all;
         }
-        let state = State { u: self.inputs(u), ..self.state(t, q, v) };
-        all = self.vector(Internal::GeneralizedForces, state, self.robot().nv(), all);
+        let state = State { u: self.input_entries(u), ..self.state_with_velocity(t, q, v) };
+        all = self.fill_vector(Internal::GeneralizedForces, state, self.robot().nv(), all);
         if !self.robot().shared.states.is_empty() {
             self.add_state_rates(state, 1.0, &mut all);
             self.add_free_rates(state, -1.0, &mut all);
@@ -440,25 +445,30 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechan
     }
 
     fn kinetic_energy(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> f64 {
-        let further: f64 = v.iter().skip(self.velocities()[1]).map(|v| 0.5 * v * v).sum();
+        let further: f64 = v.iter().skip(self.velocity_counts()[1]).map(|v| 0.5 * v * v).sum();
         let mut energy = [f64::NAN];
-        self.call(Internal::KineticEnergy, self.state(t, q, v), &mut energy);
+        self.call_function(Internal::KineticEnergy, self.state_with_velocity(t, q, v), &mut energy);
         energy[0] + further
     }
 
     fn potential_energy(&self, t: f64, q: &SVector<f64, NQ>) -> f64 {
         let mut energy = [f64::NAN];
-        self.call(Internal::PotentialEnergy, self.instant(t, q), &mut energy);
+        self.call_function(Internal::PotentialEnergy, self.state_without_velocity(t, q), &mut energy);
         energy[0]
     }
 
     fn generalized_momentum(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        self.vector(Internal::GeneralizedMomentum, self.state(t, q, v), self.robot().nv(), *v)
+        self.fill_vector(
+            Internal::GeneralizedMomentum,
+            self.state_with_velocity(t, q, v),
+            self.robot().nv(),
+            *v,
+        )
     }
 
     fn momentum_rate(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        let state = self.state(t, q, v);
-        let mut all = self.vector(Internal::MomentumRate, state, self.robot().nv(), SVector::zeros());
+        let state = self.state_with_velocity(t, q, v);
+        let mut all = self.fill_vector(Internal::MomentumRate, state, self.robot().nv(), SVector::zeros());
         self.add_free_rates(state, 1.0, &mut all);
         all
     }

@@ -48,7 +48,7 @@ impl fmt::Debug for Function {
 }
 
 impl Function {
-    pub(crate) fn shared(&self) -> &Arc<Shared> {
+    pub(crate) fn shared_mechanism(&self) -> &Arc<Shared> {
         &self.shared
     }
 
@@ -72,7 +72,7 @@ impl Function {
     #[must_use]
     pub fn arguments(&self) -> Vec<(&'static str, usize)> {
         let entry = &self.shared.entries[self.index];
-        entry.arguments.iter().map(|a| (a.name(), self.shared.sizes.length(*a))).collect()
+        entry.arguments.iter().map(|a| (a.argument_name(), self.shared.sizes.length(*a))).collect()
     }
 
     /// Returns the results of the function: names and dimensions. Their values are written one after the
@@ -248,7 +248,7 @@ impl Robot {
     pub fn function(&self, name: &str) -> Result<Function, Error> {
         let index = self.shared.index.get(name).copied();
         let index = index.filter(|index| !self.shared.entries[*index].hidden);
-        let index = index.ok_or_else(|| Error::unknown("function", name, self.shared.names()))?;
+        let index = index.ok_or_else(|| Error::unknown_name_error("function", name, self.shared.names()))?;
         Ok(Function { shared: self.shared.clone(), index })
     }
 
@@ -263,10 +263,9 @@ impl Robot {
 
     fn parameter_index(&self, name: &str) -> Result<usize, Error> {
         let known = &self.shared.parameters;
-        known
-            .iter()
-            .position(|parameter| parameter.name == name)
-            .ok_or_else(|| Error::unknown("parameter", name, known.iter().map(|p| p.name.as_str())))
+        known.iter().position(|parameter| parameter.name == name).ok_or_else(|| {
+            Error::unknown_name_error("parameter", name, known.iter().map(|p| p.name.as_str()))
+        })
     }
 
     /// Sets a parameter.
@@ -316,10 +315,9 @@ impl Robot {
     /// The mechanism has no such table, or it has another number of variables.
     pub fn set_table(&mut self, name: &str, table: impl Into<AnyTable>) -> Result<(), Error> {
         let (table, known) = (table.into(), &self.shared.tables);
-        let index = known
-            .iter()
-            .position(|(known, _)| known == name)
-            .ok_or_else(|| Error::unknown("table", name, known.iter().map(|(name, _)| name.as_str())))?;
+        let index = known.iter().position(|(known, _)| known == name).ok_or_else(|| {
+            Error::unknown_name_error("table", name, known.iter().map(|(name, _)| name.as_str()))
+        })?;
         self.check_length(name, known[index].1, table.variables())?;
         let before = std::mem::replace(&mut self.tables[index], table);
         self.missing -= usize::from(before == AnyTable::Missing);
@@ -422,13 +420,13 @@ impl Robot {
         out: &mut [f64],
     ) -> Result<(), Error> {
         match Arc::ptr_eq(&self.shared, &f.shared) {
-            true => self.call(&self.parameters, f.index, count, arguments, out),
+            true => self.call_by_index(&self.parameters, f.index, count, arguments, out),
             false => Err(Error::OtherMechanism(f.name().to_string())),
         }
     }
 
     /// Evaluates a function by its index; see [`evaluate_many_into`](Self::evaluate_many_into).
-    fn call(
+    fn call_by_index(
         &self,
         parameters: &[f64],
         index: usize,
@@ -444,7 +442,7 @@ impl Robot {
             && out.len() == entry.length * count;
         if !fit || self.missing > 0 {
             self.check_values()?;
-            return Err(misfit(entry, count, arguments, out.len()));
+            return Err(length_error(entry, count, arguments, out.len()));
         }
         let outs = (0..count).map(|k| k * entry.length..(k + 1) * entry.length);
         if let Plan::Constrained(kind) = entry.plan {
@@ -500,13 +498,13 @@ impl Robot {
         }
         let arguments = &arguments[..entry.arguments.len()];
         if state.x.is_empty() {
-            return self.call(&self.parameters, index, 1, arguments, out);
+            return self.call_by_index(&self.parameters, index, 1, arguments, out);
         }
         let mut parameters = self.parameters.clone();
         for (value, one) in state.x.iter().zip(&self.shared.states) {
             parameters[one.parameter] = *value;
         }
-        self.call(&parameters, index, 1, arguments, out)
+        self.call_by_index(&parameters, index, 1, arguments, out)
     }
 
     pub(crate) fn state_call(&self, index: usize, state: State<'_>) -> Result<Vec<f64>, Error> {
@@ -540,16 +538,16 @@ impl Robot {
 
 /// Returns the error of a call whose arguments or results have the wrong length.
 #[cold]
-fn misfit(entry: &Entry, count: usize, arguments: &[&[f64]], out: usize) -> Error {
+fn length_error(entry: &Entry, count: usize, arguments: &[&[f64]], out: usize) -> Error {
     let of = entry.name.clone();
     if arguments.len() != entry.arguments.len() {
-        let expected = entry.arguments.iter().map(|argument| argument.name()).collect();
+        let expected = entry.arguments.iter().map(|argument| argument.argument_name()).collect();
         return Error::Arguments { of, expected, found: arguments.len() };
     }
     let lists = entry.arguments.iter().zip(arguments).zip(&entry.lengths);
     for ((argument, list), length) in lists {
         if list.len() != *length && list.len() != length * count {
-            let name = argument.name().to_string();
+            let name = argument.argument_name().to_string();
             return Error::Length { of, name, expected: length * count, found: list.len() };
         }
     }

@@ -72,11 +72,11 @@ impl Routine {
         };
         match code {
             Some(code) => code.call(values.inputs, values.tables, results, more),
-            None => self.interpret(values, results, more),
+            None => self.interpret_program(values, results, more),
         }
     }
 
-    fn interpret(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
+    fn interpret_program(&self, values: Values<'_>, results: &mut [f64], more: &mut [f64]) {
         let Some(program) = self.program.get() else { return };
         let value_of_symbol = |symbol| {
             let place = self.layout.locate(symbol);
@@ -84,8 +84,10 @@ impl Routine {
             value.copied().unwrap_or(f64::NAN)
         };
         let value_of_table = |lookup: Lookup, x| {
-            let table = values.tables.get(lookup.table());
-            table.map_or(f64::NAN, |table| table.value(x, [0, 1, 2].map(|k| lookup.order(k) as u8)))
+            let table = values.tables.get(lookup.table_index());
+            table.map_or(f64::NAN, |table| {
+                table.derivative_value(x, [0, 1, 2].map(|k| lookup.derivative_order(k) as u8))
+            })
         };
         let outputs = program.run_with(&value_of_symbol, &value_of_table);
         let places = results[..self.results].iter_mut().chain(more);

@@ -263,7 +263,7 @@ impl<'a, 'i> Simulation<'a, 'i> {
             let moving = Moving { driver: &mut driver, q: &q, v: &v };
             match is_contact_method && with_contacts {
                 true => robot.visit_contacts(moving)?,
-                false => robot.visit(moving)?,
+                false => robot.visit_padded_robot(moving)?,
             }
         };
         match robot.needs_stack() {

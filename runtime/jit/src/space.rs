@@ -27,7 +27,7 @@ pub(crate) struct Space {
 }
 
 /// Returns the entries of a list from an index on.
-fn array<const N: usize>(list: &[f64], first: usize) -> [f64; N] {
+fn array_from_list<const N: usize>(list: &[f64], first: usize) -> [f64; N] {
     std::array::from_fn(|k| list[first + k])
 }
 
@@ -38,10 +38,12 @@ pub(crate) fn integrate(charts: &[Chart], q: &[f64], dv: &[f64], out: &mut [f64]
         match *chart {
             Chart::Plain(InQ(q0), InV(v0)) => out[q0] = q[q0] + dv[v0],
             Chart::Ball(InQ(q0), InV(v0)) => {
-                out[q0..q0 + 4].copy_from_slice(&ball_integrate(array(q, q0), array(dv, v0)));
+                out[q0..q0 + 4]
+                    .copy_from_slice(&ball_integrate(array_from_list(q, q0), array_from_list(dv, v0)));
             }
             Chart::Free(InQ(q0), InV(v0)) => {
-                out[q0..q0 + 7].copy_from_slice(&free_integrate(array(q, q0), array(dv, v0)));
+                out[q0..q0 + 7]
+                    .copy_from_slice(&free_integrate(array_from_list(q, q0), array_from_list(dv, v0)));
             }
         }
     }
@@ -52,10 +54,12 @@ pub(crate) fn difference(charts: &[Chart], from: &[f64], to: &[f64], out: &mut [
         match *chart {
             Chart::Plain(InQ(q0), InV(v0)) => out[v0] = to[q0] - from[q0],
             Chart::Ball(InQ(q0), InV(v0)) => {
-                out[v0..v0 + 3].copy_from_slice(&ball_difference(array(from, q0), array(to, q0)));
+                out[v0..v0 + 3]
+                    .copy_from_slice(&ball_difference(array_from_list(from, q0), array_from_list(to, q0)));
             }
             Chart::Free(InQ(q0), InV(v0)) => {
-                out[v0..v0 + 6].copy_from_slice(&free_difference(array(from, q0), array(to, q0)));
+                out[v0..v0 + 6]
+                    .copy_from_slice(&free_difference(array_from_list(from, q0), array_from_list(to, q0)));
             }
         }
     }
@@ -66,25 +70,27 @@ pub(crate) fn tangent_rate(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut [f
         match *chart {
             Chart::Plain(_, InV(v0)) => out[v0] = v[v0],
             Chart::Ball(_, InV(v0)) => {
-                out[v0..v0 + 3].copy_from_slice(&ball_tangent_rate(array(dv, v0), array(v, v0)));
+                out[v0..v0 + 3]
+                    .copy_from_slice(&ball_tangent_rate(array_from_list(dv, v0), array_from_list(v, v0)));
             }
             Chart::Free(_, InV(v0)) => {
-                out[v0..v0 + 6].copy_from_slice(&free_tangent_rate(array(dv, v0), array(v, v0)));
+                out[v0..v0 + 6]
+                    .copy_from_slice(&free_tangent_rate(array_from_list(dv, v0), array_from_list(v, v0)));
             }
         }
     }
 }
 
 /// Writes a velocity in the axes that ball and free joints have after a displacement.
-pub(crate) fn carry(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut [f64]) {
+pub(crate) fn transport_velocity(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut [f64]) {
     for chart in charts {
         match *chart {
             Chart::Plain(_, InV(v0)) => out[v0] = v[v0],
             Chart::Ball(_, InV(v0)) => {
-                out[v0..v0 + 3].copy_from_slice(&ball_carry(array(dv, v0), array(v, v0)));
+                out[v0..v0 + 3].copy_from_slice(&ball_carry(array_from_list(dv, v0), array_from_list(v, v0)));
             }
             Chart::Free(_, InV(v0)) => {
-                out[v0..v0 + 6].copy_from_slice(&free_carry(array(dv, v0), array(v, v0)));
+                out[v0..v0 + 6].copy_from_slice(&free_carry(array_from_list(dv, v0), array_from_list(v, v0)));
             }
         }
     }

@@ -95,7 +95,8 @@ impl Stepper {
         robot.check_values()?;
         let function_index = |name: &str| robot.shared.index.get(name).copied();
         let needed = |name: &str| {
-            function_index(name).ok_or_else(|| Error::unknown("function", name, robot.shared.names()))
+            function_index(name)
+                .ok_or_else(|| Error::unknown_name_error("function", name, robot.shared.names()))
         };
         let functions = Functions {
             dynamics: needed("forward_dynamics")?,
@@ -136,7 +137,7 @@ impl Stepper {
         h: f64,
         [q_end, v_end]: [&mut [f64]; 2],
     ) -> Result<(), Error> {
-        self.evaluate(t, start, h)?;
+        self.evaluate_step(t, start, h)?;
         let [q, v, _] = start;
         self.robot.check_length("v", v.len(), v_end.len())?;
         for k in 0..v.len() {
@@ -152,7 +153,7 @@ impl Stepper {
     }
 
     /// Evaluates the stages and the displacement of a step.
-    pub(crate) fn evaluate(&mut self, t: f64, [q, v, u]: [&[f64]; 3], h: f64) -> Result<(), Error> {
+    pub(crate) fn evaluate_step(&mut self, t: f64, [q, v, u]: [&[f64]; 3], h: f64) -> Result<(), Error> {
         let (robot, functions) = (&mut self.robot, self.functions);
         robot.check_length("q", robot.nq(), q.len())?;
         robot.check_length("v", robot.nv(), v.len())?;
@@ -195,7 +196,7 @@ impl Stepper {
     }
 
     /// Returns the displacement of the configuration in the last step.
-    pub(crate) fn displacement(&self) -> &[f64] {
+    pub(crate) fn last_displacement(&self) -> &[f64] {
         &self.displacement
     }
 
@@ -214,7 +215,7 @@ impl Stepper {
     ) -> Result<Jacobians, Error> {
         let linearize = self.functions.linearize;
         let names = self.robot.shared.names();
-        let linearize = linearize.ok_or_else(|| Error::unknown("function", "linearize", names))?;
+        let linearize = linearize.ok_or_else(|| Error::unknown_name_error("function", "linearize", names))?;
         if self.robot.shared.has_speeds {
             let name = self.robot.name();
             let reason = "steps in generalized speeds have no Jacobians";
@@ -230,16 +231,17 @@ impl Stepper {
             let stage = &self.stages[i];
             let c = h * fraction;
             let (displacement, v) = match stages.last() {
-                None => (Sensitive::displacement(n, m), Sensitive::velocity(n, m)),
-                Some([rate, acceleration]) => {
-                    (rate.scaled(c), Sensitive::velocity(n, m).plus(c, acceleration))
-                }
+                None => (Sensitive::displacement_derivatives(n, m), Sensitive::velocity_derivatives(n, m)),
+                Some([rate, acceleration]) => (
+                    rate.scaled_derivatives(c),
+                    Sensitive::velocity_derivatives(n, m).plus_scaled(c, acceleration),
+                ),
             };
             let rate = match i {
                 0 => v.clone(),
                 _ => {
                     let [by_dv, by_v] = tangent_rate_derivatives(&charts, &stage.displacement, &stage.v);
-                    displacement.led(&by_dv).plus(1.0, &v.led(&by_v))
+                    displacement.multiplied_by_matrix(&by_dv).plus_scaled(1.0, &v.multiplied_by_matrix(&by_v))
                 }
             };
             let motion = match i {
@@ -252,19 +254,20 @@ impl Stepper {
             let entry_of_system = |i: usize, j: usize| system[2 * n * j + n + i];
             let by_q = DMatrix::from_fn(n, n, entry_of_system);
             let by_v = DMatrix::from_fn(n, n, |i, j| entry_of_system(i, n + j));
-            let mut acceleration = motion.led(&by_q).plus(1.0, &v.led(&by_v));
+            let mut acceleration =
+                motion.multiplied_by_matrix(&by_q).plus_scaled(1.0, &v.multiplied_by_matrix(&by_v));
             acceleration.by_u += DMatrix::from_fn(n, m, |i, j| entry_of_system(i, 2 * n + j));
             stages.push([rate, acceleration]);
         }
         let weighted_sum_of_stages = |which: usize| {
             let mut all = Sensitive::zero(n, m);
             for (stage, (_, weight)) in stages.iter().zip(STAGES) {
-                all = all.plus(h / 6.0 * weight, &stage[which]);
+                all = all.plus_scaled(h / 6.0 * weight, &stage[which]);
             }
             all
         };
         let motion = end_derivatives(&charts, &self.displacement, &weighted_sum_of_stages(0));
-        let v = Sensitive::velocity(n, m).plus(1.0, &weighted_sum_of_stages(1));
+        let v = Sensitive::velocity_derivatives(n, m).plus_scaled(1.0, &weighted_sum_of_stages(1));
         Ok(Jacobians { q: [motion.by_q, motion.by_v, motion.by_u], v: [v.by_q, v.by_v, v.by_u] })
     }
 }
@@ -283,16 +286,16 @@ impl Sensitive {
     }
 
     /// Returns the derivatives of the velocity at the start.
-    fn velocity(n: usize, m: usize) -> Sensitive {
+    fn velocity_derivatives(n: usize, m: usize) -> Sensitive {
         Sensitive { by_v: DMatrix::identity(n, n), ..Sensitive::zero(n, m) }
     }
 
     /// Returns the derivatives of a zero displacement, which moves with the configuration at the start.
-    fn displacement(n: usize, m: usize) -> Sensitive {
+    fn displacement_derivatives(n: usize, m: usize) -> Sensitive {
         Sensitive { by_q: DMatrix::identity(n, n), ..Sensitive::zero(n, m) }
     }
 
-    fn plus(&self, s: f64, other: &Sensitive) -> Sensitive {
+    fn plus_scaled(&self, s: f64, other: &Sensitive) -> Sensitive {
         Sensitive {
             by_q: &self.by_q + &other.by_q * s,
             by_v: &self.by_v + &other.by_v * s,
@@ -300,12 +303,12 @@ impl Sensitive {
         }
     }
 
-    fn scaled(&self, s: f64) -> Sensitive {
+    fn scaled_derivatives(&self, s: f64) -> Sensitive {
         Sensitive { by_q: &self.by_q * s, by_v: &self.by_v * s, by_u: &self.by_u * s }
     }
 
     /// Returns the products of a matrix with the derivatives.
-    fn led(&self, by: &DMatrix<f64>) -> Sensitive {
+    fn multiplied_by_matrix(&self, by: &DMatrix<f64>) -> Sensitive {
         Sensitive { by_q: by * &self.by_q, by_v: by * &self.by_v, by_u: by * &self.by_u }
     }
 }
@@ -313,17 +316,17 @@ impl Sensitive {
 /// Returns the derivatives of the motion of the configuration that a displacement from the start leads to.
 fn end_derivatives(charts: &[Chart], displacement: &[f64], derivatives: &Sensitive) -> Sensitive {
     let [by_q, by_dv] = integrate_derivatives(charts, displacement);
-    let mut motion = derivatives.led(&by_dv);
+    let mut motion = derivatives.multiplied_by_matrix(&by_dv);
     motion.by_q += by_q;
     motion
 }
 
-fn array<const N: usize>(list: &[f64], first: usize) -> [f64; N] {
+fn array_from_list<const N: usize>(list: &[f64], first: usize) -> [f64; N] {
     std::array::from_fn(|k| list[first + k])
 }
 
 /// Writes a block, which is a list of columns, on the diagonal of a matrix.
-fn place<const N: usize>(matrix: &mut DMatrix<f64>, first: usize, block: [[f64; N]; N]) {
+fn place_diagonal_block<const N: usize>(matrix: &mut DMatrix<f64>, first: usize, block: [[f64; N]; N]) {
     for (j, column) in block.into_iter().enumerate() {
         for (i, entry) in column.into_iter().enumerate() {
             matrix[(first + i, first + j)] = entry;
@@ -340,14 +343,14 @@ pub(crate) fn integrate_derivatives(charts: &[Chart], dv: &[f64]) -> [DMatrix<f6
         match *chart {
             Chart::Plain(..) => {}
             Chart::Ball(_, InV(v)) => {
-                let (q, d) = ball_integrate_derivatives::<f64>(array(dv, v));
-                place(&mut by_q, v, q);
-                place(&mut by_dv, v, d);
+                let (q, d) = ball_integrate_derivatives::<f64>(array_from_list(dv, v));
+                place_diagonal_block(&mut by_q, v, q);
+                place_diagonal_block(&mut by_dv, v, d);
             }
             Chart::Free(_, InV(v)) => {
-                let (q, d) = free_integrate_derivatives::<f64>(array(dv, v));
-                place(&mut by_q, v, q);
-                place(&mut by_dv, v, d);
+                let (q, d) = free_integrate_derivatives::<f64>(array_from_list(dv, v));
+                place_diagonal_block(&mut by_q, v, q);
+                place_diagonal_block(&mut by_dv, v, d);
             }
         }
     }
@@ -362,14 +365,16 @@ pub(crate) fn tangent_rate_derivatives(charts: &[Chart], dv: &[f64], v: &[f64]) 
         match *chart {
             Chart::Plain(..) => {}
             Chart::Ball(_, InV(at)) => {
-                let (d, w) = ball_tangent_rate_derivatives::<f64>(array(dv, at), array(v, at));
-                place(&mut by_dv, at, d);
-                place(&mut by_v, at, w);
+                let (d, w) =
+                    ball_tangent_rate_derivatives::<f64>(array_from_list(dv, at), array_from_list(v, at));
+                place_diagonal_block(&mut by_dv, at, d);
+                place_diagonal_block(&mut by_v, at, w);
             }
             Chart::Free(_, InV(at)) => {
-                let (d, w) = free_tangent_rate_derivatives::<f64>(array(dv, at), array(v, at));
-                place(&mut by_dv, at, d);
-                place(&mut by_v, at, w);
+                let (d, w) =
+                    free_tangent_rate_derivatives::<f64>(array_from_list(dv, at), array_from_list(v, at));
+                place_diagonal_block(&mut by_dv, at, d);
+                place_diagonal_block(&mut by_v, at, w);
             }
         }
     }

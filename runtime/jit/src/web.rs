@@ -66,10 +66,10 @@ impl WebModule {
         let layout = Layout::new(arguments).ok_or_else(|| format!("`{name}` has too many arguments"))?;
         self.module.add(name, program, &layout)?;
         let list = arguments.iter().map(|argument| {
-            format!("[{},{}]", quoted(argument.name()), robot.shared.sizes.length(*argument))
+            format!("[{},{}]", json_string(argument.argument_name()), robot.shared.sizes.length(*argument))
         });
-        let (list, length) = (joined(list), program.outputs.len());
-        self.signatures.push(format!("{}:{{\"args\":{list},\"length\":{length}}}", quoted(name)));
+        let (list, length) = (json_list(list), program.outputs.len());
+        self.signatures.push(format!("{}:{{\"args\":{list},\"length\":{length}}}", json_string(name)));
         Ok(())
     }
 
@@ -110,11 +110,11 @@ impl Robot {
         for (name, list) in
             [("parameterValues", parameters), ("q", start.q), ("v", start.v), ("x", start.x), ("u", start.u)]
         {
-            fields.push((name, numbers(list)));
+            fields.push((name, json_numbers(list)));
         }
         fields.push(("functions", format!("{{{}}}", module.signatures.join(","))));
         let fields: Vec<String> =
-            fields.into_iter().map(|(name, value)| format!("{}:{value}", quoted(name))).collect();
+            fields.into_iter().map(|(name, value)| format!("{}:{value}", json_string(name))).collect();
         Ok((format!("{{{}}}", fields.join(",")), module.module.bytes()))
     }
 
@@ -144,39 +144,41 @@ impl Robot {
     fn web_structure(&self) -> Vec<(&'static str, String)> {
         let shared = &self.shared;
         let encode_quantities = |list: &[Quantity]| {
-            joined(list.iter().map(|one| format!("[{},{}]", quoted(&one.name), quoted(&one.unit))))
+            json_list(
+                list.iter().map(|one| format!("[{},{}]", json_string(&one.name), json_string(&one.unit))),
+            )
         };
-        let encode_indices = |list: &[usize]| joined(list.iter().map(ToString::to_string));
-        let charts = joined(shared.charts.iter().map(|chart| match chart {
+        let encode_indices = |list: &[usize]| json_list(list.iter().map(ToString::to_string));
+        let charts = json_list(shared.charts.iter().map(|chart| match chart {
             Chart::Plain(InQ(q), InV(v)) => format!("[0,{q},{v}]"),
             Chart::Ball(InQ(q), InV(v)) => format!("[1,{q},{v}]"),
             Chart::Free(InQ(q), InV(v)) => format!("[2,{q},{v}]"),
         }));
-        let contacts = joined(shared.contacts.iter().map(|contact| {
+        let contacts = json_list(shared.contacts.iter().map(|contact| {
             let [first, count] = contact.rows;
             format!(
                 "{{\"name\":{},\"first\":{first},\"count\":{count},\"pressedBy\":{}}}",
-                quoted(&contact.name),
+                json_string(&contact.name),
                 contact.pressed_by
             )
         }));
-        let states = joined(shared.states.iter().map(|state| {
-            let rate = state.rate.map_or("null".to_string(), |k| quoted(&shared.entries[k].name));
+        let states = json_list(shared.states.iter().map(|state| {
+            let rate = state.rate.map_or("null".to_string(), |k| json_string(&shared.entries[k].name));
             format!("[{},{rate}]", state.parameter)
         }));
         let constraints = &shared.constraints;
         let states_of = shared.states.iter().map(|state| &shared.parameters[state.parameter].name);
         vec![
-            ("name", quoted(&shared.name)),
+            ("name", json_string(&shared.name)),
             ("configuration", encode_quantities(&shared.configuration)),
             ("velocities", encode_quantities(&shared.velocities)),
             ("inputs", encode_quantities(&shared.inputs)),
             ("parameters", encode_quantities(&shared.parameters)),
             ("outputs", encode_quantities(self.outputs())),
-            ("frames", joined(shared.frames.names.iter().map(|name| quoted(name)))),
+            ("frames", json_list(shared.frames.names.iter().map(|name| json_string(name)))),
             ("charts", charts),
             ("states", states),
-            ("stateNames", joined(states_of.map(|name| quoted(name)))),
+            ("stateNames", json_list(states_of.map(|name| json_string(name)))),
             ("constraints", constraints.names.len().to_string()),
             ("holonomic", constraints.holonomic.to_string()),
             ("slipping", encode_indices(&constraints.slipping)),
@@ -186,17 +188,17 @@ impl Robot {
 }
 
 /// Returns a JSON list of items that are already JSON.
-fn joined(items: impl Iterator<Item = String>) -> String {
+fn json_list(items: impl Iterator<Item = String>) -> String {
     format!("[{}]", items.collect::<Vec<_>>().join(","))
 }
 
 /// Returns a JSON list of numbers, with `null` for numbers that are not finite.
-fn numbers(list: &[f64]) -> String {
-    joined(list.iter().map(|x| if x.is_finite() { format!("{x:?}") } else { "null".to_string() }))
+fn json_numbers(list: &[f64]) -> String {
+    json_list(list.iter().map(|x| if x.is_finite() { format!("{x:?}") } else { "null".to_string() }))
 }
 
 /// Returns a JSON string without characters of markup.
-fn quoted(text: &str) -> String {
+fn json_string(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {
         match c {
@@ -216,6 +218,6 @@ mod tests {
 
     #[test]
     fn strings_contain_no_markup() {
-        assert_eq!(quoted("a<\"b\n"), "\"a\\u003c\\u0022b\\u000a\"");
+        assert_eq!(json_string("a<\"b\n"), "\"a\\u003c\\u0022b\\u000a\"");
     }
 }

@@ -69,11 +69,11 @@ both! {
 }
 
 /// Returns `n` reproducible values between -0.6 and 0.6.
-fn values(seed: usize, n: usize) -> Vec<f64> {
+fn sample_values(seed: usize, n: usize) -> Vec<f64> {
     (0..n).map(|k| 0.6 * ((7 * k + 3 * seed + 1) as f64).sin()).collect()
 }
 
-fn close(found: &[f64], expected: &[f64], what: &str) {
+fn assert_close_entries(found: &[f64], expected: &[f64], what: &str) {
     assert_eq!(found.len(), expected.len(), "{what}");
     let scale = expected.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
     for (k, (a, b)) in found.iter().zip(expected).enumerate() {
@@ -88,16 +88,16 @@ fn agree_with_interpreter(robot: &Robot, oracle: &Robot) -> Result<(), Error> {
         let lists: Vec<Vec<f64>> = (f.arguments().iter().enumerate())
             .map(|(k, (name, n))| match *name {
                 "q" | "from" | "to" => {
-                    let q = robot.integrate(neutral.as_slice(), &values(k, robot.nv()));
+                    let q = robot.integrate(neutral.as_slice(), &sample_values(k, robot.nv()));
                     q.map_or(Vec::new(), |q| q.as_slice().to_vec())
                 }
-                _ => values(k, *n),
+                _ => sample_values(k, *n),
             })
             .collect();
         let lists: Vec<&[f64]> = lists.iter().map(Vec::as_slice).collect();
         let found = robot.evaluate(&f, &lists)?;
         assert!(found.iter().all(|x| x.is_finite()), "{} {found:?}", f.name());
-        close(&found, &oracle.evaluate(&oracle.function(f.name())?, &lists)?, f.name());
+        assert_close_entries(&found, &oracle.evaluate(&oracle.function(f.name())?, &lists)?, f.name());
         if cfg!(any(target_arch = "x86_64", target_arch = "aarch64")) {
             assert!(f.compile(), "{} is interpreted", f.name());
         }
@@ -113,42 +113,58 @@ fn cart_poles_agree_with_generated_rust() -> Result<(), Error> {
     let (q, v, tau) = ([0.3, -0.7], [0.4, 1.1], [0.2, -0.5]);
     let state: [SVector<f64, 2>; 3] = [q.into(), v.into(), tau.into()];
     let [sq, sv, st] = &state;
-    close(robot.mass_matrix(&q)?.as_slice(), own.mass_matrix(sq).as_slice(), "mass matrix");
-    close(robot.bias_forces(&q, &v)?.as_slice(), own.bias_forces(sq, sv).as_slice(), "bias forces");
-    close(robot.forward_dynamics(&q, &v, &tau)?.as_slice(), own.forward_dynamics(sq, sv, st).as_slice(), "a");
-    close(&[robot.kinetic_energy(&q, &v)?], &[own.kinetic_energy(sq, sv)], "kinetic energy");
+    assert_close_entries(robot.mass_matrix(&q)?.as_slice(), own.mass_matrix(sq).as_slice(), "mass matrix");
+    assert_close_entries(
+        robot.bias_forces(&q, &v)?.as_slice(),
+        own.bias_forces(sq, sv).as_slice(),
+        "bias forces",
+    );
+    assert_close_entries(
+        robot.forward_dynamics(&q, &v, &tau)?.as_slice(),
+        own.forward_dynamics(sq, sv, st).as_slice(),
+        "a",
+    );
+    assert_close_entries(&[robot.kinetic_energy(&q, &v)?], &[own.kinetic_energy(sq, sv)], "kinetic energy");
     let (by_q, by_v, by_tau) = own.forward_dynamics_derivatives(sq, sv, st);
     let found = robot.forward_dynamics_derivatives(&q, &v, &tau)?;
     for (found, own) in found.iter().zip([by_q, by_v, by_tau]) {
-        close(found.as_slice(), own.as_slice(), "derivatives");
+        assert_close_entries(found.as_slice(), own.as_slice(), "derivatives");
     }
     let (a, b) = own.linearize(sq, sv, &[0.7].into());
     let [state, input] = robot.linearize(&q, &v, &[0.7])?;
-    close(state.as_slice(), a.as_slice(), "the system");
-    close(input.as_slice(), b.as_slice(), "the inputs");
+    assert_close_entries(state.as_slice(), a.as_slice(), "the system");
+    assert_close_entries(input.as_slice(), b.as_slice(), "the inputs");
     agree_with_interpreter(&robot, &Loader::text(CART_POLE).interpreted().load()?.with_parameters(&set)?)
 }
 
 #[test]
 fn free_bodies_agree_with_generated_rust() -> Result<(), Error> {
     let robot = Loader::text(SPINNER).load()?;
-    let q = Spinner.integrate(&Spinner.neutral(), &SVector::from_column_slice(&values(1, 7)));
-    let (v, a) = (values(2, 7), values(3, 7));
+    let q = Spinner.integrate(&Spinner.neutral(), &SVector::from_column_slice(&sample_values(1, 7)));
+    let (v, a) = (sample_values(2, 7), sample_values(3, 7));
     let (sv, sa) = (SVector::from_column_slice(&v), SVector::from_column_slice(&a));
     let tau = robot.inverse_dynamics(q.as_slice(), &v, &a)?;
-    close(tau.as_slice(), Spinner.inverse_dynamics(&q, &sv, &sa).as_slice(), "forces");
+    assert_close_entries(tau.as_slice(), Spinner.inverse_dynamics(&q, &sv, &sa).as_slice(), "forces");
     let there = robot.integrate(q.as_slice(), &v)?;
-    close(there.as_slice(), Spinner.integrate(&q, &sv).as_slice(), "integrate");
-    close(robot.difference(q.as_slice(), there.as_slice())?.as_slice(), &v, "difference");
+    assert_close_entries(there.as_slice(), Spinner.integrate(&q, &sv).as_slice(), "integrate");
+    assert_close_entries(robot.difference(q.as_slice(), there.as_slice())?.as_slice(), &v, "difference");
     let arm = frame!(Spinner, "arm");
     let placement = robot.frame_placement("arm", q.as_slice())?;
     let own = Spinner.frame_placement(arm, &q);
-    close(placement.to_homogeneous().as_slice(), own.to_homogeneous().as_slice(), "placement");
+    assert_close_entries(placement.to_homogeneous().as_slice(), own.to_homogeneous().as_slice(), "placement");
     let own = Spinner.frame_velocity(arm, &q, &sv);
-    close(robot.frame_velocity("arm", q.as_slice(), &v)?.as_slice(), own.as_slice(), "velocity");
+    assert_close_entries(
+        robot.frame_velocity("arm", q.as_slice(), &v)?.as_slice(),
+        own.as_slice(),
+        "velocity",
+    );
     let own = Spinner.frame_acceleration(arm, &q, &sv, &sa);
-    close(robot.frame_acceleration("arm", q.as_slice(), &v, &a)?.as_slice(), own.as_slice(), "acceleration");
-    close(
+    assert_close_entries(
+        robot.frame_acceleration("arm", q.as_slice(), &v, &a)?.as_slice(),
+        own.as_slice(),
+        "acceleration",
+    );
+    assert_close_entries(
         robot.frame_jacobian("arm", q.as_slice())?.as_slice(),
         Spinner.frame_jacobian(arm, &q).as_slice(),
         "J",
@@ -162,7 +178,7 @@ fn constrained_accelerations_agree_with_generated_rust() -> Result<(), Error> {
     let (q, v, tau) = ([0.4, -0.6], [0.5, -0.9], [1.5, 0.0]);
     let found = robot.forward_dynamics(&q, &v, &tau)?;
     let own = Slider.forward_dynamics(&q.into(), &v.into(), &tau.into());
-    close(found.as_slice(), own.as_slice(), "accelerations");
+    assert_close_entries(found.as_slice(), own.as_slice(), "accelerations");
     Ok(())
 }
 
@@ -193,7 +209,7 @@ fn robots_are_shared_by_threads() -> Result<(), Error> {
     let (q, v) = ([0.1, 0.2, 0.3, 0.4], [0.5, 0.6]);
     let mut all = [0.0; 4];
     robot.evaluate_many_into(&f, 2, &[&q, &v], &mut all)?;
-    close(&all[2..], &robot.evaluate(&f, &[&q[2..], &v])?, "the second state");
+    assert_close_entries(&all[2..], &robot.evaluate(&f, &[&q[2..], &v])?, "the second state");
     Ok(())
 }
 
@@ -272,7 +288,7 @@ fn robots_of_files_have_names_and_limits() -> Result<(), Error> {
     assert_eq!((limit.lower, limit.upper, limit.velocity, limit.effort), (-1.0, 2.0, 3.0, 4.0));
     // A pendulum: m g l sin(q) with a level arm of 0.5 m; the mass is upright at zero.
     let f = robot.inverse_dynamics(&[0.3], &[0.0], &[0.0])?;
-    close(f.as_slice(), &[-2.0 * 9.81 * 0.5 * 0.3_f64.sin()], "the torque");
+    assert_close_entries(f.as_slice(), &[-2.0 * 9.81 * 0.5 * 0.3_f64.sin()], "the torque");
     assert!(robot.frames().iter().any(|name| name == "b"));
     assert!(robot.function("inverse_dynamics")?.documentation().contains("orces"));
     let mass = parameters.parameters().iter().position(|p| p.name.ends_with("mass"));

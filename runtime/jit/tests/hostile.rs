@@ -22,7 +22,7 @@ const GROWTH: u64 = 4096 * LOADS / 2;
 /// Maximum time of one mutated input in a debug build on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-fn number(name: &str, default: u64) -> u64 {
+fn number_from_environment(name: &str, default: u64) -> u64 {
     std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
 }
 
@@ -38,7 +38,7 @@ const PENDULUM: &str = "#[mechanism(gravity = -9.81 * y, derivatives)]
     }";
 
 /// Returns the resident memory of the process, bytes.
-fn resident() -> Option<u64> {
+fn resident_memory() -> Option<u64> {
     let text = fs::read_to_string("/proc/self/statm").ok()?;
     Some(4096 * text.split_whitespace().nth(1)?.parse::<u64>().ok()?)
 }
@@ -54,21 +54,21 @@ fn load_and_call() -> Result<(), Error> {
 #[test]
 fn memory_is_returned() -> Result<(), Error> {
     let _turn = TURN.lock();
-    let loads = number("LINKWORK_LOADS", LOADS);
+    let loads = number_from_environment("LINKWORK_LOADS", LOADS);
     (0..loads / 4).try_for_each(|_| load_and_call())?;
-    let Some(before) = resident() else { return Ok(()) };
+    let Some(before) = resident_memory() else { return Ok(()) };
     (0..loads).try_for_each(|_| load_and_call())?;
-    let growth = resident().unwrap_or(before).saturating_sub(before);
+    let growth = resident_memory().unwrap_or(before).saturating_sub(before);
     assert!(growth < GROWTH, "{growth} bytes more after {loads} loads");
     Ok(())
 }
 
 impl Random {
-    fn choose<'a>(&mut self, list: &[&'a str]) -> &'a str {
+    fn choose_from_list<'a>(&mut self, list: &[&'a str]) -> &'a str {
         list[self.index_below(list.len())]
     }
 
-    fn value(&mut self) -> f64 {
+    fn random_value(&mut self) -> f64 {
         match self.index_below(12) {
             0 => [f64::NAN, f64::INFINITY, -1e300, 1e-320, 0.0, 1e9][self.index_below(6)],
             _ => self.index_below(2001) as f64 / 1000.0 - 1.0,
@@ -137,7 +137,7 @@ const OPTIONS: [&str; 14] = [
 ];
 
 /// Returns the texts of small robots and mechanisms, with the extensions of their files.
-fn subjects() -> Vec<(String, String)> {
+fn fuzz_subjects() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let folders = ["tests/data/urdf", "tests/data/mjcf", "tests/data/sdf", "models/src", "models/urdf"];
     let mut all = Vec::new();
@@ -162,7 +162,7 @@ fn subjects() -> Vec<(String, String)> {
 }
 
 /// Applies random mutations to a text.
-fn change(text: &mut String, other: &str, random: &mut Random) {
+fn change_text(text: &mut String, other: &str, random: &mut Random) {
     let random_char_boundary = |text: &str, random: &mut Random| {
         let mut at = random.index_below(text.len() + 1);
         while !text.is_char_boundary(at) {
@@ -175,9 +175,9 @@ fn change(text: &mut String, other: &str, random: &mut Random) {
     let near =
         text[first..].char_indices().nth(1 + random.index_below(30)).map_or(text.len(), |(k, _)| first + k);
     match random.index_below(10) {
-        0 => text.insert_str(a, random.choose(&WORDS)),
+        0 => text.insert_str(a, random.choose_from_list(&WORDS)),
         1 => drop(text.drain(first..near)),
-        2 => text.replace_range(first..near, random.choose(&WORDS)),
+        2 => text.replace_range(first..near, random.choose_from_list(&WORDS)),
         3 => {
             let part = text[first..near].to_string();
             text.insert_str(last, &part);
@@ -193,7 +193,7 @@ fn change(text: &mut String, other: &str, random: &mut Random) {
             let is_number = |c: char| c.is_ascii_digit() || c == '.';
             if let Some(start) = text[a..].find(|c: char| c.is_ascii_digit()).map(|k| a + k) {
                 let end = text[start..].find(|c| !is_number(c)).map_or(text.len(), |k| start + k);
-                text.replace_range(start..end, random.choose(&WORDS[..10]));
+                text.replace_range(start..end, random.choose_from_list(&WORDS[..10]));
             }
         }
         8 => {
@@ -214,11 +214,11 @@ fn change(text: &mut String, other: &str, random: &mut Random) {
 }
 
 /// Calls the functions of a robot with values of all kinds.
-fn call(mut robot: Robot, random: &mut Random) -> Result<(), Error> {
+fn call_all_functions(mut robot: Robot, random: &mut Random) -> Result<(), Error> {
     let names: Vec<String> = robot.parameters().iter().map(|parameter| parameter.name.clone()).collect();
     for name in names {
         // Not finite values are rejected.
-        let _ = robot.set_parameter(&name, random.value());
+        let _ = robot.set_parameter(&name, random.random_value());
         if robot.parameter(&name)?.is_nan() {
             robot.set_parameter(&name, 0.7)?;
         }
@@ -228,7 +228,7 @@ fn call(mut robot: Robot, random: &mut Random) -> Result<(), Error> {
     for _ in 0..20 {
         let Some(f) = functions.get(random.index_below(functions.len())) else { return Ok(()) };
         let lists: Vec<Vec<f64>> =
-            f.arguments().iter().map(|(_, n)| (0..*n).map(|_| random.value()).collect()).collect();
+            f.arguments().iter().map(|(_, n)| (0..*n).map(|_| random.random_value()).collect()).collect();
         let lists: Vec<&[f64]> = lists.iter().map(Vec::as_slice).collect();
         let _ = robot.evaluate(f, &lists);
         let _ = robot.evaluate(f, &lists[..lists.len().saturating_sub(1)]);
@@ -244,23 +244,23 @@ fn call(mut robot: Robot, random: &mut Random) -> Result<(), Error> {
 #[test]
 fn no_input_crashes() -> Result<(), Box<dyn std::error::Error>> {
     let _turn = TURN.lock();
-    let (subjects, first) = (subjects(), number("LINKWORK_SEED", 0));
+    let (subjects, first) = (fuzz_subjects(), number_from_environment("LINKWORK_SEED", 0));
     let folder = std::env::temp_dir().join(format!("linkwork_hostile_{}", std::process::id()));
     fs::create_dir_all(&folder)?;
     let (mut loaded, mut wrong) = (0, Vec::new());
-    for seed in first..first + number("LINKWORK_INPUTS", INPUTS) {
+    for seed in first..first + number_from_environment("LINKWORK_INPUTS", INPUTS) {
         let mut random = Random(seed);
         let (mut text, end) = subjects[random.index_below(subjects.len())].clone();
         let other = &subjects[random.index_below(subjects.len())].0;
-        (0..1 + random.index_below(3)).for_each(|_| change(&mut text, other, &mut random));
-        let options = random.choose(&OPTIONS);
+        (0..1 + random.index_below(3)).for_each(|_| change_text(&mut text, other, &mut random));
+        let options = random.choose_from_list(&OPTIONS);
         let path = folder.join(format!("input.{end}"));
         fs::write(&path, &text)?;
         let start = Instant::now();
         match Loader::file(&path).options(options).folder(&folder).load() {
             Ok(robot) => {
                 loaded += 1;
-                let run = std::panic::AssertUnwindSafe(|| call(robot, &mut random));
+                let run = std::panic::AssertUnwindSafe(|| call_all_functions(robot, &mut random));
                 match std::panic::catch_unwind(run) {
                     Ok(Ok(())) => {}
                     Ok(Err(error)) => wrong.push(format!("seed {seed}: {error}")),

@@ -10,12 +10,12 @@ use linkwork_models as models;
 type Failure = Box<dyn std::error::Error>;
 
 /// Loads the mechanism in a file and sets values of its parameters.
-fn loaded(file: &str, values: &[(&str, f64)]) -> Result<Robot, Failure> {
+fn load_mechanism(file: &str, values: &[(&str, f64)]) -> Result<Robot, Failure> {
     let path = format!("{}/../../models/src/{file}.rs", env!("CARGO_MANIFEST_DIR"));
     Ok(Loader::file(path).load()?.with_parameters(values)?)
 }
 
-fn close(found: &[f64], expected: &[f64], what: &str) {
+fn assert_close_entries(found: &[f64], expected: &[f64], what: &str) {
     let scale = expected.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
     for (k, (a, b)) in found.iter().zip(expected).enumerate() {
         assert!((a - b).abs() <= 1e-8 * scale, "{what}: entry {k} is {a} instead of {b}");
@@ -26,7 +26,7 @@ fn close(found: &[f64], expected: &[f64], what: &str) {
 const N: usize = 16;
 
 /// Compares projections and accelerations in states near a given configuration.
-fn agree<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn compare_with_padded<M, const NQ: usize, const NV: usize, const NU: usize>(
     own: &M,
     near: [f64; NQ],
     robot: &Robot,
@@ -44,14 +44,14 @@ where
         let tau = SVector::from_fn(|k, _| sample_value(k + 5));
         let a = own.try_forward_dynamics(0.0, &q, &v, &tau)?;
         let found = robot.forward_dynamics(q.as_slice(), v.as_slice(), tau.as_slice())?;
-        close(found.as_slice(), a.as_slice(), name);
+        assert_close_entries(found.as_slice(), a.as_slice(), name);
         let Ok(m) = &m else { continue };
         let padded_vector = |x: &[f64]| SVector::<f64, N>::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0));
         let off = own.integrate(&q, &(step * 0.1));
         let expected = own.project(0.0, &off, &v)?;
         let found = m.project(0.0, &padded_vector(off.as_slice()), &padded_vector(v.as_slice()))?;
-        close(found.0.as_slice(), expected.0.as_slice(), name);
-        close(found.1.as_slice(), expected.1.as_slice(), name);
+        assert_close_entries(found.0.as_slice(), expected.0.as_slice(), name);
+        assert_close_entries(found.1.as_slice(), expected.1.as_slice(), name);
         let p = own.impulse(0.0, &q, &v, 1e-2, &tau);
         let found = m.impulse(
             0.0,
@@ -60,14 +60,14 @@ where
             1e-2,
             &padded_vector(tau.as_slice()),
         );
-        close(found.as_slice(), p.as_slice(), name);
+        assert_close_entries(found.as_slice(), p.as_slice(), name);
     }
     Ok(())
 }
 
 macro_rules! agree {
     ($($type:ident $file:literal [$($near:expr),*] { $($name:ident: $value:expr),* })*) => {
-        $(agree(&models::$type { $($name: $value),* }, [$($near),*], &loaded($file, &[$((stringify!($name), $value)),*])?)?;)*
+        $(compare_with_padded(&models::$type { $($name: $value),* }, [$($near),*], &load_mechanism($file, &[$((stringify!($name), $value)),*])?)?;)*
     };
 }
 

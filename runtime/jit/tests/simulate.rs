@@ -62,12 +62,12 @@ both! {
 
 const N: usize = 8;
 
-fn padded<const K: usize>(x: &[f64]) -> SVector<f64, K> {
+fn padded_vector<const K: usize>(x: &[f64]) -> SVector<f64, K> {
     SVector::from_fn(|k, _| x.get(k).copied().unwrap_or(0.0))
 }
 
 #[track_caller]
-fn close(found: &[f64], expected: &[f64], tolerance: f64) {
+fn assert_close_entries(found: &[f64], expected: &[f64], tolerance: f64) {
     for (k, (a, b)) in found.iter().zip(expected).enumerate() {
         assert!((a - b).abs() <= tolerance * (1.0 + b.abs()), "entry {k} is {a} instead of {b}");
     }
@@ -82,30 +82,38 @@ fn constraints_agree_with_generated_rust() -> Result<(), std::boxed::Box<dyn std
     let tau = [1.5, 0.0];
     for (q, v) in [([0.4, -0.6], [0.5, -0.9]), ([0.0, 0.0], [0.0, 0.0])] {
         let (sq, sv, st) = (q.into(), v.into(), tau.into());
-        let (pq, pv, pt) = (padded::<N>(&q), padded::<N>(&v), padded::<N>(&tau));
+        let (pq, pv, pt) = (padded_vector::<N>(&q), padded_vector::<N>(&v), padded_vector::<N>(&tau));
         let (a, lambda) = Constrained::<N, N, N, N, N>::constrained_dynamics(&m, 0.0, &pq, &pv, &pt);
         let (own, multipliers) = Slider.constrained_dynamics(&sq, &sv, &st);
-        close(a.as_slice(), own.as_slice(), 1e-12);
-        close(lambda.as_slice(), multipliers.as_slice(), 1e-12);
-        close(robot.forward_dynamics(&q, &v, &tau)?.as_slice(), own.as_slice(), 1e-12);
+        assert_close_entries(a.as_slice(), own.as_slice(), 1e-12);
+        assert_close_entries(lambda.as_slice(), multipliers.as_slice(), 1e-12);
+        assert_close_entries(robot.forward_dynamics(&q, &v, &tau)?.as_slice(), own.as_slice(), 1e-12);
         let found = Hooks::project(&m, 0.0, &pq, &pv)?;
         let own = Hooks::project(&Slider, 0.0, &sq, &sv)?;
-        close(found.0.as_slice(), own.0.as_slice(), 1e-12);
-        close(found.1.as_slice(), own.1.as_slice(), 1e-12);
+        assert_close_entries(found.0.as_slice(), own.0.as_slice(), 1e-12);
+        assert_close_entries(found.1.as_slice(), own.1.as_slice(), 1e-12);
         let found = Hooks::impulse(&m, 0.0, &found.0, &found.1, 1e-3, &pt);
-        close(found.as_slice(), Hooks::impulse(&Slider, 0.0, &own.0, &own.1, 1e-3, &st).as_slice(), 1e-12);
+        assert_close_entries(
+            found.as_slice(),
+            Hooks::impulse(&Slider, 0.0, &own.0, &own.1, 1e-3, &st).as_slice(),
+            1e-12,
+        );
         let (by_q, by_v, by_tau) = Slider.forward_dynamics_derivatives(&sq, &sv, &st);
         let found = robot.forward_dynamics_derivatives(&q, &v, &tau)?;
         for (found, own) in found.iter().zip([by_q, by_v, by_tau]) {
-            close(found.as_slice(), own.as_slice(), 1e-10);
+            assert_close_entries(found.as_slice(), own.as_slice(), 1e-10);
         }
     }
     let guess = [0.3, 0.2];
     let own = Slider.assemble(&guess.into(), &[0])?;
-    close(robot.assemble(&guess, &[0])?.as_slice(), own.as_slice(), 1e-12);
+    assert_close_entries(robot.assemble(&guess, &[0])?.as_slice(), own.as_slice(), 1e-12);
     assert_eq!(robot.assembly_mode(own.as_slice(), &[0])?, Slider.assembly_mode(&own, &[0]));
     let v = Slider.complete_velocity(&own, &[2.0, 0.0].into(), &[0])?;
-    close(robot.complete_velocity(own.as_slice(), &[2.0, 0.0], &[0])?.as_slice(), v.as_slice(), 1e-12);
+    assert_close_entries(
+        robot.complete_velocity(own.as_slice(), &[2.0, 0.0], &[0])?.as_slice(),
+        v.as_slice(),
+        1e-12,
+    );
     let far = robot.assemble(&[0.3, 0.2], &[0, 1]);
     assert!(far.as_ref().is_err_and(|error| error.to_string().contains("`guide`")), "{far:?}");
     assert!(robot.assemble(&guess, &[2]).is_err_and(|error| error.to_string().contains("velocity 2")));
@@ -135,8 +143,8 @@ fn motions_under_constraints_agree_with_generated_rust() -> Result<(), Error> {
         let run = simulate_with_method(method)?;
         assert_eq!(run.samples.iter().map(|sample| sample.t).collect::<Vec<_>>(), [0.0, 0.25, 0.5]);
         let last = &run.samples[2];
-        close(&last.q, end.q.as_slice(), tolerance.max(1e-7));
-        close(&last.v, end.v.as_slice(), tolerance.max(1e-7));
+        assert_close_entries(&last.q, end.q.as_slice(), tolerance.max(1e-7));
+        assert_close_entries(&last.v, end.v.as_slice(), tolerance.max(1e-7));
         assert_eq!(last.u, [2.0]);
     }
     Ok(())
@@ -155,23 +163,23 @@ fn contacts_agree_with_generated_rust() -> Result<(), Error> {
     let run =
         |method: Method| robot.simulate().from(begin.as_slice(), v.as_slice()).duration(0.8).method(method);
     let end = run(Method::TimeStepping(2e-3)).finish()?;
-    close(&end.q, steps.q.as_slice(), 1e-9);
-    close(&end.v, steps.v.as_slice(), 1e-9);
+    assert_close_entries(&end.q, steps.q.as_slice(), 1e-9);
+    assert_close_entries(&end.v, steps.v.as_slice(), 1e-9);
     let method = TimeStepping::step(2e-3).leapfrog();
     let steps = own.clone().method(method).finish().expect("it moves");
     let end = run(Method::from_name("time_stepping_leapfrog", Some(2e-3))?).finish()?;
-    close(&end.q, steps.q.as_slice(), 1e-9);
-    close(&end.v, steps.v.as_slice(), 1e-9);
+    assert_close_entries(&end.q, steps.q.as_slice(), 1e-9);
+    assert_close_entries(&end.v, steps.v.as_slice(), 1e-9);
     let events = own.method(EventDriven::new().tolerance(1e-9, 1e-9)).finish().expect("it moves");
     let end = run(Method::EventDriven(1e-9)).finish()?;
-    close(&end.q, events.q.as_slice(), 1e-6);
-    close(&end.v, events.v.as_slice(), 1e-6);
+    assert_close_entries(&end.q, events.q.as_slice(), 1e-6);
+    assert_close_entries(&end.v, events.v.as_slice(), 1e-6);
     // Two bodies of code for any mechanism with contacts.
     let m = robot.padded_contacts::<N, N, N, N, 24>()?;
     q[2] = 0.1;
     let own = contact::acting(&Box, 0.0, &q, &SVector::zeros(), &SVector::zeros()).expect("forces");
-    let found = contact::acting(&m, 0.0, &padded(q.as_slice()), &SVector::zeros(), &SVector::zeros());
-    close(found.expect("forces").as_slice(), own.as_slice(), 1e-6);
+    let found = contact::acting(&m, 0.0, &padded_vector(q.as_slice()), &SVector::zeros(), &SVector::zeros());
+    assert_close_entries(found.expect("forces").as_slice(), own.as_slice(), 1e-6);
     let refused = run(Method::Rk4(1e-3)).finish();
     assert!(refused.is_err_and(|error| error.to_string().contains("choose the method `time_stepping`")));
     q[2] = 0.05;
@@ -191,12 +199,12 @@ fn sliding_constraints_have_friction() -> Result<(), Error> {
     let (q, v, mu_g) = ([0.0, 0.1, 0.0], [2.0, 0.0, 0.0], 0.3 * 9.81);
     let a = robot.forward_dynamics(&q, &v, &[0.0; 3])?;
     let own = Wedge.forward_dynamics(&q.into(), &v.into(), &SVector::zeros());
-    close(a.as_slice(), own.as_slice(), 1e-12);
-    close(&a.as_slice()[..2], &[-mu_g, 0.0], 1e-6);
+    assert_close_entries(a.as_slice(), own.as_slice(), 1e-12);
+    assert_close_entries(&a.as_slice()[..2], &[-mu_g, 0.0], 1e-6);
     let end = robot.simulate().from(&q, &v).duration(0.1).finish()?;
-    close(&end.q[..2], &[0.2 - mu_g * 0.005, 0.1], 1e-6);
+    assert_close_entries(&end.q[..2], &[0.2 - mu_g * 0.005, 0.1], 1e-6);
     let end = robot.simulate().from(&q, &v).method(Method::Rodas(1e-6)).duration(0.5).finish()?;
-    close(&[end.v[0], end.v[2]], &[2.0 * 5.0 / 7.0, -20.0 * 5.0 / 7.0], 1e-3);
+    assert_close_entries(&[end.v[0], end.v[2]], &[2.0 * 5.0 / 7.0, -20.0 * 5.0 / 7.0], 1e-3);
     Ok(())
 }
 
@@ -215,7 +223,7 @@ fn speeds_states_and_time_are_integrated() -> Result<(), Error> {
         }",
     )?;
     let end = rotor.simulate().from(&[0.0], &[3.0]).duration(2.0).finish()?;
-    close(&[end.q[0], end.v[0]], &[1.5, 3.0], 1e-9);
+    assert_close_entries(&[end.q[0], end.v[0]], &[1.5, 3.0], 1e-9);
     let sled = linkwork_jit::declare(
         "#[mechanism]
         struct Sled {
@@ -237,7 +245,7 @@ fn speeds_states_and_time_are_integrated() -> Result<(), Error> {
         let run = sled.simulate().from(&[0.0], v).inputs(Inputs::Constant(&[6.0])).duration(2.0);
         let end = run.finish()?;
         let velocity = (12.0 - (6.0 - start) * 0.5 * late) / 2.0;
-        close(&end.v, &[velocity, start + (6.0 - start) * late], 1e-8);
+        assert_close_entries(&end.v, &[velocity, start + (6.0 - start) * late], 1e-8);
     }
     // A cart that is pushed by a force of time: sin(3 t) N on 2 kg.
     let cart = linkwork_jit::declare(
@@ -252,7 +260,7 @@ fn speeds_states_and_time_are_integrated() -> Result<(), Error> {
         }",
     )?;
     let end = cart.simulate().start_at(1.0).from(&[0.0], &[0.0]).duration(1.5).finish()?;
-    close(&end.v, &[(3.0_f64.cos() - 7.5_f64.cos()) / 6.0], 1e-9);
+    assert_close_entries(&end.v, &[(3.0_f64.cos() - 7.5_f64.cos()) / 6.0], 1e-9);
     Ok(())
 }
 
@@ -270,37 +278,45 @@ const CART: &str = "#[mechanism]
 #[test]
 fn inputs_are_followed_exactly() -> Result<(), Error> {
     let cart = Loader::text(CART).load()?;
-    fn pushed(cart: &Robot, inputs: Inputs<'_>) -> Result<linkwork_jit::Sample, Error> {
+    fn simulate_pushed_cart(cart: &Robot, inputs: Inputs<'_>) -> Result<linkwork_jit::Sample, Error> {
         cart.simulate().from(&[0.0], &[0.0]).inputs(inputs).duration(3.0).finish()
     }
     // Up to 2 N within 1 s, a jump to −1 N, constant after 2 s.
     let (times, values) = ([0.0, 1.0, 1.0, 2.0], [0.0, 2.0, -1.0, 1.0]);
-    let end = pushed(&cart, Inputs::Samples { times: &times, values: &values })?;
-    close(&[end.v[0], end.u[0]], &[1.0 + 0.0 + 1.0, 1.0], 1e-12);
+    let end = simulate_pushed_cart(&cart, Inputs::Samples { times: &times, values: &values })?;
+    assert_close_entries(&[end.v[0], end.u[0]], &[1.0 + 0.0 + 1.0, 1.0], 1e-12);
     let mut calls = 0;
     let mut staircase = |t: f64, _: &[f64], _: &[f64], u: &mut [f64]| {
         calls += 1;
         u[0] = t;
         Ok(())
     };
-    close(&pushed(&cart, Inputs::Sampled(1.0, &mut staircase))?.v, &[3.0], 1e-12);
+    assert_close_entries(
+        &simulate_pushed_cart(&cart, Inputs::Sampled(1.0, &mut staircase))?.v,
+        &[3.0],
+        1e-12,
+    );
     assert!((3..=4).contains(&calls));
     let mut damper = |_: f64, _: &[f64], v: &[f64], u: &mut [f64]| {
         u[0] = 1.0 - v[0];
         Ok(())
     };
-    close(&pushed(&cart, Inputs::Function(&mut damper))?.v, &[1.0 - (-3.0_f64).exp()], 1e-8);
+    assert_close_entries(
+        &simulate_pushed_cart(&cart, Inputs::Function(&mut damper))?.v,
+        &[1.0 - (-3.0_f64).exp()],
+        1e-8,
+    );
     let mut fails = |t: f64, _: &[f64], _: &[f64], _: &mut [f64]| match t < 1.0 {
         true => Ok(()),
         false => Err("no more".to_string()),
     };
     assert_eq!(
-        pushed(&cart, Inputs::Function(&mut fails)).map(|_| ()),
+        simulate_pushed_cart(&cart, Inputs::Function(&mut fails)).map(|_| ()),
         Err(Error::Value("no more".to_string()))
     );
-    let wrong = pushed(&cart, Inputs::Constant(&[1.0, 2.0]));
+    let wrong = simulate_pushed_cart(&cart, Inputs::Constant(&[1.0, 2.0]));
     assert!(matches!(wrong, Err(Error::Length { expected: 1, found: 2, .. })));
-    let backwards = pushed(&cart, Inputs::Samples { times: &[1.0, 0.0], values: &[0.0, 0.0] });
+    let backwards = simulate_pushed_cart(&cart, Inputs::Samples { times: &[1.0, 0.0], values: &[0.0, 0.0] });
     assert!(matches!(backwards, Err(Error::Value(_))));
     Ok(())
 }
@@ -330,7 +346,7 @@ fn stiff_motions_are_integrated_by_an_implicit_method() -> Result<(), Error> {
     assert!(run.stiff_from.is_some_and(|t| t < 0.5), "{:?}", run.stiff_from);
     for sample in &run.samples {
         let exact = (fast * (-slow * sample.t).exp() - slow * (-fast * sample.t).exp()) / (fast - slow);
-        close(&sample.q, &[exact], 1e-7);
+        assert_close_entries(&sample.q, &[exact], 1e-7);
     }
     Ok(())
 }

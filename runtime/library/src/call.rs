@@ -78,15 +78,16 @@ pub fn call<M: Library>(m: &M, f: &Function<M>, batch: Batch<'_, M::Number>) -> 
     }
     if states == 1 {
         let (arguments, mut results) = (arguments, results);
-        return guarded(m, f.one, &arguments, &mut results);
+        return call_guarded(m, f.one, &arguments, &mut results);
     }
-    let share = shares(states, threads, LANES);
+    let share = states_per_thread(states, threads, LANES);
     let parts = shared_out(f, &arguments, results, states, share);
     let first = match parts.len() {
         0 => None,
-        1 => parts.into_iter().find_map(|part| work(m, f, part)),
+        1 => parts.into_iter().find_map(|part| evaluate_states(m, f, part)),
         _ => std::thread::scope(|scope| {
-            let all: Vec<_> = parts.into_iter().map(|part| scope.spawn(move || work(m, f, part))).collect();
+            let all: Vec<_> =
+                parts.into_iter().map(|part| scope.spawn(move || evaluate_states(m, f, part))).collect();
             let ends = all.into_iter().map(|thread| {
                 thread.join().unwrap_or_else(|panic| Some((0, Failure::of_panic(panic.as_ref()))))
             });
@@ -100,7 +101,7 @@ pub fn call<M: Library>(m: &M, f: &Function<M>, batch: Batch<'_, M::Number>) -> 
 }
 
 /// Returns the number of states per thread, a multiple of the number of lanes.
-pub(crate) fn shares(states: usize, threads: usize, lanes: usize) -> usize {
+pub(crate) fn states_per_thread(states: usize, threads: usize, lanes: usize) -> usize {
     let count_processors = || std::thread::available_parallelism().map_or(1, usize::from);
     let threads = if threads == 0 { count_processors() } else { threads };
     let groups = states.div_ceil(lanes);
@@ -142,7 +143,11 @@ fn shared_out<'a, M: Library>(
 }
 
 /// Evaluates the states of one thread. Returns the index of the first state that fails, with the error.
-fn work<M: Library>(m: &M, f: &Function<M>, part: Part<'_, M::Number>) -> Option<(usize, Failure)> {
+fn evaluate_states<M: Library>(
+    m: &M,
+    f: &Function<M>,
+    part: Part<'_, M::Number>,
+) -> Option<(usize, Failure)> {
     let Part { first, states, arguments, results } = part;
     let mut failed = None;
     let mut at = 0;
@@ -163,7 +168,7 @@ fn work<M: Library>(m: &M, f: &Function<M>, part: Part<'_, M::Number>) -> Option
             places.push(front);
             *rest = back;
         }
-        if let Err(failure) = guarded(m, body, &given, &mut places) {
+        if let Err(failure) = call_guarded(m, body, &given, &mut places) {
             failed.get_or_insert((first + at, failure));
         }
         at += count;
@@ -172,7 +177,7 @@ fn work<M: Library>(m: &M, f: &Function<M>, part: Part<'_, M::Number>) -> Option
 }
 
 /// Calls a function; if it fails or panics, the results are set to NaN.
-fn guarded<M: Library>(
+fn call_guarded<M: Library>(
     m: &M,
     body: Body<M>,
     arguments: &[&[M::Number]],

@@ -84,11 +84,11 @@ where
     N: Number,
 {
     match motion.way {
-        Way::DormandPrince(e) => go(m, motion, DormandPrince::new().tolerance(e, e)),
-        Way::DormandPrince8(e) => go(m, motion, DormandPrince8::new().tolerance(e, e)),
-        Way::Rodas(e) => go(m, motion, Rodas::new().tolerance(e, e)),
-        Way::Rk4(h) => go(m, motion, Rk4::step(h)),
-        Way::ImplicitMidpoint(h) => go(m, motion, ImplicitMidpoint::step(h)),
+        Way::DormandPrince(e) => simulate_with_method(m, motion, DormandPrince::new().tolerance(e, e)),
+        Way::DormandPrince8(e) => simulate_with_method(m, motion, DormandPrince8::new().tolerance(e, e)),
+        Way::Rodas(e) => simulate_with_method(m, motion, Rodas::new().tolerance(e, e)),
+        Way::Rk4(h) => simulate_with_method(m, motion, Rk4::step(h)),
+        Way::ImplicitMidpoint(h) => simulate_with_method(m, motion, ImplicitMidpoint::step(h)),
         Way::EventDriven(_)
         | Way::TimeStepping(_)
         | Way::TimeSteppingMidpoint(_)
@@ -112,17 +112,17 @@ where
     N: Number,
 {
     match motion.way {
-        Way::EventDriven(e) => go(m, motion, EventDriven::new().tolerance(e, e)),
-        Way::TimeStepping(h) => go(m, motion, TimeStepping::step(h)),
-        Way::TimeSteppingMidpoint(h) => go(m, motion, TimeStepping::step(h).midpoint()),
-        Way::TimeSteppingLeapfrog(h) => go(m, motion, TimeStepping::step(h).leapfrog()),
+        Way::EventDriven(e) => simulate_with_method(m, motion, EventDriven::new().tolerance(e, e)),
+        Way::TimeStepping(h) => simulate_with_method(m, motion, TimeStepping::step(h)),
+        Way::TimeSteppingMidpoint(h) => simulate_with_method(m, motion, TimeStepping::step(h).midpoint()),
+        Way::TimeSteppingLeapfrog(h) => simulate_with_method(m, motion, TimeStepping::step(h).leapfrog()),
         _ => Err(Failure::new(
             "the mechanism has contacts: choose `event_driven` or a method whose name begins with `time_stepping`",
         )),
     }
 }
 
-fn go<M, N, S, const NQ: usize, const NV: usize, const NU: usize>(
+fn simulate_with_method<M, N, S, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     motion: &mut Motion<'_, N>,
     method: S,
@@ -161,8 +161,8 @@ where
         if failed.is_some() { u.map(|_| N::NAN) } else { u }
     };
     let ended = match every {
-        Every::Evaluation => collect(begun.inputs(query_control), samples, count),
-        Every::Period(period) => collect(begun.control_every(period, query_control), samples, count),
+        Every::Evaluation => collect_samples(begun.inputs(query_control), samples, count),
+        Every::Period(period) => collect_samples(begun.control_every(period, query_control), samples, count),
     };
     match failure.into_inner() {
         Some(failure) => Err(failure),
@@ -170,7 +170,7 @@ where
     }
 }
 
-fn collect<N, const NQ: usize, const NV: usize, const NU: usize>(
+fn collect_samples<N, const NQ: usize, const NV: usize, const NU: usize>(
     run: impl Iterator<Item = Result<Sample<N, NQ, NV, NU>, Error>>,
     samples: &mut [N],
     count: &mut usize,

@@ -23,7 +23,7 @@ pub fn message() -> *const c_char {
     MESSAGE.with_borrow(|message| message.as_ptr())
 }
 
-fn ended(result: std::thread::Result<Result<(), Failure>>) -> c_int {
+fn return_code_of_result(result: std::thread::Result<Result<(), Failure>>) -> c_int {
     let result = result.unwrap_or_else(|panic| Err(Failure::of_panic(panic.as_ref())));
     let Err(Failure(why)) = result else { return DONE };
     let text = CString::new(why.replace('\0', " ")).unwrap_or_default();
@@ -35,7 +35,7 @@ fn ended(result: std::thread::Result<Result<(), Failure>>) -> c_int {
 ///
 /// `from` points to `length` numbers that are not written to during the lifetime of the result, or `length`
 /// is zero.
-unsafe fn numbers<'a, N>(from: *const N, length: usize) -> &'a [N] {
+unsafe fn numbers_from_pointer<'a, N>(from: *const N, length: usize) -> &'a [N] {
     match length {
         0 => &[],
         // SAFETY: see the requirements of this function.
@@ -47,7 +47,7 @@ unsafe fn numbers<'a, N>(from: *const N, length: usize) -> &'a [N] {
 ///
 /// `to` points to `length` numbers that are not accessed otherwise during the lifetime of the result, or
 /// `length` is zero.
-unsafe fn places<'a, N>(to: *mut N, length: usize) -> &'a mut [N] {
+unsafe fn mutable_numbers<'a, N>(to: *mut N, length: usize) -> &'a mut [N] {
     match length {
         0 => &mut [],
         // SAFETY: see the requirements of this function.
@@ -70,7 +70,7 @@ pub unsafe fn call<M: Library>(
     states: usize,
     threads: usize,
 ) -> c_int {
-    ended(catch_unwind(AssertUnwindSafe(|| {
+    return_code_of_result(catch_unwind(AssertUnwindSafe(|| {
         let Some(f) = M::FUNCTIONS.get(function) else {
             return Err(Failure::new("there is no function with this number"));
         };
@@ -81,11 +81,16 @@ pub unsafe fn call<M: Library>(
         }
         // SAFETY: guaranteed by the caller.
         let (m, arguments, results) = unsafe {
-            let own = numbers(arguments, f.arguments.len());
-            let given = f.arguments.iter().zip(own).map(|(one, from)| numbers(*from, one * states));
-            let own = numbers(results, f.results.len());
-            let wanted = f.results.iter().zip(own).map(|(one, to)| places(*to, one * states));
-            (M::from_parameters(numbers(parameters, M::PARAMETERS)), given.collect(), wanted.collect())
+            let own = numbers_from_pointer(arguments, f.arguments.len());
+            let given =
+                f.arguments.iter().zip(own).map(|(one, from)| numbers_from_pointer(*from, one * states));
+            let own = numbers_from_pointer(results, f.results.len());
+            let wanted = f.results.iter().zip(own).map(|(one, to)| mutable_numbers(*to, one * states));
+            (
+                M::from_parameters(numbers_from_pointer(parameters, M::PARAMETERS)),
+                given.collect(),
+                wanted.collect(),
+            )
         };
         crate::call(&m, f, Batch { arguments, results, states, threads })
     })))
@@ -97,9 +102,9 @@ pub unsafe fn call<M: Library>(
 ///
 /// `parameters` points to one number per parameter of the mechanism.
 pub unsafe fn check<M: Library>(parameters: *const M::Number) -> c_int {
-    ended(catch_unwind(AssertUnwindSafe(|| {
+    return_code_of_result(catch_unwind(AssertUnwindSafe(|| {
         // SAFETY: guaranteed by the caller.
-        M::from_parameters(unsafe { numbers(parameters, M::PARAMETERS) }).check()
+        M::from_parameters(unsafe { numbers_from_pointer(parameters, M::PARAMETERS) }).check()
     })))
 }
 
@@ -110,7 +115,7 @@ pub unsafe fn check<M: Library>(parameters: *const M::Number) -> c_int {
 /// `to` points to an array of at least `from.len()` numbers.
 pub unsafe fn copy<N: Copy>(from: &[N], to: *mut N) {
     // SAFETY: guaranteed by the caller.
-    unsafe { places(to, from.len()) }.copy_from_slice(from);
+    unsafe { mutable_numbers(to, from.len()) }.copy_from_slice(from);
 }
 
 /// Controller in another language. Its arguments are the pointer that it was registered with, time,
@@ -164,17 +169,17 @@ pub unsafe fn simulate<M: Library>(
         *count = 0;
         let width = 1 + nq + nv + nu;
         (
-            M::from_parameters(numbers(parameters, M::PARAMETERS)),
+            M::from_parameters(numbers_from_pointer(parameters, M::PARAMETERS)),
             settings,
-            numbers(q, nq),
-            numbers(v, nv),
-            places(samples, rows * width),
+            numbers_from_pointer(q, nq),
+            numbers_from_pointer(v, nv),
+            mutable_numbers(samples, rows * width),
             &mut *count,
             CStr::from_ptr(settings.method),
         )
     };
-    ended(catch_unwind(AssertUnwindSafe(|| {
-        let way = way(method, settings.setting)?;
+    return_code_of_result(catch_unwind(AssertUnwindSafe(|| {
+        let way = method_from_name(method, settings.setting)?;
         let zero = linkwork::nalgebra::zero::<M::Number>();
         let every = if settings.period > zero { Every::Period(settings.period) } else { Every::Evaluation };
         let mut control = |t: M::Number, q: &[M::Number], v: &[M::Number], u: &mut [M::Number]| {
@@ -238,7 +243,7 @@ pub unsafe fn roll_out<M: Library>(
 ) -> c_int {
     // SAFETY: guaranteed by the caller.
     let settings = unsafe { &*settings };
-    ended(catch_unwind(AssertUnwindSafe(|| {
+    return_code_of_result(catch_unwind(AssertUnwindSafe(|| {
         let RolloutSettings { start, step, steps, states, threads, inputs_of } = *settings;
         let rows = steps.checked_add(1).and_then(|rows| rows.checked_mul(states));
         let most = isize::MAX as usize / 8;
@@ -254,17 +259,17 @@ pub unsafe fn roll_out<M: Library>(
         // SAFETY: guaranteed by the caller.
         let (m, q, v, inputs) = unsafe {
             (
-                M::from_parameters(numbers(parameters, M::PARAMETERS)),
-                places(q, rows * nq),
-                places(v, rows * nv),
-                numbers(inputs, length),
+                M::from_parameters(numbers_from_pointer(parameters, M::PARAMETERS)),
+                mutable_numbers(q, rows * nq),
+                mutable_numbers(v, rows * nv),
+                numbers_from_pointer(inputs, length),
             )
         };
         m.roll_out(Rollout { start, step, steps, threads, q, v, inputs, own_inputs: inputs_of == 2 })
     })))
 }
 
-fn way<N>(method: &CStr, setting: N) -> Result<Way<N>, Failure> {
+fn method_from_name<N>(method: &CStr, setting: N) -> Result<Way<N>, Failure> {
     Ok(match method.to_str().unwrap_or_default() {
         "dormand_prince" => Way::DormandPrince(setting),
         "dormand_prince8" => Way::DormandPrince8(setting),

@@ -1,6 +1,6 @@
 //! Rollouts of many states with a constant step size, under prescribed inputs.
 
-use crate::call::shares;
+use crate::call::states_per_thread;
 use crate::{Entry, Failure, LANES, Number};
 use linkwork::batch::{self, unwatched};
 use linkwork::integrate::Rk4;
@@ -128,7 +128,7 @@ fn shared_out<N: Number>(
     }
     let own_inputs = own_inputs && !inputs.is_empty();
     let plan = Plan { own_inputs, ..plan };
-    let share = shares(states, threads, lanes);
+    let share = states_per_thread(states, threads, lanes);
     let mut parts = Vec::new();
     let (mut q, mut v, mut first) = (q, v, 0);
     while first < states {
@@ -159,7 +159,7 @@ fn shared_out<N: Number>(
 }
 
 /// Returns the time at the start of a step.
-fn time<N: Number>(plan: &Plan<N>, step: usize) -> N {
+fn time_of_step<N: Number>(plan: &Plan<N>, step: usize) -> N {
     plan.start + plan.step * linkwork::nalgebra::convert::<f64, N>(step as f64)
 }
 
@@ -182,7 +182,7 @@ where
         for step in 0..plan.steps {
             let from = if plan.own_inputs { (state * plan.steps + step) * NU } else { step * NU };
             let u = SVector::<N, NU>::from_fn(|i, _| part.inputs.get(from + i).copied().unwrap_or_default());
-            match discrete::step(m, &method, time(&plan, step), &q, &v, &u) {
+            match discrete::step(m, &method, time_of_step(&plan, step), &q, &v, &u) {
                 Ok(end) => (q, v) = end,
                 Err(error) => {
                     failed.get_or_insert((part.first + state, Failure::new(error)));
@@ -220,7 +220,7 @@ where
         let u = SVector::<Lanes<N, LANES>, NU>::from_fn(|i, _| {
             Lanes::from_fn(|k| part.inputs.get(k * stride + step * NU + i).copied().unwrap_or_default())
         });
-        let one = batch::Rollout::new(Rk4::step(plan.step), 1).from_time(time(&plan, step));
+        let one = batch::Rollout::new(Rk4::step(plan.step), 1).from_time(time_of_step(&plan, step));
         if let Err(error) = lanes.roll_out(&one, &mut q, &mut v, |_, _, _, _| u, unwatched) {
             let (state, why) = match error {
                 batch::Error::Motion { state, source, .. } => (state, Failure::new(source)),

@@ -29,7 +29,7 @@ pub fn dispatch<const K: usize, T: Real, M: Evaluate<K, Arguments>, Arguments>(
         not(all(target_feature = "avx2", target_feature = "fma")),
         any(test, not(debug_assertions))
     ))]
-    if crate::lanes::x86::avx2::serves::<T>() && crate::lanes::x86::avx2::is_available() {
+    if crate::lanes::x86::avx2::has_faster_instructions::<T>() && crate::lanes::x86::avx2::is_available() {
         #[expect(unsafe_code, reason = "calls of functions with target features are")]
         // SAFETY: the processor has the features.
         return unsafe { with_avx2(mechanism, arguments) };

@@ -37,7 +37,7 @@ impl<A: Registers, T: Real, const N: usize> Number<A> for Vector<A, T, N> {
 
     #[inline(always)]
     fn fused(a: Self, b: Self, c: Self) -> Self {
-        Self::from_array(A::fused(a.numbers(), b.numbers(), c.numbers()))
+        Self::from_array(A::fused(a.numbers_of_lanes(), b.numbers_of_lanes(), c.numbers_of_lanes()))
     }
 }
 
@@ -59,7 +59,7 @@ macro_rules! elementary {
             $(
                 #[inline(always)]
                 fn $name($x: Self $(, $y: Self)?) -> Self {
-                    $x.$name($($y)?)
+                    elementary!(@number $name $x $($y)?)
                 }
             )+
 
@@ -84,43 +84,84 @@ macro_rules! elementary {
                 }
                 let (mut s, mut c) = (x, x);
                 for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
-                    let (sines, cosines) = trigonometry::sin_cos_all::<A, T, L>(*x.numbers());
+                    let (sines, cosines) = trigonometry::sin_cos_all::<A, T, L>(*x.numbers_of_lanes());
                     (*s, *c) = (Self::from_array(sines), Self::from_array(cosines));
                 }
                 (s, c)
             }
 
             fn tabulated<const N: usize>(table: &Table<N>, x: [Self; N], orders: [u8; N]) -> Self {
-                let numbers_of_lane = |k: usize| x.each_ref().map(|x| x.numbers()[k]);
+                let numbers_of_lane = |k: usize| x.each_ref().map(|x| x.numbers_of_lanes()[k]);
                 Self::from_array(core::array::from_fn(|k| table.derivative(numbers_of_lane(k), orders)))
             }
+        }
+    };
+    (@number min $x:ident $y:ident) => {
+        smaller($x, $y)
+    };
+    (@number max $x:ident $y:ident) => {
+        larger($x, $y)
+    };
+    (@number $name:ident $x:ident $($y:ident)?) => {
+        $x.$name($($y)?)
+    };
+    (@vector min $x:ident $y:ident) => {
+        elementary!(@vector_of smaller min $x $y);
+    };
+    (@vector max $x:ident $y:ident) => {
+        elementary!(@vector_of larger max $x $y);
+    };
+    (@vector_of $function:ident $name:ident $x:ident $y:ident) => {
+        #[inline(always)]
+        fn $name($x: Self, $y: Self) -> Self {
+            let ($x, $y) = ($x.numbers_of_lanes(), $y.numbers_of_lanes());
+            Self::from_array(core::array::from_fn(|k| $function($x[k], $y[k])))
         }
     };
     (@vector sqrt $x:ident) => {
         #[inline(always)]
         fn sqrt($x: Self) -> Self {
-            Self::from_array(A::root($x.numbers()))
+            Self::from_array(A::root($x.numbers_of_lanes()))
         }
     };
     (@vector abs $x:ident) => {
         #[inline(always)]
         fn abs($x: Self) -> Self {
-            Self::from_array(A::magnitude($x.numbers()))
+            Self::from_array(A::magnitude($x.numbers_of_lanes()))
         }
     };
     (@vector $name:ident $x:ident) => {
         #[inline(always)]
         fn $name($x: Self) -> Self {
-            Self::from_array($x.numbers().map(|x| x.$name()))
+            Self::from_array($x.numbers_of_lanes().map(|x| x.$name()))
         }
     };
     (@vector $name:ident $x:ident $y:ident) => {
         #[inline(always)]
         fn $name($x: Self, $y: Self) -> Self {
-            let ($x, $y) = ($x.numbers(), $y.numbers());
+            let ($x, $y) = ($x.numbers_of_lanes(), $y.numbers_of_lanes());
             Self::from_array(core::array::from_fn(|k| $x[k].$name($y[k])))
         }
     };
 }
 
 elementary_functions!(elementary);
+
+/// Returns the smaller number; the other number if one is NaN. With the feature `reproducible` a zero has the
+/// sign plus; otherwise the sign of the minimum of two zeros depends on the target.
+#[inline(always)]
+fn smaller<T: Real>(x: T, y: T) -> T {
+    match cfg!(feature = "reproducible") {
+        true => T::min(x, y) + T::zero(),
+        false => T::min(x, y),
+    }
+}
+
+/// Returns the larger number; the other number if one is NaN. Zeros are treated as by [`smaller`].
+#[inline(always)]
+fn larger<T: Real>(x: T, y: T) -> T {
+    match cfg!(feature = "reproducible") {
+        true => T::max(x, y) + T::zero(),
+        false => T::max(x, y),
+    }
+}

@@ -26,7 +26,7 @@ pub(super) struct Output<'a, T, const R: usize, const C: usize> {
 /// # Errors
 ///
 /// [`Error::Length`] unless it is `entries * count`.
-fn fits(name: &'static str, found: usize, entries: usize, count: usize) -> Result<(), Error> {
+fn check_slice_length(name: &'static str, found: usize, entries: usize, count: usize) -> Result<(), Error> {
     match entries.checked_mul(count) {
         Some(expected) if expected == found => Ok(()),
         expected => Err(Error::Length { name, expected: expected.unwrap_or(usize::MAX), found }),
@@ -34,13 +34,13 @@ fn fits(name: &'static str, found: usize, entries: usize, count: usize) -> Resul
 }
 
 /// Returns the number of states according to the first argument, rounded down.
-pub(super) fn count(numbers: usize, entries: usize) -> usize {
+pub(super) fn count_states(numbers: usize, entries: usize) -> usize {
     numbers.checked_div(entries).unwrap_or(0)
 }
 
 impl<'a, T: Real, const R: usize> Input<'a, T, R> {
     pub(super) fn new(name: &'static str, numbers: &'a [T], count: usize) -> Result<Self, Error> {
-        fits(name, numbers.len(), R, count)?;
+        check_slice_length(name, numbers.len(), R, count)?;
         let mut rest = numbers;
         let entries = core::array::from_fn(|_| {
             let (entry, others) = rest.split_at_checked(count).unwrap_or((rest, &[]));
@@ -69,7 +69,7 @@ fn load<T: Real, const L: usize>(entry: &[T], first: usize) -> Lanes<T, L> {
 
 impl<'a, T: Real, const R: usize, const C: usize> Output<'a, T, R, C> {
     pub(super) fn new(name: &'static str, numbers: &'a mut [T], count: usize) -> Result<Self, Error> {
-        fits(name, numbers.len(), R * C, count)?;
+        check_slice_length(name, numbers.len(), R * C, count)?;
         let mut rest = numbers;
         let entries = core::array::from_fn(|_| {
             core::array::from_fn(|_| {
@@ -84,7 +84,7 @@ impl<'a, T: Real, const R: usize, const C: usize> Output<'a, T, R, C> {
 
     /// Splits into the states before index `at` and the states from `at` on.
     #[cfg(feature = "rayon")]
-    pub(super) fn split(self, at: usize) -> (Self, Self) {
+    pub(super) fn split_at_state(self, at: usize) -> (Self, Self) {
         let empty_columns = || core::array::from_fn(|_| core::array::from_fn(|_| <&'a mut [T]>::default()));
         let (mut before, mut after): ([[_; R]; C], [[_; R]; C]) = (empty_columns(), empty_columns());
         let halves = before.iter_mut().flatten().zip(after.iter_mut().flatten());
@@ -96,7 +96,7 @@ impl<'a, T: Real, const R: usize, const C: usize> Output<'a, T, R, C> {
 
     /// Stores the existing states from index `first` on.
     #[inline(always)]
-    pub(super) fn store<const L: usize>(&mut self, first: usize, values: &SMatrix<Lanes<T, L>, R, C>) {
+    pub(super) fn store_lanes<const L: usize>(&mut self, first: usize, values: &SMatrix<Lanes<T, L>, R, C>) {
         for (entries, values) in self.entries.iter_mut().zip(&values.data.0) {
             for (entry, value) in entries.iter_mut().zip(values) {
                 if let Some(full) = entry.get_mut(first..first + L) {

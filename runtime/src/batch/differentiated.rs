@@ -59,7 +59,7 @@ impl<T: Real, const L: usize, A: Laned<T, L>, B: Laned<T, L>, C: Laned<T, L>> La
 }
 
 /// Returns the results of all lanes, each computed by `of`.
-fn each<T: Real, const L: usize, R: Laned<T, L>>(of: impl Fn(usize) -> R) -> R::All {
+fn results_of_all_lanes<T: Real, const L: usize, R: Laned<T, L>>(of: impl Fn(usize) -> R) -> R::All {
     let mut all = R::none();
     for k in 0..L {
         of(k).write_lane(&mut all, k);
@@ -71,7 +71,7 @@ fn each<T: Real, const L: usize, R: Laned<T, L>>(of: impl Fn(usize) -> R) -> R::
 macro_rules! of_each {
     ($($name:ident[$($time:ident)?]($($argument:ident: $of:ident),*) -> $result:ty;)+) => {$(
         fn $name(&self, $($time: Self::Scalar,)? $($argument: &SVector<Self::Scalar, $of>),*) -> $result {
-            each(|k| Derivatives::$name(self.mechanism, $($time.0[k],)? $(&lane($argument, k)),*))
+            results_of_all_lanes(|k| Derivatives::$name(self.mechanism, $($time.0[k],)? $(&lane($argument, k)),*))
         }
     )+};
 }
@@ -112,7 +112,7 @@ where
         by_v: &mut Square<Self::Scalar, NV>,
         by_tau: &mut Square<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV> {
-        let (acceleration, found) = each(|k| {
+        let (acceleration, found) = results_of_all_lanes(|k| {
             let (mut by_q, mut by_v, mut by_tau) = (zeros(), zeros(), zeros());
             let (q, v, tau) = (lane(q, k), lane(v, k), lane(tau, k));
             let acceleration = self.mechanism.forward_dynamics_derivatives_into(

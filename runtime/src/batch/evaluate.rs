@@ -1,6 +1,6 @@
 //! Functions of a mechanism for many states, from arrays to arrays.
 
-use super::columns::{Input, Line, Output, count};
+use super::columns::{Input, Line, Output, count_states};
 use super::{Batch, Error, Lanewise};
 use crate::{Lanes, Mechanism};
 use nalgebra::SMatrix;
@@ -23,7 +23,7 @@ macro_rules! evaluations {
         where
             M: Batch<NQ, NV, NU>,
         {
-            let count = count($first.len(), $first_of);
+            let count = count_states($first.len(), $first_of);
             let $first = Input::<_, $first_of>::new(stringify!($first), $first, count)?;
             $(let $argument = Input::<_, $of>::new(stringify!($argument), $argument, count)?;)*
             let mut to = Output::<_, { $rows }, { $columns }>::new(stringify!($result), $result, count)?;
@@ -31,7 +31,7 @@ macro_rules! evaluations {
                 let $first = $first.load::<L>(state);
                 $(let $argument = $argument.load::<L>(state);)*
                 let values = Line($turn(Mechanism::$function(self, $(Lanes::splat($time),)? &$first.0 $(, &$argument.0)*)));
-                to.store(state, &values.0);
+                to.store_lanes(state, &values.0);
             }
             Ok(())
         }
@@ -50,31 +50,31 @@ macro_rules! evaluations {
 impl<M, const L: usize> Lanewise<'_, M, L> {
     evaluations! {
         /// Computes configurations `q ⊕ dv` for many states ([`Mechanism::integrate`]).
-        integrate_all = integrate[](q: NQ, dv: NV) -> result: NQ x 1, vector;
+        integrate_all = integrate[](q: NQ, dv: NV) -> result: NQ x 1, vector_result;
         /// Computes mass matrices ([`Mechanism::mass_matrix`]), `NV²` entries: (i, j) is entry `j NV + i`.
-        mass_matrix_all = mass_matrix[t](q: NQ) -> mass: NV x NV, vector;
+        mass_matrix_all = mass_matrix[t](q: NQ) -> mass: NV x NV, vector_result;
         /// Computes bias forces for many states ([`Mechanism::bias_forces`]).
-        bias_forces_all = bias_forces[t](q: NQ, v: NV) -> h: NV x 1, vector;
+        bias_forces_all = bias_forces[t](q: NQ, v: NV) -> h: NV x 1, vector_result;
         /// Computes inverse dynamics for many states ([`Mechanism::inverse_dynamics`]).
-        inverse_dynamics_all = inverse_dynamics[t](q: NQ, v: NV, a: NV) -> tau: NV x 1, vector;
+        inverse_dynamics_all = inverse_dynamics[t](q: NQ, v: NV, a: NV) -> tau: NV x 1, vector_result;
         /// Computes forward dynamics for many states ([`Mechanism::forward_dynamics`]).
-        forward_dynamics_all = forward_dynamics[t](q: NQ, v: NV, tau: NV) -> a: NV x 1, vector;
+        forward_dynamics_all = forward_dynamics[t](q: NQ, v: NV, tau: NV) -> a: NV x 1, vector_result;
         /// Computes generalized forces of inputs for many states ([`Mechanism::generalized_forces`]).
-        generalized_forces_all = generalized_forces[t](q: NQ, v: NV, u: NU) -> tau: NV x 1, vector;
+        generalized_forces_all = generalized_forces[t](q: NQ, v: NV, u: NU) -> tau: NV x 1, vector_result;
         /// Computes kinetic energies for many states ([`Mechanism::kinetic_energy`]), one number per state.
-        kinetic_energy_all = kinetic_energy[t](q: NQ, v: NV) -> energy: 1 x 1, scalar;
+        kinetic_energy_all = kinetic_energy[t](q: NQ, v: NV) -> energy: 1 x 1, scalar_as_matrix;
         /// Computes potential energies for many states ([`Mechanism::potential_energy`]), one number per
         /// state.
-        potential_energy_all = potential_energy[t](q: NQ) -> energy: 1 x 1, scalar;
+        potential_energy_all = potential_energy[t](q: NQ) -> energy: 1 x 1, scalar_as_matrix;
     }
 }
 
 #[inline(always)]
-fn vector<T>(values: T) -> T {
+fn vector_result<T>(values: T) -> T {
     values
 }
 
 #[inline(always)]
-fn scalar<T: crate::Real, const L: usize>(value: Lanes<T, L>) -> SMatrix<Lanes<T, L>, 1, 1> {
+fn scalar_as_matrix<T: crate::Real, const L: usize>(value: Lanes<T, L>) -> SMatrix<Lanes<T, L>, 1, 1> {
     SMatrix::from_element(value)
 }

@@ -207,7 +207,7 @@ where
             return Err(*error);
         }
         let nothing = M::Scalar::zero() / M::Scalar::zero();
-        let lost = Touched::free(SVector::repeat(nothing), SVector::repeat(nothing));
+        let lost = Touched::state_without_contacts(SVector::repeat(nothing), SVector::repeat(nothing));
         let result_of_lane = |k: usize| results[k].unwrap_or(lost);
         let [v, held] = [lane_by_lane(|k| result_of_lane(k).v), lane_by_lane(|k| result_of_lane(k).held)];
         let violation = Lanes(core::array::from_fn(|k| result_of_lane(k).violation));

@@ -46,14 +46,14 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         M: Batch<NQ, NV, NU> + Sync,
         S: Lockstep<M::Scalar> + Sync,
     {
-        let part = Part::all(rollout, q, v)?;
+        let part = Part::all_states(rollout, q, v)?;
         let shared =
             Shared { watch, done: AtomicUsize::new(0), cancelled: AtomicBool::new(false), count: part.count };
-        self.divide(rollout, part, &control, &shared).result()
+        self.divide_recursively(rollout, part, &control, &shared).rollout_result()
     }
 
     /// Splits the states into halves recursively, down to [`GRAIN`] groups.
-    fn divide<S, C, W, const NQ: usize, const NV: usize, const NU: usize>(
+    fn divide_recursively<S, C, W, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,
         mut part: Part<'_, M::Scalar, NQ, NV>,
@@ -74,12 +74,12 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
     {
         let groups = part.count.div_ceil(L.max(1));
         if groups > GRAIN {
-            let (front, back) = part.split(groups / 2 * L);
+            let (front, back) = part.split_at_state(groups / 2 * L);
             let (front, back) = rayon::join(
-                || self.divide(rollout, front, control, shared),
-                || self.divide(rollout, back, control, shared),
+                || self.divide_recursively(rollout, front, control, shared),
+                || self.divide_recursively(rollout, back, control, shared),
             );
-            return front.and(back);
+            return front.combine_with(back);
         }
         if shared.cancelled.load(Ordering::Relaxed) {
             return Tally { cancelled: true, ..Tally::default() };

@@ -1,6 +1,6 @@
 //! Motions of many states over a fixed number of steps.
 
-use super::columns::{Output, count};
+use super::columns::{Output, count_states};
 use super::{Batch, Error, Lanewise};
 use crate::integrate::{self, ContinuousInputs, Method, Rk4, SemiImplicitEuler, State, System};
 use crate::lanes::{lane, lane_by_lane};
@@ -90,7 +90,7 @@ pub(super) struct Tally {
 
 impl Tally {
     /// Returns the outcome combined with that of the states `behind` these.
-    pub(super) fn and(self, behind: Tally) -> Tally {
+    pub(super) fn combine_with(self, behind: Tally) -> Tally {
         Tally {
             done: self.done + behind.done,
             failed: self.failed + behind.failed,
@@ -99,7 +99,7 @@ impl Tally {
         }
     }
 
-    pub(super) fn result(self) -> Result<(), Error> {
+    pub(super) fn rollout_result(self) -> Result<(), Error> {
         match self.first {
             _ if self.cancelled => Err(Error::Cancelled { done: self.done }),
             Some((state, source)) => Err(Error::Motion { state, count: self.failed, source }),
@@ -123,12 +123,12 @@ impl<'a, T: Real, const NQ: usize, const NV: usize> Part<'a, T, NQ, NV> {
     /// # Errors
     ///
     /// [`Error::Length`] and [`Error::Method`].
-    pub(super) fn all<S: Lockstep<T>>(
+    pub(super) fn all_states<S: Lockstep<T>>(
         rollout: &Rollout<T, S>,
         q: &'a mut [T],
         v: &'a mut [T],
     ) -> Result<Self, Error> {
-        let count = count(q.len(), NQ);
+        let count = count_states(q.len(), NQ);
         let (q, v) = (Output::new("q", q, count)?, Output::new("v", v, count)?);
         rollout.method.check().map_err(Error::Method)?;
         Ok(Self { first: 0, q, v, count })
@@ -138,8 +138,8 @@ impl<'a, T: Real, const NQ: usize, const NV: usize> Part<'a, T, NQ, NV> {
 #[cfg(feature = "rayon")]
 impl<T: Real, const NQ: usize, const NV: usize> Part<'_, T, NQ, NV> {
     /// Splits into the states before index `at` and the states from `at` on.
-    pub(super) fn split(self, at: usize) -> (Self, Self) {
-        let ((q, other_q), (v, other_v)) = (self.q.split(at), self.v.split(at));
+    pub(super) fn split_at_state(self, at: usize) -> (Self, Self) {
+        let ((q, other_q), (v, other_v)) = (self.q.split_at_state(at), self.v.split_at_state(at));
         let front = Self { first: self.first, q, v, count: at };
         (front, Self { first: self.first + at, q: other_q, v: other_v, count: self.count - at })
     }
@@ -188,9 +188,10 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         M: Batch<NQ, NV, NU>,
         S: Lockstep<M::Scalar>,
     {
-        let mut part = Part::all(rollout, q, v)?;
+        let mut part = Part::all_states(rollout, q, v)?;
         let count = part.count;
-        self.roll_out_part(rollout, &mut part, &control, |done| watch(Progress { done, count })).result()
+        self.roll_out_part(rollout, &mut part, &control, |done| watch(Progress { done, count }))
+            .rollout_result()
     }
 
     /// Rolls out a range of states, one group of lanes after another. `watch` receives the number of states
@@ -220,7 +221,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
             let present = L.min(part.count - state);
             for (k, failure) in group.failures.iter().enumerate().take(present) {
                 let failed = failure.map(|error| (part.first + state + k, error));
-                tally = tally.and(Tally {
+                tally = tally.combine_with(Tally {
                     done: 1,
                     failed: failed.iter().count(),
                     first: failed,
@@ -313,7 +314,8 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
             let mut memory = rollout.method.memory();
             let mut state = State { t: start.t.0[k], q: lane(&start.q, k), v: lane(&start.v, k) };
             for _ in 0..rollout.steps {
-                match system.advance(&rollout.method, &mut memory, nalgebra::zero(), &state, None, false) {
+                match system.advance_step(&rollout.method, &mut memory, nalgebra::zero(), &state, None, false)
+                {
                     Ok(step) => state = step.end,
                     Err(error) => {
                         failures[k] = Some(error);

@@ -88,7 +88,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         if self.end - self.first.min(self.end) > 8 {
             return self.lead_many(a);
         }
-        let (start, is_other) = self.eight();
+        let (start, is_other) = self.eight_rows_of_range();
         for column in &mut a.data.0 {
             self.lead_column(column, start, is_other);
         }
@@ -102,7 +102,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         into: &mut SMatrix<T, N, C>,
     ) {
         let few = self.end - self.first.min(self.end) <= 8;
-        let (start, is_other) = self.eight();
+        let (start, is_other) = self.eight_rows_of_range();
         for (column, from) in into.data.0.iter_mut().zip(&a.data.0) {
             column.iter_mut().zip(from).for_each(|(entry, x)| *entry = *x * s);
             if few && self.first < self.end {
@@ -117,7 +117,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
     /// Returns the first of eight rows that contain the range, and which of the eight rows belong to it. All
     /// other rows are zero in these columns.
     #[inline(always)]
-    fn eight(&self) -> (usize, [bool; 8]) {
+    fn eight_rows_of_range(&self) -> (usize, [bool; 8]) {
         let start = self.first.min(N - N.min(8));
         (start, core::array::from_fn(|k| (self.first..self.end).contains(&(start + k))))
     }
@@ -125,18 +125,18 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
     /// Replaces one column `x` by `D x`, as a step of [`lead`](Self::lead).
     #[inline(always)]
     fn lead_column(&self, column: &mut [T; N], start: usize, is_other: [bool; 8]) {
-        let sum = self.rows(column, start);
+        let sum = self.product_rows(column, start);
         if let Some(places) = column.get_mut(start..).and_then(<[T]>::first_chunk_mut::<8>) {
             // Eight entries at once, each either the sum or its previous value.
             let given = *places;
-            let chosen = given.iter().zip(sum.numbers()).zip(is_other);
+            let chosen = given.iter().zip(sum.numbers_of_lanes()).zip(is_other);
             places.iter_mut().zip(chosen).for_each(|(place, ((given, sum), is_other))| {
                 *place = if is_other { *sum } else { *given };
             });
             return;
         }
         let places = column.get_mut(start..).unwrap_or(&mut []);
-        for ((place, sum), is_other) in places.iter_mut().zip(sum.numbers()).zip(is_other) {
+        for ((place, sum), is_other) in places.iter_mut().zip(sum.numbers_of_lanes()).zip(is_other) {
             if is_other {
                 *place = *sum;
             }
@@ -145,7 +145,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
 
     /// Returns eight rows, from `start` on, of the product with a column.
     #[inline(always)]
-    fn rows(&self, column: &[T], start: usize) -> Vector<Compiled, T, 8> {
+    fn product_rows(&self, column: &[T], start: usize) -> Vector<Compiled, T, 8> {
         let mut sum = Vector::<Compiled, T, 8>::splat(T::zero());
         let some = self.first..self.end;
         let (factors, own) = (column.get(some.clone()), self.matrix.data.0.get(some));
@@ -162,10 +162,10 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
             let given = *column;
             for from in (self.first..self.end).step_by(8) {
                 let start = from.min(N - length);
-                let sum = self.rows(&given, start);
+                let sum = self.product_rows(&given, start);
                 let kept = self.end.min(start + length);
                 let places = column.get_mut(from..kept).unwrap_or(&mut []);
-                for (place, sum) in places.iter_mut().zip(sum.numbers().iter().skip(from - start)) {
+                for (place, sum) in places.iter_mut().zip(sum.numbers_of_lanes().iter().skip(from - start)) {
                     *place = *sum;
                 }
             }

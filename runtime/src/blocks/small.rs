@@ -14,23 +14,27 @@ pub(super) fn add_product<A: Arithmetic, T: Real, const R: usize, const K: usize
     a: &[[T; R]; K],
     b: &[[T; K]],
 ) {
-    if R > 4 { columns::<A, T, 2, R, K>(sums, a, b) } else { columns::<A, T, 1, R, K>(sums, a, b) }
+    if R > 4 {
+        multiply_columns::<A, T, 2, R, K>(sums, a, b)
+    } else {
+        multiply_columns::<A, T, 1, R, K>(sums, a, b)
+    }
 }
 
 /// Computes columns of a matrix product with their rows in `V` registers of four. If fewer rows remain, the
 /// last register overlaps the previous one; all rows are read before any is written.
 #[inline(always)]
-fn columns<A: Arithmetic, T: Real, const V: usize, const R: usize, const K: usize>(
+fn multiply_columns<A: Arithmetic, T: Real, const V: usize, const R: usize, const K: usize>(
     sums: &mut [[T; R]],
     a: &[[T; R]; K],
     b: &[[T; K]],
 ) {
     let mut rows = [[A::splat(T::zero()); V]; K];
     for (registers, column) in rows.iter_mut().zip(a) {
-        *registers = read::<A, T, V>(column);
+        *registers = read_column::<A, T, V>(column);
     }
     for (column, factors) in sums.iter_mut().zip(b) {
-        let mut entries = read::<A, T, V>(column);
+        let mut entries = read_column::<A, T, V>(column);
         for (registers, factor) in rows.iter().zip(factors) {
             let factor = A::splat(*factor);
             for (entry, x) in entries.iter_mut().zip(registers) {
@@ -45,7 +49,7 @@ fn columns<A: Arithmetic, T: Real, const V: usize, const R: usize, const K: usiz
 
 /// Reads a matrix column into registers of four.
 #[inline(always)]
-fn read<A: Arithmetic, T: Real, const V: usize>(column: &[T]) -> [Vector<A, T, 4>; V] {
+fn read_column<A: Arithmetic, T: Real, const V: usize>(column: &[T]) -> [Vector<A, T, 4>; V] {
     let mut registers = [A::splat(T::zero()); V];
     for (v, register) in registers.iter_mut().enumerate() {
         *register = part::<A, T, 4>(column, 4 * v);

@@ -83,14 +83,14 @@ impl<T: Real, const N: usize, const R: usize> Evaluate<1, &mut SMatrix<T, R, N>>
         // The last register overlaps the previous one if fewer rows remain; the common rows are solved twice.
         if A::WIDE && R >= 8 {
             let eights = registers_of_eight(R, true);
-            (0..eights).for_each(|k| self.some::<A, 8>(out, 8 * k));
+            (0..eights).for_each(|k| self.solve_one_register::<A, 8>(out, 8 * k));
             if registers_of_four(R, true) > 0 {
-                self.some::<A, 4>(out, 8 * eights);
+                self.solve_one_register::<A, 4>(out, 8 * eights);
             }
         } else if R >= 4 {
-            (0..R).step_by(4).for_each(|from| self.some::<A, 4>(out, from));
+            (0..R).step_by(4).for_each(|from| self.solve_one_register::<A, 4>(out, from));
         } else {
-            (0..R).for_each(|from| self.some::<A, 1>(out, from));
+            (0..R).for_each(|from| self.solve_one_register::<A, 1>(out, from));
         }
     }
 }
@@ -98,7 +98,7 @@ impl<T: Real, const N: usize, const R: usize> Evaluate<1, &mut SMatrix<T, R, N>>
 impl<T: Real, const N: usize, const R: usize> Solve<'_, T, N, R> {
     /// Solves the linear system for one register of right-hand sides, beginning with the one at index `from`.
     #[inline(always)]
-    fn some<A: Arithmetic, const W: usize>(&self, out: &mut [[T; R]; N], from: usize) {
+    fn solve_one_register<A: Arithmetic, const W: usize>(&self, out: &mut [[T; R]; N], from: usize) {
         let (l, inverse) = (&self.l.data.0, &self.inverse.data.0[0]);
         let mut x = [A::splat(T::zero()); N];
         for (x, column) in x.iter_mut().zip(&self.b.data.0) {

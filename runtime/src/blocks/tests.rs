@@ -6,7 +6,7 @@ use crate::multiplication::testing::numbers;
 
 /// Checks the product of a matrix of `R` rows that is added to another matrix, and solutions of linear
 /// systems for `R` right-hand sides.
-fn check<A: Arithmetic, const R: usize, const C: usize>() {
+fn check_product_and_solution<A: Arithmetic, const R: usize, const C: usize>() {
     let (a, b, start) = (numbers::<R, 5>(0.0), numbers::<5, C>(1.0), numbers::<R, C>(2.0));
     let mut found = start;
     Product { a: &a, b: &b }.evaluate::<A>(&mut found);
@@ -24,7 +24,7 @@ fn check<A: Arithmetic, const R: usize, const C: usize>() {
 fn all_rows<A: Arithmetic>() {
     macro_rules! each {
         ($($columns:literal: $($rows:literal)*;)*) => {
-            $($(check::<A, $rows, $columns>();)*)*
+            $($(check_product_and_solution::<A, $rows, $columns>();)*)*
         };
     }
     // All remainders of groups of four columns and of registers of rows.

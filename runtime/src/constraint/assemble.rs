@@ -1,6 +1,6 @@
 //! Assembly: search for a configuration that satisfies the constraints, and its assembly mode.
 
-use super::{ConstraintError, complete, is_acceptable, largest, off};
+use super::{ConstraintError, complete, configuration_error, index_of_largest_entry, is_acceptable};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
@@ -55,13 +55,17 @@ pub fn assemble<
     held: &[usize],
     mode: Option<i8>,
 ) -> Result<SVector<T, NQ>, ConstraintError> {
-    complete::check::<NV>(held)?;
+    complete::check_held_indices::<NV>(held)?;
     let is_wanted = |q: &SVector<T, NQ>| mode.is_none() || assembly_mode(loops, q, held) == mode;
     // First configuration found whose angles differ by more than half a revolution, as gears may require.
     let mut far = None;
     let mut attempt = |from: &SVector<T, NQ>| -> Result<Option<SVector<T, NQ>>, ConstraintError> {
-        let found = unwind(loops, q, descend(loops, from, held)?);
-        let turned = loops.angles.iter().map(|k| turns(q, &found, *k).abs()).fold(T::zero(), |a, b| a.max(b));
+        let found = remove_whole_revolutions(loops, q, descend_to_configuration(loops, from, held)?);
+        let turned = loops
+            .angles
+            .iter()
+            .map(|k| revolutions_from_guess(q, &found, *k).abs())
+            .fold(T::zero(), |a, b| a.max(b));
         if turned <= constant(0.5) && is_wanted(&found) {
             return Ok(Some(found));
         }
@@ -98,14 +102,18 @@ pub fn assemble<
 }
 
 /// Returns the number of revolutions by which an angle differs from that of the guess.
-fn turns<T: Real, const NQ: usize>(guess: &SVector<T, NQ>, q: &SVector<T, NQ>, k: usize) -> T {
+fn revolutions_from_guess<T: Real, const NQ: usize>(
+    guess: &SVector<T, NQ>,
+    q: &SVector<T, NQ>,
+    k: usize,
+) -> T {
     let coordinate_entry = |q: &SVector<T, NQ>| q.get(k).copied().unwrap_or(T::zero());
     (coordinate_entry(q) - coordinate_entry(guess)) / T::two_pi()
 }
 
 /// Subtracts whole revolutions from angles that are more than half a revolution from the guess, if the result
 /// still satisfies the constraints. First tries all angles together, then each individually.
-fn unwind<
+fn remove_whole_revolutions<
     T: Real,
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
     J,
@@ -121,7 +129,7 @@ fn unwind<
 ) -> SVector<T, NQ> {
     let remove_whole_turns = |mut q: SVector<T, NQ>, angles: &[usize]| {
         for k in angles {
-            let whole = turns(guess, &q, *k).round();
+            let whole = revolutions_from_guess(guess, &q, *k).round();
             if let Some(angle) = q.get_mut(*k) {
                 *angle -= whole * T::two_pi();
             }
@@ -129,7 +137,7 @@ fn unwind<
         q
     };
     let satisfies_constraints = |q: &SVector<T, NQ>| {
-        largest(&(loops.residuals)(q)).is_ok_and(|(_, residual)| is_acceptable(residual, q))
+        index_of_largest_entry(&(loops.residuals)(q)).is_ok_and(|(_, residual)| is_acceptable(residual, q))
     };
     let all = remove_whole_turns(q, loops.angles);
     if all == q || satisfies_constraints(&all) {
@@ -142,7 +150,7 @@ fn unwind<
 }
 
 /// Returns the configuration to which [`least_violation`] leads, if it satisfies the constraints.
-fn descend<
+fn descend_to_configuration<
     T: Real,
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
     J: Fn(&SVector<T, NQ>) -> SMatrix<T, NC, NV>,
@@ -157,8 +165,8 @@ fn descend<
     held: &[usize],
 ) -> Result<SVector<T, NQ>, ConstraintError> {
     let q = least_violation(loops, q, held)?;
-    let (worst, size) = largest(&(loops.residuals)(&q))?;
-    is_acceptable(size, &q).then_some(q).ok_or_else(|| off(loops.names, worst, size))
+    let (worst, size) = index_of_largest_entry(&(loops.residuals)(&q))?;
+    is_acceptable(size, &q).then_some(q).ok_or_else(|| configuration_error(loops.names, worst, size))
 }
 
 /// Minimises `½ |φ|²` over the coordinates that are not held, by Levenberg–Marquardt steps of bounded length.
@@ -180,10 +188,10 @@ pub fn least_violation<
 ) -> Result<SVector<T, NQ>, ConstraintError> {
     let mut q = *q;
     let mut residuals = (loops.residuals)(&q);
-    largest(&residuals)?;
+    index_of_largest_entry(&residuals)?;
     let mut damping = constant::<T>(1e-3);
     for _ in 0..MOST_STEPS {
-        let (_, size) = largest(&residuals)?;
+        let (_, size) = index_of_largest_entry(&residuals)?;
         if size <= constant::<T>(4.0) * epsilon() {
             break;
         }
@@ -196,7 +204,7 @@ pub fn least_violation<
             normal[(k, k)] = if influences { own + own * damping } else { nalgebra::one() };
         }
         let step = normal.cholesky().map(|c| -(rows.transpose() * c.solve(&residuals)));
-        let next = step.map(|step| (loops.integrate)(&q, &bounded(step, &loops.turns)));
+        let next = step.map(|step| (loops.integrate)(&q, &limit_angle_steps(step, &loops.turns)));
         let trial = next.map(|next| (next, (loops.residuals)(&next)));
         match trial.filter(|(_, r)| r.norm() < residuals.norm()) {
             Some((next, r)) => {
@@ -215,7 +223,7 @@ pub fn least_violation<
 }
 
 /// Returns an assembly step that is scaled such that no angle changes by more than [`LONGEST`].
-fn bounded<T: Real, const NV: usize>(step: SVector<T, NV>, turns: &[bool; NV]) -> SVector<T, NV> {
+fn limit_angle_steps<T: Real, const NV: usize>(step: SVector<T, NV>, turns: &[bool; NV]) -> SVector<T, NV> {
     let angles = step.iter().zip(turns).filter(|(_, turns)| **turns);
     let longest = angles.fold(T::zero(), |longest, (angle, _)| longest.max(angle.abs()));
     if longest > constant(LONGEST) { step * (constant::<T>(LONGEST) / longest) } else { step }

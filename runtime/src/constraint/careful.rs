@@ -4,12 +4,12 @@
 
 mod passing;
 
-use super::span::{Metric, Span, dot, entry_or_zero, norm, orthogonal, rounding};
+use super::span::{Metric, Span, dot, entry_or_zero, norm, orthonormalise_vectors, rounding_threshold};
 use super::{Constrained, Solution};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
-use passing::size;
+use passing::largest_magnitude;
 
 /// Structure of a mechanism's constraints, which does not depend on the state.
 #[derive(Clone, Copy, Debug)]
@@ -52,34 +52,45 @@ where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
     let system = System::at_state(mechanism, t, (q, v), tau);
-    let (least, regular) = system.solve(structure, zone(), Weak::Dropped);
+    let (least, regular) =
+        system.solve_above_magnitude(structure, well_conditioned_threshold(), Weak::Dropped);
     if regular {
         return least;
     }
-    if let Some(clear) = System::<T, NV, NC>::clearance(v, &least.0) {
-        let (taken, regular) = system.solve(structure, clear, Weak::Dropped);
+    if let Some(clear) = System::<T, NV, NC>::clear_row_magnitude(v, &least.0) {
+        let (taken, regular) = system.solve_above_magnitude(structure, clear, Weak::Dropped);
         // The threshold depends on the accelerations that the constraints permit, not on those that they
         // prevent.
-        let ratio = epsilon::<T>().sqrt() * size(&least.0) / size(&taken.0);
-        let enough = System::<T, NV, NC>::clearance(v, &taken.0)
+        let ratio = epsilon::<T>().sqrt() * largest_magnitude(&least.0) / largest_magnitude(&taken.0);
+        let enough = System::<T, NV, NC>::clear_row_magnitude(v, &taken.0)
             .map(|clear| clear.max(ratio))
-            .filter(|clear| *clear < zone());
+            .filter(|clear| *clear < well_conditioned_threshold());
         if regular
-            && enough
-                .is_some_and(|enough| enough <= clear || system.solve(structure, enough, Weak::Dropped).1)
+            && enough.is_some_and(|enough| {
+                enough <= clear || system.solve_above_magnitude(structure, enough, Weak::Dropped).1
+            })
         {
             return taken;
         }
     }
-    let start = system.solve(structure, constant::<T>(4.0) * epsilon::<T>().sqrt(), Weak::Dropped).0.0;
-    let passing = passing::acceleration(mechanism, structure, t, (q, v), &system, &start);
-    system.solve(structure, zone(), passing.map_or(Weak::Taken, Weak::Known)).0
+    let start = system
+        .solve_above_magnitude(structure, constant::<T>(4.0) * epsilon::<T>().sqrt(), Weak::Dropped)
+        .0
+        .0;
+    let passing = passing::acceleration_past_singularity(mechanism, structure, t, (q, v), &system, &start);
+    system
+        .solve_above_magnitude(
+            structure,
+            well_conditioned_threshold(),
+            passing.map_or(Weak::Taken, Weak::Known),
+        )
+        .0
 }
 
 /// Returns the relative magnitude above which constraint rows are well-conditioned; entries are relative to
 /// the numbers that they were computed from. A configuration is regular if all independent rows are
 /// well-conditioned.
-fn zone<T: Real>() -> T {
+fn well_conditioned_threshold<T: Real>() -> T {
     epsilon::<T>().cbrt().sqrt()
 }
 
@@ -110,7 +121,7 @@ where
 {
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let both = System { mass, jacobian, force: *force, bias: *bias };
-    let (found, regular) = both.solve(structure, zone(), Weak::Dropped);
+    let (found, regular) = both.solve_above_magnitude(structure, well_conditioned_threshold(), Weak::Dropped);
     if regular {
         return found;
     }
@@ -121,21 +132,25 @@ where
     let apart = (0..NH).fold(T::zero(), |most, k| {
         most.max((entry_or_zero(&left.data.0[0], k) - entry_or_zero(bias, k)).abs())
     });
-    let is_place = size(&left) > T::zero() && apart <= size(&left) * constant(0.5);
+    let is_place = largest_magnitude(&left) > T::zero() && apart <= largest_magnitude(&left) * constant(0.5);
     // If positions have the error ε, a row of relative magnitude σ has a direction error of ε / σ².
     let reach = q.iter().fold(T::one(), |most, q| most.max(q.abs()));
     let (known, root) = (constant::<T>(16.0) * epsilon::<T>() * reach, epsilon::<T>().sqrt());
     let turned = if is_place && gap > root { T::zero() } else { minimum_magnitude(&left) };
     let rounded = if is_place || gap > root { T::zero() } else { known / gap };
     let least = root.max(rounded).max(turned);
-    let weak = if least < zone() { Weak::Down(least) } else { Weak::Dropped };
-    let correction = System { force: [T::zero(); NV], ..both }.solve(structure, zone(), weak).0;
+    let weak = if least < well_conditioned_threshold() { Weak::Down(least) } else { Weak::Dropped };
+    let correction = System { force: [T::zero(); NV], ..both }
+        .solve_above_magnitude(structure, well_conditioned_threshold(), weak)
+        .0;
     if force.iter().all(|f| *f == T::zero()) {
         return correction;
     }
     // All rows with a known direction contribute to the response to forces.
     let answer = System { bias: [T::zero(); NC], ..both };
-    let answer = answer.solve(structure, zone(), Weak::Down(known.sqrt().max(turned))).0;
+    let answer = answer
+        .solve_above_magnitude(structure, well_conditioned_threshold(), Weak::Down(known.sqrt().max(turned)))
+        .0;
     (answer.0 + correction.0, answer.1 + correction.1)
 }
 
@@ -143,7 +158,7 @@ where
 /// configuration, for the residuals `left`. With a residual `r`, the configuration is off its branch by `r` /
 /// σ. Directions rotate by one radian over the distance σ to the other branch, so their error is `r` / σ².
 pub(super) fn minimum_magnitude<T: Real, const NH: usize>(left: &SVector<T, NH>) -> T {
-    (constant::<T>(64.0) * size(left).max(epsilon())).sqrt()
+    (constant::<T>(64.0) * largest_magnitude(left).max(epsilon())).sqrt()
 }
 
 /// Returns whether a configuration is singular, or so close to a singular one that a step by `dv` changes the
@@ -170,7 +185,7 @@ where
 {
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let still = System { mass, jacobian, force: [T::zero(); NV], bias: [T::zero(); NC] };
-    let metric = Metric::new(&still.loaded(structure).0);
+    let metric = Metric::new(&still.loaded_mass_and_forces(structure).0);
     let later = mechanism.constraint_jacobian(t, &mechanism.integrate(q, dv));
     let weighted_column_length = |j: &SMatrix<T, NC, NV>, k: usize| {
         norm(&metric.half(core::array::from_fn(|i| entry_or_zero(&j.data.0[i], k))))
@@ -195,13 +210,13 @@ where
 /// Returns the distance from a singular configuration, m or rad, at which the errors of rounding and of
 /// interpolation are about equal.
 fn safe_distance<T: Real>() -> T {
-    constant::<T>(6.0) * zone()
+    constant::<T>(6.0) * well_conditioned_threshold()
 }
 
 /// Returns the relative threshold for rows beyond the rank of regular configurations. States between the
 /// steps of an integrator do not satisfy redundant constraints exactly, so these rows are not exactly
 /// dependent.
-fn beyond<T: Real>() -> T {
+fn redundant_row_threshold<T: Real>() -> T {
     if epsilon::<T>() < constant(1e-10) { constant(1e-4) } else { constant(1e-2) }
 }
 
@@ -263,28 +278,29 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
     /// Returns the relative magnitude of rows that determine accelerations like `a` to half of the digits, if
     /// it is below the usual threshold. If constraints are satisfied up to a rounding error ε, rows of
     /// relative magnitude σ cause an acceleration error of ε v² / σ³.
-    fn clearance(v: &SVector<T, NV>, a: &SVector<T, NV>) -> Option<T> {
-        let speed = size(v);
-        let clear = (constant::<T>(4.0) * epsilon::<T>().sqrt() * speed * speed / size(a)).cbrt();
-        (clear < zone()).then_some(clear)
+    fn clear_row_magnitude(v: &SVector<T, NV>, a: &SVector<T, NV>) -> Option<T> {
+        let speed = largest_magnitude(v);
+        let clear =
+            (constant::<T>(4.0) * epsilon::<T>().sqrt() * speed * speed / largest_magnitude(a)).cbrt();
+        (clear < well_conditioned_threshold()).then_some(clear)
     }
 
     /// Returns the solution, and whether the rows above the relative magnitude `clear` have the rank of
     /// regular configurations.
-    fn solve(
+    fn solve_above_magnitude(
         &self,
         structure: &Structure<'_, NC>,
         clear: T,
         weak: Weak<T, NV>,
     ) -> (Solution<T, NV, NC>, bool) {
-        let (mass, force) = self.loaded(structure);
+        let (mass, force) = self.loaded_mass_and_forces(structure);
         let metric = Metric::new(&mass);
         let mut span = Span::new(&metric, &self.jacobian, &structure.groups);
         span.extend(clear, structure.rank);
         let regular = span.rank >= structure.rank;
         match weak {
-            _ if regular => span.extend(beyond(), NC),
-            Weak::Taken => span.extend(rounding(), structure.rank),
+            _ if regular => span.extend(redundant_row_threshold(), NC),
+            Weak::Taken => span.extend(rounding_threshold(), structure.rank),
             Weak::Down(size) => span.extend(size, structure.rank),
             Weak::Known(_) | Weak::Dropped => {}
         }
@@ -300,7 +316,7 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
             _ => (free, self.bias),
         };
         let triangle = Triangle::new(&span);
-        let known = triangle.particular(&span, &bias);
+        let known = triangle.particular_solution(&span, &bias);
         let mut lacking = [T::zero(); NC];
         for (k, ((x, free), known)) in x.iter_mut().zip(&free).zip(&known).enumerate().take(span.rank) {
             *x = match weak {
@@ -312,12 +328,12 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
             }
         }
         let a = metric.back(span.backward(x));
-        ((SVector::from(a), SVector::from(triangle.multipliers(&span, &lacking))), regular)
+        ((SVector::from(a), SVector::from(triangle.minimum_norm_multipliers(&span, &lacking))), regular)
     }
 
     /// Returns mass matrix and forces, extended for coordinates without inertia. With the rows `J` that
     /// determine these, `(M + w Jᵀ J) v̇ = f − w Jᵀ b + Jᵀ λ` has the same solution for any `w`.
-    fn loaded(&self, structure: &Structure<'_, NC>) -> ([[T; NV]; NV], [T; NV]) {
+    fn loaded_mass_and_forces(&self, structure: &Structure<'_, NC>) -> ([[T; NV]; NV], [T; NV]) {
         let (mut mass, mut force) = (self.mass.data.0, self.force);
         let weight = (0..NV).fold(T::zero(), |most, k| most.max(mass[k][k]));
         for (row, bias) in self.bias.iter().enumerate().filter(|(row, _)| structure.determining.contains(row))
@@ -351,12 +367,12 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
             return Self { full, base: [[T::zero(); NC]; NC], upper: [[T::zero(); NC]; NC] };
         }
         let mut base = core::array::from_fn(|j| span.columns.map(|c| entry_or_zero(&c.x, j) * c.length));
-        let upper = orthogonal(&mut base, rank);
+        let upper = orthonormalise_vectors(&mut base, rank);
         Self { full, base, upper }
     }
 
     /// Solves `Rᵀ z = −b`, in the least-squares sense for a rank-deficient `R`.
-    fn particular<const NV: usize>(&self, span: &Span<T, NV, NC>, bias: &[T; NC]) -> [T; NC] {
+    fn particular_solution<const NV: usize>(&self, span: &Span<T, NV, NC>, bias: &[T; NC]) -> [T; NC] {
         let rank = span.rank;
         let mut z = [T::zero(); NC];
         if !self.full {
@@ -384,7 +400,11 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
     }
 
     /// Returns the `λ` of minimum norm with `R λ = d`.
-    fn multipliers<const NV: usize>(&self, span: &Span<T, NV, NC>, lacking: &[T; NC]) -> [T; NC] {
+    fn minimum_norm_multipliers<const NV: usize>(
+        &self,
+        span: &Span<T, NV, NC>,
+        lacking: &[T; NC],
+    ) -> [T; NC] {
         let rank = span.rank;
         let mut lambda = [T::zero(); NC];
         let mut rest = *lacking;

@@ -1,7 +1,10 @@
 //! Completion of velocities and accelerations: some entries are prescribed, and the others follow from the
 //! constraints. Also computes the drive forces for such a motion.
 
-use super::{Constrained, ConstraintError, farthest, is_acceptable, largest, reach, rounding};
+use super::{
+    Constrained, ConstraintError, acceptable_residual, index_of_largest_entry, is_acceptable,
+    largest_jacobian_entry, largest_magnitude_or_one,
+};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::{SMatrix, SVector};
@@ -11,7 +14,7 @@ use nalgebra::{SMatrix, SVector};
 const MAX_CORRECTIONS: usize = 3;
 
 /// Returns an error for the first of the indices `held` that is not less than `NV`.
-pub(super) fn check<const NV: usize>(held: &[usize]) -> Result<(), ConstraintError> {
+pub(super) fn check_held_indices<const NV: usize>(held: &[usize]) -> Result<(), ConstraintError> {
     let outside = held.iter().copied().find(|index| *index >= NV);
     outside.map_or(Ok(()), |index| Err(ConstraintError::Held { index, velocities: NV }))
 }
@@ -19,7 +22,7 @@ pub(super) fn check<const NV: usize>(held: &[usize]) -> Result<(), ConstraintErr
 /// Corrects the entries of `x` that are not `held` until the `gap` of the constraints is exact, with the
 /// least change in the metric of the mass matrix. Returns `x`, and the index and magnitude of its largest
 /// gap.
-fn corrected<T: Real, const NV: usize, const NC: usize>(
+fn correct_free_entries<T: Real, const NV: usize, const NC: usize>(
     mass: &SMatrix<T, NV, NV>,
     jacobian: &SMatrix<T, NC, NV>,
     held: &[usize],
@@ -29,19 +32,19 @@ fn corrected<T: Real, const NV: usize, const NC: usize>(
 ) -> Result<(SVector<T, NV>, (usize, T)), ConstraintError> {
     for _ in 0..MAX_CORRECTIONS {
         let found = gap(&x);
-        let worst = largest(&found)?;
+        let worst = index_of_largest_entry(&found)?;
         if is_exact(worst.1, &x) {
             return Ok((x, worst));
         }
-        x += correction(mass, jacobian, held, &found);
-        largest(&x)?;
+        x += least_energy_correction(mass, jacobian, held, &found);
+        index_of_largest_entry(&x)?;
     }
-    let worst = largest(&gap(&x))?;
+    let worst = index_of_largest_entry(&gap(&x))?;
     Ok((x, worst))
 }
 
 /// Returns the velocity with the entries `held` of `v` that fulfils the constraints.
-pub(super) fn complete<
+pub(super) fn completed_velocity<
     M,
     const NQ: usize,
     const NV: usize,
@@ -58,11 +61,13 @@ pub(super) fn complete<
 where
     M: Constrained<NQ, NV, NU, NH, NC> + ?Sized,
 {
-    check::<NV>(held)?;
+    check_held_indices::<NV>(held)?;
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let constraint_rates_of_velocity = |v: &SVector<M::Scalar, NV>| mechanism.constraint_rates(t, q, v);
     let (v, (worst, size)) =
-        corrected(&mass, &jacobian, held, *v, constraint_rates_of_velocity, |size, v| size <= rounding(v))?;
+        correct_free_entries(&mass, &jacobian, held, *v, constraint_rates_of_velocity, |size, v| {
+            size <= acceptable_residual(v)
+        })?;
     if is_acceptable(size, &v) {
         return Ok(v);
     }
@@ -91,14 +96,17 @@ pub(super) fn complete_acceleration<
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
-    check::<NV>(held)?;
+    check_held_indices::<NV>(held)?;
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
     let bias = mechanism.constraint_bias(t, q, v);
     // Magnitude of the terms of the gap, relative to which it is rounded.
-    let scale_of_acceleration = |a: &SVector<T, NV>| reach(&bias).max(reach(a) * farthest(&jacobian));
+    let scale_of_acceleration = |a: &SVector<T, NV>| {
+        largest_magnitude_or_one(&bias).max(largest_magnitude_or_one(a) * largest_jacobian_entry(&jacobian))
+    };
     let acceleration_residual = |a: &SVector<T, NV>| jacobian * a + bias;
     let is_exact = |size: T, a: &SVector<T, NV>| size <= epsilon::<T>() * scale_of_acceleration(a);
-    let (a, (worst, size)) = corrected(&mass, &jacobian, held, *a, acceleration_residual, is_exact)?;
+    let (a, (worst, size)) =
+        correct_free_entries(&mass, &jacobian, held, *a, acceleration_residual, is_exact)?;
     if size <= epsilon::<T>().sqrt() * scale_of_acceleration(&a) {
         return Ok(a);
     }
@@ -118,7 +126,7 @@ where
 
 /// Returns the generalized forces at the velocities `driven` and the multipliers `λ` with
 /// `M a + h = τ + Jᵀ λ`; the equations of the other velocities determine the multipliers.
-pub(super) fn drive<
+pub(super) fn driving_forces<
     M,
     T: Real,
     const NQ: usize,
@@ -136,15 +144,19 @@ pub(super) fn drive<
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
-    check::<NV>(driven)?;
-    let (worst, rate) = largest(&mechanism.constraint_rates(t, q, v))?;
+    check_held_indices::<NV>(driven)?;
+    let (worst, rate) = index_of_largest_entry(&mechanism.constraint_rates(t, q, v))?;
     let name = constraint_name::<M, NQ, NV, NU, NH, NC>;
     if !is_acceptable(rate, v) {
         return Err(ConstraintError::Velocity { constraint: name(worst), rate: to_f64(rate) });
     }
     let (jacobian, bias) = (mechanism.constraint_jacobian(t, q), mechanism.constraint_bias(t, q, v));
-    let (worst, left) = largest(&(jacobian * a + bias))?;
-    if left > epsilon::<T>().sqrt() * reach(&bias).max(reach(a) * farthest(&jacobian)) {
+    let (worst, left) = index_of_largest_entry(&(jacobian * a + bias))?;
+    if left
+        > epsilon::<T>().sqrt()
+            * largest_magnitude_or_one(&bias)
+                .max(largest_magnitude_or_one(a) * largest_jacobian_entry(&jacobian))
+    {
         return Err(ConstraintError::Acceleration { constraint: name(worst), acceleration: to_f64(left) });
     }
     let forces = mechanism.inverse_dynamics(t, q, v, a);
@@ -156,7 +168,7 @@ where
     let mut left = forces;
     // The second pass removes rounding errors of the first one.
     for _ in 0..2 {
-        let (change, _) = least(&open, &size, &left.data.0[0]);
+        let (change, _) = minimum_norm_solution(&open, &size, &left.data.0[0]);
         add(&mut lambda, nalgebra::one(), &change);
         left = forces - jacobian.transpose() * SVector::from(lambda);
     }
@@ -197,7 +209,10 @@ fn add<T: Real, const N: usize>(a: &mut Row<T, N>, factor: T, b: &Row<T, N>) {
 
 /// Removes the component along a unit direction from rows. Two passes are sufficient for orthogonality
 /// (Björck, *Numerical Methods for Least Squares Problems*, 1996, § 2.4.5).
-fn remove<T: Real, const N: usize, const K: usize>(rows: &mut [Row<T, N>; K], direction: &Row<T, N>) {
+fn remove_component<T: Real, const N: usize, const K: usize>(
+    rows: &mut [Row<T, N>; K],
+    direction: &Row<T, N>,
+) {
     for row in rows {
         for _ in 0..2 {
             let along = dot(row, direction);
@@ -220,9 +235,9 @@ fn largest_row<T: Real, const K: usize>(taken: &[bool; K], size: impl Fn(usize) 
 
 /// Returns the `x` with `J x = −gap` and zeros for held velocities that minimises `xᵀ M x`.
 ///
-/// First finds a solution with [`least`], then minimises the energy over the space of all remaining motions.
-/// Coordinates are scaled by their inertia.
-fn correction<T: Real, const NV: usize, const NC: usize>(
+/// First finds a solution with [`minimum_norm_solution`], then minimises the energy over the space of all
+/// remaining motions. Coordinates are scaled by their inertia.
+fn least_energy_correction<T: Real, const NV: usize, const NC: usize>(
     mass: &SMatrix<T, NV, NV>,
     jacobian: &SMatrix<T, NC, NV>,
     held: &[usize],
@@ -241,9 +256,10 @@ fn correction<T: Real, const NV: usize, const NC: usize>(
     let mut axes: [Row<T, NV>; NV] = core::array::from_fn(|i| {
         core::array::from_fn(|j| if i == j && !held.contains(&i) { T::one() } else { T::zero() })
     });
-    let (mut y, directions) = least(&rows, &reach, &core::array::from_fn(|k| -gap.data.0[0][k]));
+    let (mut y, directions) =
+        minimum_norm_solution(&rows, &reach, &core::array::from_fn(|k| -gap.data.0[0][k]));
     for direction in directions.iter().flatten() {
-        remove(&mut axes, direction);
+        remove_component(&mut axes, direction);
     }
     let scaled_mass_row =
         |i: usize| -> Row<T, NV> { core::array::from_fn(|j| mass[i][j] * scale[i] * scale[j]) };
@@ -256,7 +272,7 @@ fn correction<T: Real, const NV: usize, const NC: usize>(
 /// Uses Gram–Schmidt orthogonalisation. In each step, the row with the largest independent component relative
 /// to its length is selected. Dependent rows are dropped; their targets are satisfied automatically or not at
 /// all.
-fn least<T: Real, const N: usize, const K: usize>(
+fn minimum_norm_solution<T: Real, const N: usize, const K: usize>(
     rows: &[Row<T, N>; K],
     sizes: &[T; K],
     targets: &[T; K],
@@ -274,7 +290,7 @@ fn least<T: Real, const N: usize, const K: usize>(
         let direction = rest[k].map(|x| x / size);
         let missing = (targets[k] - dot(&rows[k], &y)) / size;
         add(&mut y, missing, &direction);
-        remove(&mut rest, &direction);
+        remove_component(&mut rest, &direction);
         *slot = Some(direction);
     }
     (y, directions)
@@ -292,7 +308,7 @@ fn least_energy<T: Real, const N: usize>(mass: &[Row<T, N>; N], mut axes: [Row<T
         };
         taken[k] = true;
         *slot = axes[k].map(|x| x / square.sqrt());
-        remove(&mut axes, slot);
+        remove_component(&mut axes, slot);
     }
     let heavy = basis.map(|b| core::array::from_fn(|i| dot(&mass[i], &b)));
     let mut rest: Row<T, N> = core::array::from_fn(|i| -dot(&heavy[i], y));

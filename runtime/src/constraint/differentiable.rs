@@ -126,8 +126,8 @@ where
     let solve_derivative_columns = |forces: &SMatrix<T, NV, NV>, gaps: &SMatrix<T, NC, NV>| {
         let (mut changes, mut multipliers) = (zeros(), zeros());
         for j in 0..NV {
-            let p = -column(forces, j);
-            let change = m.constraint_response(t, q, &p, &column(gaps, j));
+            let p = -column_or_zeros(forces, j);
+            let change = m.constraint_response(t, q, &p, &column_or_zeros(gaps, j));
             // Residual forces of the velocity change, which are constraint forces.
             let held = tau + p - mass * change;
             set_column(&mut changes, j, &change);
@@ -144,7 +144,7 @@ where
 }
 
 /// Returns the multipliers `μ` of constraint forces `p = Jᵀ μ`.
-pub(crate) fn multipliers<
+pub(crate) fn multipliers_of_forces<
     M,
     T,
     const NQ: usize,
@@ -294,7 +294,7 @@ where
 }
 
 /// Returns a column of a matrix; zeros if the index is out of range.
-pub(crate) fn column<T: Real, const R: usize, const C: usize>(
+pub(crate) fn column_or_zeros<T: Real, const R: usize, const C: usize>(
     m: &SMatrix<T, R, C>,
     j: usize,
 ) -> SVector<T, R> {

@@ -1,7 +1,7 @@
 //! Velocity changes that satisfy enforced constraint rows, for masses that differ by many orders of
 //! magnitude.
 
-use super::span::{Metric, Span, entry_or_zero, rounding};
+use super::span::{Metric, Span, entry_or_zero, rounding_threshold};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -22,7 +22,7 @@ pub(crate) fn change_rates<T: Real, const NV: usize, const NC: usize>(
     }
     let metric = Metric::new(&mass.data.0);
     let mut span = Span::new(&metric, &rows, groups);
-    span.extend(rounding(), NC);
+    span.extend(rounding_threshold(), NC);
     if span.rank < held.iter().filter(|held| **held).count() {
         return None;
     }

@@ -58,7 +58,7 @@ fn each_column<T: Real, const R: usize, const C: usize>(
 }
 
 /// Returns an entry, or zero if the index is out of range. Bounds checks could panic.
-fn entry<T: Real, const R: usize, const C: usize>(m: &SMatrix<T, R, C>, i: usize, j: usize) -> T {
+fn entry_or_zero<T: Real, const R: usize, const C: usize>(m: &SMatrix<T, R, C>, i: usize, j: usize) -> T {
     m.get((i, j)).copied().unwrap_or(T::zero())
 }
 
@@ -104,9 +104,9 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
         }
         let positions = Dependence::new(on_configurations, zero, self.preferred);
         let speeds = Dependence::new(self.jacobian, -self.rates_by_q, self.preferred);
-        let (coordinates, shape) = positions.free::<NP>()?;
-        let (free, gamma) = speeds.free::<NS>()?;
-        let carried = speeds.particular() * shape;
+        let (coordinates, shape) = positions.independent_entries::<NP>()?;
+        let (free, gamma) = speeds.independent_entries::<NS>()?;
+        let carried = speeds.particular_solution() * shape;
         let (by_position, by_speed) = (self.by_q * shape + self.by_v * carried, self.by_v * gamma);
         let drift = self.turning * shape + carried;
         let rows = coordinates.iter().chain(&free);
@@ -115,10 +115,10 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
         for (i, row) in rows.copied().enumerate() {
             for j in 0..NX {
                 let value = match (i < NP, j < NP) {
-                    (true, true) => entry(&drift, row, j),
-                    (true, false) => entry(&gamma, row, j - NP),
-                    (false, true) => entry(&by_position, row, j),
-                    (false, false) => entry(&by_speed, row, j - NP),
+                    (true, true) => entry_or_zero(&drift, row, j),
+                    (true, false) => entry_or_zero(&gamma, row, j - NP),
+                    (false, true) => entry_or_zero(&by_position, row, j),
+                    (false, false) => entry_or_zero(&by_speed, row, j - NP),
                 };
                 if let Some(slot) = a.get_mut((i, j)) {
                     *slot = value;
@@ -126,7 +126,7 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
             }
             for j in (0..NU).filter(|_| i >= NP) {
                 if let Some(slot) = b.get_mut((i, j)) {
-                    *slot = entry(&self.by_u, row, j);
+                    *slot = entry_or_zero(&self.by_u, row, j);
                 }
             }
         }
@@ -151,7 +151,7 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
                 let mut best = (0, 0, T::zero());
                 for j in (0..NV).filter(|j| !(spare && preferred.contains(j))) {
                     for i in (0..NC).filter(|i| pivots[*i].is_none()) {
-                        let size = entry(&left, i, j).abs();
+                        let size = entry_or_zero(&left, i, j).abs();
                         if size > best.2 {
                             best = (i, j, size);
                         }
@@ -163,13 +163,13 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
             if let Some(pivot) = pivots.get_mut(row) {
                 *pivot = Some(column);
             }
-            let scale = T::one() / entry(&left, row, column);
+            let scale = T::one() / entry_or_zero(&left, row, column);
             scale_row(&mut left, row, scale);
             scale_row(&mut right, row, scale);
             for i in (0..NC).filter(|i| *i != row) {
-                let factor = entry(&left, i, column);
+                let factor = entry_or_zero(&left, i, column);
                 for j in 0..NV {
-                    let (l, r) = (entry(&left, row, j), entry(&right, row, j));
+                    let (l, r) = (entry_or_zero(&left, row, j), entry_or_zero(&right, row, j));
                     left[(i, j)] -= factor * l;
                     right[(i, j)] -= factor * r;
                 }
@@ -179,7 +179,9 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
     }
 
     /// Returns the independent entries, and all entries as linear functions of them.
-    fn free<const N: usize>(&self) -> Result<([usize; N], SMatrix<T, NV, N>), ConstraintError> {
+    fn independent_entries<const N: usize>(
+        &self,
+    ) -> Result<([usize; N], SMatrix<T, NV, N>), ConstraintError> {
         let is_not_pivot = |j: &usize| !self.pivots.contains(&Some(*j));
         if (0..NV).filter(is_not_pivot).count() != N {
             return Err(ConstraintError::Singular);
@@ -189,7 +191,7 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
         let shape = SMatrix::from_fn(|i, j| {
             let index = indices.get(j).copied().unwrap_or_default();
             match self.pivots.iter().position(|p| *p == Some(i)) {
-                Some(row) => -entry(&self.left, row, index),
+                Some(row) => -entry_or_zero(&self.left, row, index),
                 None if i == index => T::one(),
                 None => T::zero(),
             }
@@ -198,10 +200,10 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
     }
 
     /// Returns the dependent entries as functions of `y` for independent entries of zero.
-    fn particular(&self) -> SMatrix<T, NV, NV> {
+    fn particular_solution(&self) -> SMatrix<T, NV, NV> {
         SMatrix::from_fn(|i, j| {
             let row = self.pivots.iter().position(|p| *p == Some(i));
-            row.map_or(T::zero(), |row| entry(&self.right, row, j))
+            row.map_or(T::zero(), |row| entry_or_zero(&self.right, row, j))
         })
     }
 }

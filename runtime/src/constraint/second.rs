@@ -1,7 +1,7 @@
 //! Second derivatives of constrained motion, contracted with factors, for generic code.
 
 use super::ConstrainedDerivatives;
-use super::differentiable::{multipliers, solved_derivatives};
+use super::differentiable::{multipliers_of_forces, solved_derivatives};
 use super::layout::ConstraintCurvature;
 use crate::blocks::{add_multiple, add_product, product, transposed};
 use crate::{At, Real, SecondDerivatives, SecondOrder};
@@ -78,7 +78,7 @@ pub fn with_curvature<T: Real, const NV: usize, const NC: usize>(
 
 /// Returns the adjoint variables `w` and `z` for factors `f` of the accelerations: `M w + Jᵀ z = f`, `J w =
 /// 0`.
-pub(crate) fn adjoint<
+pub(crate) fn adjoint_variables<
     M,
     T,
     const NQ: usize,
@@ -97,7 +97,7 @@ where
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
     let w = m.constraint_response(t, q, f, &SVector::zeros());
-    (w, multipliers(m, t, q, &(f - m.mass_matrix(t, q) * w)))
+    (w, multipliers_of_forces(m, t, q, &(f - m.mass_matrix(t, q) * w)))
 }
 
 /// Returns the second derivatives of `fᵀ v̇` with constraints. The equations `M v̇ + h − Jᵀ λ = τ` and `J v̇
@@ -123,7 +123,7 @@ where
     M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
     let solved = solved_derivatives(m, t, q, v, tau);
-    let (w, z) = adjoint(m, t, q, factors);
+    let (w, z) = adjoint_variables(m, t, q, factors);
     let none = SVector::zeros();
     let found = m.equation_second_derivatives(t, q, v, &solved.a, &solved.lambda, &-w, &-z, &none);
     let mixed_terms = |(a, lambda): &(SMatrix<T, NV, NV>, SMatrix<T, NC, NV>)| {

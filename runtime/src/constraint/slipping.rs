@@ -2,7 +2,7 @@
 //! which friction depends.
 
 use super::layout::Elimination;
-use super::solve::{determined, regular_solution};
+use super::solve::{has_determined_pivot, regular_solution};
 use super::{ConstraintError, Solution};
 use crate::Real;
 use crate::private::constant;
@@ -25,7 +25,7 @@ pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const K: usi
     for _ in 0..=2 * K {
         let found = solve(&sides);
         for row in 0..NC {
-            if !determined(groups, &found, row) {
+            if !has_determined_pivot(groups, &found, row) {
                 return Err(if rows.contains(&row) { jammed_error(row) } else { ConstraintError::Singular });
             }
         }
@@ -38,7 +38,7 @@ pub fn slipping_solution<T: Real, const NV: usize, const NC: usize, const K: usi
             }
         }
         if settled {
-            return Ok(found.solution());
+            return Ok(found.accelerations_and_multipliers());
         }
     }
     Err(jammed_error(rows.first().copied().unwrap_or(0)))
@@ -71,7 +71,11 @@ pub fn slipping_response<'a, T: Real, const NV: usize, const NC: usize, const K:
             _ => T::one(),
         });
         let found = solve(force, bias, &sides);
-        let is_determined = (0..NC).all(|k| determined(groups, &found, k));
-        if is_determined { found.solution().0 } else { SVector::repeat(constant(f64::NAN)) }
+        let is_determined = (0..NC).all(|k| has_determined_pivot(groups, &found, k));
+        if is_determined {
+            found.accelerations_and_multipliers().0
+        } else {
+            SVector::repeat(constant(f64::NAN))
+        }
     }
 }

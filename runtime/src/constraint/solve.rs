@@ -2,20 +2,20 @@
 
 use super::Solution;
 use super::layout::{Elimination, Responses};
-use super::span::{dot, orthogonal};
+use super::span::{dot, orthonormalise_vectors};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::SVector;
 
 /// Returns the minimum ratio of a constraint's pivot to its value before elimination of the other
 /// constraints. Pivots are squared lengths: accelerations retain three quarters of the digits.
-fn tolerance<T: Real>() -> T {
+fn minimum_pivot_ratio<T: Real>() -> T {
     epsilon::<T>().sqrt().sqrt()
 }
 
 /// Returns the minimum pivot relative to the pivots of the constraint's group; smaller pivots are mostly
 /// rounding errors. Also a ratio of squared lengths.
-fn noise<T: Real>() -> T {
+fn minimum_group_pivot<T: Real>() -> T {
     epsilon::<T>().cbrt()
 }
 
@@ -32,20 +32,20 @@ pub fn regular_solution<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
     found: &Elimination<T, NV, NC>,
 ) -> Option<Solution<T, NV, NC>> {
-    (0..NC).all(|k| regular(groups, found, k)).then(|| found.solution())
+    (0..NC).all(|k| has_accurate_pivot(groups, found, k)).then(|| found.accelerations_and_multipliers())
 }
 
 impl<T: Real, const NV: usize, const NC: usize> Elimination<T, NV, NC> {
     /// Returns the accelerations and multipliers of the elimination as vectors.
     #[inline]
-    pub(super) fn solution(&self) -> Solution<T, NV, NC> {
+    pub(super) fn accelerations_and_multipliers(&self) -> Solution<T, NV, NC> {
         (SVector::from(self.accelerations), SVector::from(self.multipliers))
     }
 
     /// Returns the pivot of a constraint, and its value before elimination; zeros if the index is out of
     /// range.
     #[inline]
-    fn pivot(&self, k: usize) -> (T, T) {
+    fn pivot_of_constraint(&self, k: usize) -> (T, T) {
         let entry_or_zero = |list: &[T; NC]| list.get(k).copied().unwrap_or(T::zero());
         (entry_or_zero(&self.pivots), entry_or_zero(&self.before))
     }
@@ -53,26 +53,28 @@ impl<T: Real, const NV: usize, const NC: usize> Elimination<T, NV, NC> {
 
 /// Returns whether the pivot of a constraint is sufficiently accurate; false for NaN.
 #[inline]
-fn regular<T: Real, const NV: usize, const NC: usize>(
+fn has_accurate_pivot<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
     found: &Elimination<T, NV, NC>,
     k: usize,
 ) -> bool {
-    let (pivot, before) = found.pivot(k);
-    pivot > tolerance::<T>() * before && pivot > noise::<T>() * of_group(groups, k, |k| found.pivot(k).1)
+    let (pivot, before) = found.pivot_of_constraint(k);
+    pivot > minimum_pivot_ratio::<T>() * before
+        && pivot > minimum_group_pivot::<T>() * of_group(groups, k, |k| found.pivot_of_constraint(k).1)
 }
 
 /// Returns whether the pivot of a sliding contact is accurate enough: it must be positive and clearly above
 /// rounding error, so that rounding cannot change its sign.
 #[inline]
-pub(super) fn determined<T: Real, const NV: usize, const NC: usize>(
+pub(super) fn has_determined_pivot<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
     found: &Elimination<T, NV, NC>,
     k: usize,
 ) -> bool {
-    let (pivot, before) = found.pivot(k);
+    let (pivot, before) = found.pivot_of_constraint(k);
     let least = epsilon::<T>().sqrt();
-    pivot > least * before && pivot > noise::<T>() * of_group(groups, k, |k| found.pivot(k).1)
+    pivot > least * before
+        && pivot > minimum_group_pivot::<T>() * of_group(groups, k, |k| found.pivot_of_constraint(k).1)
 }
 
 /// Splits the result of an elimination whose pivots are entries of the Jacobian in predetermined columns.
@@ -83,7 +85,7 @@ pub fn independent_solution<T: Real, const NV: usize, const NC: usize>(
     found: &Elimination<T, NV, NC>,
 ) -> Option<Solution<T, NV, NC>> {
     let relative_pivot = |k: usize| {
-        let (pivot, before) = found.pivot(k);
+        let (pivot, before) = found.pivot_of_constraint(k);
         constant::<T>(9.0) * pivot / before
     };
     // A ratio of NaN must not be skipped.
@@ -91,7 +93,7 @@ pub fn independent_solution<T: Real, const NV: usize, const NC: usize>(
         let share = relative_pivot(k);
         product * if share > T::one() { T::one() } else { share }
     });
-    (product > tolerance::<T>() * constant(1e-2)).then(|| found.solution())
+    (product > minimum_pivot_ratio::<T>() * constant(1e-2)).then(|| found.accelerations_and_multipliers())
 }
 
 /// Returns accelerations and multipliers of constraints some of which are always redundant. The multipliers
@@ -120,7 +122,7 @@ fn least_norm<T: Real, const N: usize>(
     b: [T; N],
 ) -> Option<[T; N]> {
     let before: [T; N] = core::array::from_fn(|k| a[k][k]);
-    let is_above_noise = |k: usize| before[k] >= of_group(groups, k, |i| before[i]) * noise();
+    let is_above_noise = |k: usize| before[k] >= of_group(groups, k, |i| before[i]) * minimum_group_pivot();
     let sound = (0..N).all(|k| before[k] == T::zero() || is_above_noise(k));
     if !sound {
         return None;
@@ -133,7 +135,7 @@ fn least_norm<T: Real, const N: usize>(
         let best = (0..N)
             .filter(|k| !taken[*k])
             .max_by(|i, j| part(*i, &a).partial_cmp(&part(*j, &a)).unwrap_or(core::cmp::Ordering::Equal));
-        let k = best.filter(|k| part(*k, &a) > tolerance())?;
+        let k = best.filter(|k| part(*k, &a) > minimum_pivot_ratio())?;
         taken[k] = true;
         let inverse = T::one() / a[k][k].sqrt();
         *column = core::array::from_fn(|i| if taken[i] && i != k { T::zero() } else { a[i][k] * inverse });
@@ -148,7 +150,7 @@ fn least_norm<T: Real, const N: usize>(
     if !follow {
         return None;
     }
-    let upper = orthogonal(&mut columns, rank);
+    let upper = orthonormalise_vectors(&mut columns, rank);
     let mut y = columns.map(|u| dot(&u, &b));
     for j in (0..N).rev() {
         if j >= rank {

@@ -30,7 +30,7 @@ pub(super) fn norm<T: Real, const N: usize>(a: &[T; N]) -> T {
 }
 
 /// Returns the relative magnitude below which a number is a rounding error.
-pub(super) fn rounding<T: Real>() -> T {
+pub(super) fn rounding_threshold<T: Real>() -> T {
     constant::<T>(ROUNDINGS) * epsilon()
 }
 
@@ -69,7 +69,7 @@ impl<T: Real, const N: usize> Metric<T, N> {
     }
 
     /// Returns the magnitudes of the numbers that `L⁻¹ x` is computed from, for given magnitudes of `x`.
-    fn sizes(&self, mut x: [T; N]) -> [T; N] {
+    fn magnitudes_of_operands(&self, mut x: [T; N]) -> [T; N] {
         for i in 0..N {
             x[i] = (0..i).fold(x[i], |most, k| most.max(self.lower[i][k].abs() * x[k]));
         }
@@ -112,7 +112,7 @@ pub(super) struct Column<T, const N: usize> {
 impl<T: Real, const N: usize> Column<T, N> {
     /// Returns the length of a column without its first `first` entries. Also returns the largest ratio of a
     /// remaining entry to the largest number that it was computed from.
-    fn remainder(&self, first: usize) -> (T, T) {
+    fn length_of_remainder(&self, first: usize) -> (T, T) {
         let all = self.x.iter().zip(&self.size).skip(first);
         let (square, most) = all.fold((T::zero(), T::zero()), |(square, most), (x, size)| {
             let share = if *size > T::zero() { x.abs() / *size } else { T::zero() };
@@ -121,7 +121,7 @@ impl<T: Real, const N: usize> Column<T, N> {
         (square.sqrt(), most)
     }
 
-    fn reflect(&mut self, normal: &[T; N]) {
+    fn reflect_columns(&mut self, normal: &[T; N]) {
         let part = dot(normal, &self.x);
         let all = normal.iter().zip(&self.size);
         let largest = all.fold(T::zero(), |most, (n, size)| most.max(n.abs() * *size));
@@ -169,15 +169,15 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
                 // Zeros are exact, unless the corresponding entries of the other components are also
                 // negligible.
                 let most = row_magnitude(k, i);
-                let alike = most <= *bound * rounding() || most > *bound * epsilon::<T>().sqrt();
-                if alike && x.abs() <= *bound * rounding() {
+                let alike = most <= *bound * rounding_threshold() || most > *bound * epsilon::<T>().sqrt();
+                if alike && x.abs() <= *bound * rounding_threshold() {
                     (*x, *size) = (T::zero(), T::zero());
                 }
             }
             let half = metric.half(row);
             let length = norm(&half);
             let unit = if length > T::zero() { T::one() / length } else { T::zero() };
-            let size = metric.sizes(sizes).map(|x| x * unit);
+            let size = metric.magnitudes_of_operands(sizes).map(|x| x * unit);
             Column { x: half.map(|x| x * unit), size, length, step: None }
         });
         let order = core::array::from_fn(|k| k);
@@ -185,7 +185,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
     }
 
     /// Returns the entries in the order of the columns.
-    fn arranged(&self, x: &[T; NV]) -> [T; NV] {
+    fn entries_in_column_order(&self, x: &[T; NV]) -> [T; NV] {
         self.order.map(|i| entry_or_zero(x, i))
     }
 
@@ -195,7 +195,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         while self.rank < most.min(NV) {
             let mut best = (None, T::zero());
             for (k, column) in self.columns.iter().enumerate().filter(|(_, c)| c.step.is_none()) {
-                let (length, share) = column.remainder(self.rank);
+                let (length, share) = column.length_of_remainder(self.rank);
                 // Of columns with equal length up to rounding errors, the first is used, so that the choice
                 // does not depend on rounding.
                 if length > best.1 * constant(1.01) && share > least {
@@ -218,8 +218,8 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
                 most = (k, x.abs());
             }
         }
-        self.exchange(first, most.0);
-        exchange(&mut x, first, most.0);
+        self.exchange_columns(first, most.0);
+        exchange_entries(&mut x, first, most.0);
         x.iter_mut().take(first).for_each(|x| *x = T::zero());
         let (length, own) = (norm(&x), entry_or_zero(&x, first));
         let scale = T::one() / (length * (length + own.abs())).sqrt();
@@ -227,7 +227,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         if let Some(n) = normal.get_mut(first) {
             *n += if own < T::zero() { -length * scale } else { length * scale };
         }
-        self.columns.iter_mut().for_each(|column| column.reflect(&normal));
+        self.columns.iter_mut().for_each(|column| column.reflect_columns(&normal));
         if let Some(slot) = self.normals.get_mut(first) {
             *slot = normal;
         }
@@ -235,20 +235,20 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
     }
 
     /// Exchanges two rows of all columns and normals; both are rows that no basis vector occupies yet.
-    fn exchange(&mut self, i: usize, j: usize) {
-        exchange(&mut self.order, i, j);
-        self.normals.iter_mut().for_each(|normal| exchange(normal, i, j));
+    fn exchange_columns(&mut self, i: usize, j: usize) {
+        exchange_entries(&mut self.order, i, j);
+        self.normals.iter_mut().for_each(|normal| exchange_entries(normal, i, j));
         for column in &mut self.columns {
-            exchange(&mut column.x, i, j);
-            exchange(&mut column.size, i, j);
+            exchange_entries(&mut column.x, i, j);
+            exchange_entries(&mut column.size, i, j);
         }
     }
 
     /// Returns `Qᵀ x`: permutes the entries of a vector and applies the Householder reflections.
     pub fn forward(&self, x: &[T; NV]) -> [T; NV] {
-        let mut x = self.arranged(x);
+        let mut x = self.entries_in_column_order(x);
         for normal in self.normals.iter().take(self.rank) {
-            reflect(&mut x, normal);
+            reflect_vector(&mut x, normal);
         }
         x
     }
@@ -257,7 +257,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
     /// entries.
     pub fn backward(&self, mut x: [T; NV]) -> [T; NV] {
         for normal in self.normals.iter().take(self.rank).rev() {
-            reflect(&mut x, normal);
+            reflect_vector(&mut x, normal);
         }
         let mut out = [T::zero(); NV];
         for (x, k) in x.iter().zip(&self.order) {
@@ -274,12 +274,12 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
     }
 }
 
-fn reflect<T: Real, const N: usize>(x: &mut [T; N], normal: &[T; N]) {
+fn reflect_vector<T: Real, const N: usize>(x: &mut [T; N], normal: &[T; N]) {
     let part = dot(normal, x);
     x.iter_mut().zip(normal).for_each(|(x, n)| *x -= *n * part);
 }
 
-fn exchange<T: Copy, const N: usize>(x: &mut [T; N], i: usize, j: usize) {
+fn exchange_entries<T: Copy, const N: usize>(x: &mut [T; N], i: usize, j: usize) {
     if let (Some(a), Some(b)) = (x.get(i).copied(), x.get(j).copied()) {
         if let Some(slot) = x.get_mut(i) {
             *slot = b;
@@ -292,7 +292,10 @@ fn exchange<T: Copy, const N: usize>(x: &mut [T; N], i: usize, j: usize) {
 
 /// Orthonormalises the first vectors, in two passes to remove rounding errors. Returns the triangle `S` of `L
 /// = U S`.
-pub(super) fn orthogonal<T: Real, const N: usize>(vectors: &mut [[T; N]; N], count: usize) -> [[T; N]; N] {
+pub(super) fn orthonormalise_vectors<T: Real, const N: usize>(
+    vectors: &mut [[T; N]; N],
+    count: usize,
+) -> [[T; N]; N] {
     let mut upper = [[T::zero(); N]; N];
     for j in 0..N {
         if j >= count {

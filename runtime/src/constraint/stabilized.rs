@@ -1,6 +1,6 @@
 //! Stabilization of constraints by feedback instead of projection.
 
-use super::differentiable::{column, each_column, multipliers};
+use super::differentiable::{column_or_zeros, each_column, multipliers_of_forces};
 use super::{Constrained, ConstrainedDerivatives, ConstraintError, Projected};
 use crate::contact::{Assumed, Touched};
 use crate::derivatives::{ByMotion, Derivatives, under_inputs};
@@ -57,7 +57,7 @@ where
 
 impl<M, T: Real, const NH: usize, const NC: usize> Stabilized<'_, M, T, NH, NC> {
     /// Returns the acceleration that stabilisation adds so that constraint violations decay.
-    fn correction<const NQ: usize, const NV: usize, const NU: usize>(
+    fn correction_of_violations<const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         t: T,
         q: &SVector<T, NQ>,
@@ -66,12 +66,12 @@ impl<M, T: Real, const NH: usize, const NC: usize> Stabilized<'_, M, T, NH, NC> 
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        self.mechanism.constraint_correction(t, q, &gap(self.mechanism, self.rate, t, q, v))
+        self.mechanism.constraint_correction(t, q, &stabilized_gap(self.mechanism, self.rate, t, q, v))
     }
 }
 
 /// Returns `2 α φ̇ + α² φ`; the second term exists only for holonomic constraints.
-fn gap<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+fn stabilized_gap<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     rate: M::Scalar,
     t: M::Scalar,
@@ -100,9 +100,10 @@ fn to_first_order<M, const NQ: usize, const NV: usize, const NU: usize, const NH
 where
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC>,
 {
-    let correction = m.constraint_correction(t, q, &gap(m, rate, t, q, v));
+    let correction = m.constraint_correction(t, q, &stabilized_gap(m, rate, t, q, v));
     let (a, lambda) = m.constrained_dynamics(t, q, v, tau);
-    let (a, lambda) = (a + correction, lambda + multipliers(m, t, q, &(m.mass_matrix(t, q) * correction)));
+    let (a, lambda) =
+        (a + correction, lambda + multipliers_of_forces(m, t, q, &(m.mass_matrix(t, q) * correction)));
     let parts = m.equation_derivatives(t, q, v, &a, &lambda);
     let gap_by_v = m.constraint_jacobian(t, q) * (rate * constant(2.0));
     let mut gap_by_q = parts.rates_by_q * (rate * constant(2.0));
@@ -111,7 +112,9 @@ where
     }
     let constraint_response_columns =
         |forces: &SMatrix<M::Scalar, NV, NV>, gaps: &SMatrix<M::Scalar, NC, NV>| {
-            each_column(|j| m.constraint_response(t, q, &-column(forces, j), &column(gaps, j)))
+            each_column(|j| {
+                m.constraint_response(t, q, &-column_or_zeros(forces, j), &column_or_zeros(gaps, j))
+            })
         };
     let by_q = constraint_response_columns(&parts.forces_by_q, &(parts.accelerations_by_q + gap_by_q));
     let by_v = constraint_response_columns(&parts.forces_by_v, &(parts.accelerations_by_v + gap_by_v));
@@ -160,7 +163,7 @@ where
         v: &SVector<M::Scalar, NV>,
         tau: &SVector<M::Scalar, NV>,
     ) -> SVector<M::Scalar, NV> {
-        self.mechanism.forward_dynamics(t, q, v, tau) + self.correction(t, q, v)
+        self.mechanism.forward_dynamics(t, q, v, tau) + self.correction_of_violations(t, q, v)
     }
 
     fn try_forward_dynamics(
@@ -170,7 +173,7 @@ where
         v: &SVector<M::Scalar, NV>,
         tau: &SVector<M::Scalar, NV>,
     ) -> Result<SVector<M::Scalar, NV>, ConstraintError> {
-        Ok(self.mechanism.try_forward_dynamics(t, q, v, tau)? + self.correction(t, q, v))
+        Ok(self.mechanism.try_forward_dynamics(t, q, v, tau)? + self.correction_of_violations(t, q, v))
     }
 }
 

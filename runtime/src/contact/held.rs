@@ -4,7 +4,7 @@ use super::lawful::lawful;
 use super::layout::Layout;
 use super::light::sticking_change;
 use super::problem::{Problem, entry, put};
-use super::{Contacts, Responses, Touch, failed};
+use super::{Contacts, Responses, Touch, unsolved_contact_error};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use nalgebra::SVector;
@@ -141,6 +141,6 @@ where
     {
         return Ok((Held { a: a + change, forces }, Some(responses)));
     }
-    let forces = problem.spread(&found.map_err(failed::<M, T, NQ, NV, NU, NK, NR>)?);
+    let forces = problem.spread(&found.map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?);
     Ok((Held { a: a + responses.velocities * forces, forces }, Some(responses)))
 }

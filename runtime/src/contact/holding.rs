@@ -4,7 +4,7 @@ use super::derivatives::{ContactDerivatives, HeldDerivatives, derivatives, deriv
 use super::held::{Held, held};
 use super::{Assumed, Contacts, Touch, Touched};
 use crate::constraint::{ConstraintError, Projected};
-use crate::derivatives::{ByMotion, Derivatives, unknown};
+use crate::derivatives::{ByMotion, Derivatives, unknown_matrix};
 use crate::forward::{constants, each_function};
 use crate::integrate::{Features, Hooks};
 use crate::private::constant;
@@ -281,7 +281,7 @@ where
         (given, _): Assumed<'_, T, NV>,
         _h: T,
     ) -> Result<Touched<T, NQ, NV>, ConstraintError> {
-        Ok(Touched::free(*q, free + given))
+        Ok(Touched::state_without_contacts(*q, free + given))
     }
 
     fn visit_contacts<V>(&self, _visitor: V) -> Option<V::Output>
@@ -314,7 +314,7 @@ where
     ) -> ByMotion<T, NV, NV> {
         match derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains) {
             Ok(found) => (found.by_q, found.by_v, found.by_tau),
-            Err(_) => (unknown(), unknown(), unknown()),
+            Err(_) => (unknown_matrix(), unknown_matrix(), unknown_matrix()),
         }
     }
 
@@ -334,7 +334,7 @@ where
                 found.a
             }
             Err(_) => {
-                (*by_q, *by_v, *by_tau) = (unknown(), unknown(), unknown());
+                (*by_q, *by_v, *by_tau) = (unknown_matrix(), unknown_matrix(), unknown_matrix());
                 SVector::repeat(constant(f64::NAN))
             }
         }

@@ -5,7 +5,7 @@ use super::lawful::lawful;
 use super::layout::Layout;
 use super::light::sticking_change;
 use super::problem::Problem;
-use super::{Contacts, Solved, Touch, failed};
+use super::{Contacts, Solved, Touch, unsolved_contact_error};
 use crate::Real;
 use crate::blocks::{add_product, product};
 use crate::constraint::ConstraintError;
@@ -92,7 +92,7 @@ where
     {
         return Ok((Solved { v: v + change, impulses }, problem, responses.velocities));
     }
-    let impulses = problem.spread(&found.map_err(failed::<M, T, NQ, NV, NU, NK, NR>)?);
+    let impulses = problem.spread(&found.map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?);
     let v = v + responses.velocities * impulses;
     Ok((Solved { v, impulses }, problem, responses.velocities))
 }

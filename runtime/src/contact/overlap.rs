@@ -2,7 +2,7 @@
 
 use super::layout::Layout;
 use super::problem::{Problem, entry, put};
-use super::{Contacts, Law, Restitution, near};
+use super::{Contacts, Law, Restitution, touching_distance};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::private::{constant, to_f64};
@@ -48,7 +48,7 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let (constraint, gap) = deepest::<M, T, NQ, NV, NU, NK, NR>(&mechanism.contact_gaps(t, q))?;
-    match gap >= -near::<T>() {
+    match gap >= -touching_distance::<T>() {
         true => Ok(()),
         false => Err(ConstraintError::Overlap { constraint, depth: to_f64(-gap) }),
     }
@@ -101,7 +101,7 @@ where
     let layout = Layout::of(mechanism);
     let hypothesis = Restitution::Newton;
     let smooth = [Law { friction: T::zero(), stiction: T::zero(), restitution: T::zero(), hypothesis }; NK];
-    let enough = near::<T>() * constant(1e-2);
+    let enough = touching_distance::<T>() * constant(1e-2);
     let (mut q, mut pushes) = (*q, SVector::<T, NR>::zeros());
     for step in 0.. {
         let gaps = mechanism.contact_gaps(t, &q);

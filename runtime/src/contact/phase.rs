@@ -6,7 +6,7 @@ use super::lawful::lawful;
 use super::layout::Layout;
 use super::problem::{Problem, entry, put};
 use super::total::Total;
-use super::{Contacts, Law, Touch, impact, near};
+use super::{Contacts, Law, Touch, impact, touching_distance};
 use crate::constraint::ConstraintError;
 use crate::forward::{constants, each_function};
 use crate::integrate::{Features, Hooks};
@@ -88,7 +88,7 @@ pub(super) fn stopped_contact<T: Real, const NK: usize, const NR: usize>(
     laws: &[Law<T>; NK],
     layout: Layout<NK>,
 ) -> Option<usize> {
-    let slips = |k: usize| length(rates, layout.tangents(k)) > near();
+    let slips = |k: usize| length(rates, layout.tangents(k)) > touching_distance();
     let mut sticks =
         touches.iter().zip(laws).map(|(touch, law)| *touch == Touch::Sticks && law.friction > T::zero());
     (0..NK).find(|k| sticks.next() == Some(true) && slips(*k))
@@ -201,14 +201,14 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
         for (k, ((gap, closed), flight)) in states.filter(|(k, _)| layout.is_gap(*k)) {
             let (_, first) = layout.pressing(k);
             let (gap, rate, acceleration) = (*gap, entry(&rates, first), entry(&bent, first));
-            if closed || gap > near() {
+            if closed || gap > touching_distance() {
                 continue;
             }
             let gap = if gap > touching { gap } else { T::zero() };
             let rise =
                 if rate > T::zero() { -rate * rate / (acceleration * constant(2.0)) } else { T::zero() };
             let falls = rate < T::zero() || acceleration < T::zero();
-            if falls && gap + rise <= near() {
+            if falls && gap + rise <= touching_distance() {
                 *flight = Some(Flight { gap, rate, acceleration });
             }
         }

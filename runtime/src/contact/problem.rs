@@ -4,7 +4,7 @@ use super::layout::Layout;
 use super::total::Total;
 use super::{Law, Rows, Touch};
 use crate::Real;
-use crate::private::{constant, epsilon};
+use crate::private::{constant, epsilon, positive_part};
 use core::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
@@ -417,7 +417,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 kept.pressed_by[c] = c;
                 kept.free[c] = gap;
                 // Separating surfaces are not displaced, but must not penetrate deeper.
-                kept.least[c] = if stay[c] { T::zero() } else { gap.min(T::zero()) };
+                kept.least[c] = if stay[c] { T::zero() } else { -positive_part(-gap) };
                 kept.step[c] = self.step[k];
                 kept.count += 1;
             }

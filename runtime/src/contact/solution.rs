@@ -3,7 +3,9 @@
 use super::problem::{Equations, Problem};
 use super::selection::Selection;
 use super::total::Total;
-use super::{Assumed, Contacts, Law, Responses, Solved, failed, lawful, near, phase};
+use super::{
+    Assumed, Contacts, Law, Responses, Solved, lawful, phase, touching_distance, unsolved_contact_error,
+};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::private::constant;
@@ -63,7 +65,7 @@ where
     problem.select(layout, &laws, &selection.closed(), &selection.rates(&after));
     if laws.iter().any(|law| law.stiction > law.friction) {
         let rates = selection.rates(&before());
-        problem.stick(&laws, |k| phase::length(&rates, layout.tangents(k)) <= near());
+        problem.stick(&laws, |k| phase::length(&rates, layout.tangents(k)) <= touching_distance());
     }
     let is_loaded = problem.is_loaded();
     let before = match is_loaded && laws.iter().all(|law| law.restitution == T::zero()) {
@@ -73,11 +75,11 @@ where
     if !is_loaded && !problem.was_loaded(&before) {
         return Ok(solved);
     }
-    let responses = acted.responses.insert(Responses::zeros());
+    let responses = acted.responses.insert(Responses::zero_effects());
     selection.fill_responses(mechanism, (t, q), closed, responses, &mut problem.basis);
     problem.weigh(&responses.rates);
     problem.depends_on(NV);
-    let failed = |contact| failed::<M, T, NQ, NV, NU, NK, NR>(selection.contact(contact));
+    let failed = |contact| unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>(selection.contact(contact));
     let mut equations = Equations::new();
     let (given, recorded, is_moving) = match given {
         Some(((given, recorded), is_moving)) => (Some(given), recorded.recall(selection), is_moving),
@@ -85,15 +87,16 @@ where
     };
     // Contact forces on bodies at rest do not rotate.
     let still = SVector::<T, NV>::zeros();
+    let recorded = recorded.map(|all| problem.gather(&all));
     let transported = given.filter(|given| is_moving && **given != still).map(|given| {
         let rates = selection.rates(&(mechanism.contact_rates(t, q, &(free + given)) - after));
-        problem.transport(given, &rates, responses, &mut equations)
+        problem.transport(given, (&rates, recorded.as_ref()), responses, &mut equations)
     });
     let start = transported.map(|(start, correction)| {
         solved.v += correction;
         start
     });
-    let start = recorded.map(|all| problem.gather(&all)).or(start);
+    let start = recorded.or(start);
     acted.free = solved.v;
     problem.compress(&laws, &before).map_err(failed)?;
     problem.aim(&laws, &before, T::one());

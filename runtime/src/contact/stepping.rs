@@ -4,10 +4,10 @@ use super::layout::Layout;
 use super::problem::{Problem, entry, put};
 use super::selection::{FEW, Selection};
 use super::total::Total;
-use super::{Acted, Assumed, Contacts, Impulses, Law, Rows, Touched, act, near};
+use super::{Acted, Assumed, Contacts, Impulses, Law, Rows, Touched, act, touching_distance};
 use crate::Real;
 use crate::constraint::ConstraintError;
-use crate::private::{constant, epsilon};
+use crate::private::{constant, epsilon, positive_part};
 use core::cell::Cell;
 use nalgebra::SVector;
 
@@ -85,13 +85,14 @@ where
     if gaps.iter().any(|gap| !gap.is_finite()) || free.iter().any(|x| !x.is_finite()) {
         return Err(ConstraintError::NotFinite);
     }
-    let mut closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= near());
+    let mut closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= touching_distance());
     let open = |closed: &[bool; NK]| closed.iter().any(|is_closed| !is_closed);
     if let Some(came) = came.filter(|came| came.h > T::zero() && open(&closed)) {
         let (h, held, still) = (&came.h, &came.held, SVector::<T, NV>::zeros());
         let starts = mechanism.contact_gaps(t - *h, came.start.0);
         let is_held = *held != still;
-        let touched = closed.iter().zip(&starts).any(|(is_closed, start)| !is_closed && *start <= near());
+        let touched =
+            closed.iter().zip(&starts).any(|(is_closed, start)| !is_closed && *start <= touching_distance());
         if !is_held && !touched {
             return Ok(closed.contains(&true).then_some(closed));
         }
@@ -105,14 +106,14 @@ where
         for (k, (closed, (gap, start))) in closed.iter_mut().zip(gaps.iter().zip(&starts)).enumerate() {
             let (by, place) = layout.pressing(k);
             let of = |vector: &SVector<T, NR>| entry(vector, place);
-            let parts = (of(&rates) * *h).max(T::zero());
+            let parts = positive_part(of(&rates) * *h);
             // Where faces and edges take turns a contact may be at another place than before.
             let Rows { first, count } = layout.rows(by);
             let ways = (first..first + count).fold(of(&apart).abs(), |sum, i| {
                 sum + (entry(&rates, i).abs() + entry(&after, i).abs()) * *h
             });
-            let stays = *start + parts <= near() && *gap <= near::<T>() + ways;
-            *closed |= *gap - of(&apart) <= near() || stays;
+            let stays = *start + parts <= touching_distance() && *gap <= touching_distance::<T>() + ways;
+            *closed |= *gap - of(&apart) <= touching_distance() || stays;
         }
     }
     Ok(closed.contains(&true).then_some(closed))
@@ -171,7 +172,7 @@ where
     let still = SVector::<T, NV>::zeros();
     let Some(closed) = closed(mechanism, t, q, free, Some(&came))? else {
         let is_led = h != T::zero() && *given != still;
-        return Ok(if is_led { led(free, &still) } else { Touched::free(*q, *free) });
+        return Ok(if is_led { led(free, &still) } else { Touched::state_without_contacts(*q, *free) });
     };
     let (rows, _) = mechanism.contact_tables();
     let rows = rows.iter().zip(&closed).filter(|(_, is_closed)| **is_closed);
@@ -226,7 +227,7 @@ where
     let mut acted = Acted::nothing(selection, true);
     let before = || came.rates(mechanism, t, q);
     let moves = |far: T| v.iter().any(|v| v.abs() * h > far);
-    let is_moving = moves(near::<T>() * constant(10.0));
+    let is_moving = moves(touching_distance::<T>() * constant(10.0));
     let after =
         act(mechanism, t, (q, free), closed, (before, Some(((given, recorded), is_moving))), &mut acted)?.v;
     if h == T::zero() {
@@ -246,7 +247,7 @@ where
         let carried = mechanism.carry(t, start, &mechanism.difference(start, q), v);
         let mean = (carried + free + given) * constant::<T>(0.5);
         let work = mechanism.generalized_momentum(t, q, &mean).dot(given);
-        energy(mechanism, t, &Touched::free(*q, free + given)) - work
+        energy(mechanism, t, &Touched::state_without_contacts(*q, free + given)) - work
     };
     if problem.rebounds() {
         let led = |impulses: &SVector<T, CR>| {
@@ -260,7 +261,7 @@ where
     }
     touched.violation = problem.violation();
     touched.impulses = Impulses::record(&selection, &problem.spread(impulses));
-    if !is_moving && !moves(near::<T>() * constant(1e-3)) {
+    if !is_moving && !moves(touching_distance::<T>() * constant(1e-3)) {
         let states = ((start, v), q, &touched, &after);
         let creep = creep_reversal(mechanism, t, states, h, (problem, &selection));
         if let Some(creep) = creep {
@@ -269,11 +270,11 @@ where
     }
     let gaps = mechanism.contact_gaps(t, &touched.q);
     let own = selection.gaps(&gaps);
-    if problem.is_shut(&own, near()) {
+    if problem.is_shut(&own, touching_distance()) {
         return Ok(touched);
     }
     let speed = own_rates().iter().fold(problem.speed(), |most, rate| most.max(rate.abs()));
-    match problem.close(impulses, &own, (near(), near::<T>() + speed * h)) {
+    match problem.close(impulses, &own, (touching_distance(), touching_distance::<T>() + speed * h)) {
         Some(pushes) => Ok(pushed(mechanism, t, (&touched, &gaps), &(responses * pushes), most)),
         None => Ok(touched),
     }
@@ -321,7 +322,7 @@ where
     let (crept, slip) = (selection.rates(&crept), selection.rates(&slip));
     let (layout, mut back) = (selection.layout(), SVector::<T, CR>::zeros());
     for tangents in (0..CK).map(|k| layout.tangents(k)) {
-        if tangents.clone().all(|i| entry(&slip, i).abs() <= near::<T>() * near()) {
+        if tangents.clone().all(|i| entry(&slip, i).abs() <= touching_distance::<T>() * touching_distance()) {
             tangents.for_each(|i| put(&mut back, i, -entry(&crept, i)));
         }
     }
@@ -415,8 +416,8 @@ where
             ..*from
         };
         // Without overlaps there is little to be pushed.
-        if deepest < -near::<T>()
-            && mechanism.contact_gaps(t, &to.q).iter().any(|gap| *gap < deepest - near::<T>())
+        if deepest < -touching_distance::<T>()
+            && mechanism.contact_gaps(t, &to.q).iter().any(|gap| *gap < deepest - touching_distance::<T>())
         {
             part *= constant(0.5);
             continue;

@@ -20,7 +20,7 @@ pub(super) struct Curvature<T, const NV: usize> {
 impl<T: Real, const NV: usize> Curvature<T, NV> {
     /// Returns the products of the Hessian with columns of changes of both vectors: the rows of the first
     /// vector and of the second.
-    fn rows<const C: usize>(
+    fn hessian_products<const C: usize>(
         &self,
         first: &SMatrix<T, NV, C>,
         second: &SMatrix<T, NV, C>,
@@ -46,12 +46,12 @@ impl<T: Real, const NV: usize> Curvature<T, NV> {
     ) {
         let turned = [&first.by_q, &second.by_q, &first.by_v, &second.by_v].map(transposed);
         let [first_q, second_q, first_v, second_v] = &turned;
-        let (a, b) = self.rows(&first.by_q, &second.by_q);
+        let (a, b) = self.hessian_products(&first.by_q, &second.by_q);
         add_both(&mut sum.0, (first_q, &a), (second_q, &b));
-        let (a, b) = self.rows(&first.by_v, &second.by_v);
+        let (a, b) = self.hessian_products(&first.by_v, &second.by_v);
         add_both(&mut sum.1, (first_q, &a), (second_q, &b));
         add_both(&mut sum.2, (first_v, &a), (second_v, &b));
-        let (a, b) = self.rows(&first.by_u, &second.by_u);
+        let (a, b) = self.hessian_products(&first.by_u, &second.by_u);
         add_both(&mut sum.3, (first_q, &a), (second_q, &b));
         add_both(&mut sum.4, (first_v, &a), (second_v, &b));
         add_both(&mut sum.5, (&transposed(&first.by_u), &a), (&transposed(&second.by_u), &b));
@@ -94,7 +94,7 @@ impl<T: Real, const NV: usize> Displacement<T, NV> {
     /// that `ξ` is `E δq + ζ + ½ [E δq, ζ]` to second order. `ζ` is `D δ` plus half the change of the right
     /// Jacobian `D` along `δ`. The derivative of `D` is computed from that of its inverse, which maps
     /// velocities to rates of displacements.
-    pub(super) fn curvature<M, const NQ: usize, const NU: usize>(
+    pub(super) fn curvature_of_displacement<M, const NQ: usize, const NU: usize>(
         &self,
         m: &M,
         lambda: &SVector<T, NV>,

@@ -22,19 +22,19 @@ pub(super) struct Sensitive<T, const NV: usize, const NU: usize> {
 impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
     /// Returns the velocity at the start of the step, with its derivatives: the identity with respect to
     /// itself, otherwise zero.
-    pub(super) fn velocity(v: &SVector<T, NV>) -> Self {
+    pub(super) fn start_velocity(v: &SVector<T, NV>) -> Self {
         let (by_q, by_u) = (SMatrix::zeros(), SMatrix::zeros());
         Self { value: *v, by_q, by_v: SMatrix::identity(), by_u }
     }
 
     /// Returns the zero displacement of the configuration at the start, which moves with that configuration.
-    pub(super) fn displacement() -> Self {
+    pub(super) fn zero_displacement() -> Self {
         let (by_v, by_u) = (SMatrix::zeros(), SMatrix::zeros());
         Self { value: SVector::zeros(), by_q: SMatrix::identity(), by_v, by_u }
     }
 
     /// Returns the vector `self + s other` together with its derivatives.
-    pub(super) fn plus(&self, s: T, other: &Self) -> Self {
+    pub(super) fn plus_scaled(&self, s: T, other: &Self) -> Self {
         Self {
             value: self.value + other.value * s,
             by_q: self.by_q + other.by_q * s,
@@ -43,13 +43,13 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
         }
     }
 
-    pub(super) fn scaled(&self, s: T) -> Self {
+    pub(super) fn scaled_derivatives(&self, s: T) -> Self {
         Self { value: self.value * s, by_q: self.by_q * s, by_v: self.by_v * s, by_u: self.by_u * s }
     }
 
     /// Returns a function of two vectors with derivatives, by the chain rule; `by_a` and `by_b` are the
     /// Jacobians of the function.
-    pub(super) fn compose(
+    pub(super) fn compose_derivatives(
         value: SVector<T, NV>,
         (by_a, a): (&SMatrix<T, NV, NV>, &Self),
         (by_b, b): (&SMatrix<T, NV, NV>, &Self),
@@ -79,7 +79,7 @@ where
 {
     /// Returns the configuration `q ⊕ displacement`, and the displacement of that configuration with
     /// derivatives with respect to the start and the inputs.
-    pub(super) fn displace(
+    pub(super) fn displace_configuration(
         &self,
         displacement: &Sensitive<T, NV, NU>,
     ) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
@@ -102,21 +102,21 @@ where
 
     /// Returns the acceleration at a time `h` after the start, with its derivatives with respect to the start
     /// of the step.
-    pub(super) fn acceleration(
+    pub(super) fn acceleration_after(
         &self,
         h: T,
         (q, motion): &(SVector<T, NQ>, Sensitive<T, NV, NU>),
         v: &Sensitive<T, NV, NU>,
     ) -> Sensitive<T, NV, NU> {
-        let own = self.accelerated(h, (q, &v.value));
-        let mut found = Sensitive::compose(own.value, (&own.by_q, motion), (&own.by_v, v));
+        let own = self.acceleration_in_state(h, (q, &v.value));
+        let mut found = Sensitive::compose_derivatives(own.value, (&own.by_q, motion), (&own.by_v, v));
         add_multiple(&mut found.by_u, T::one(), &own.by_u);
         found
     }
 
     /// Returns the acceleration at a time `h` after the start, in a given state, with its derivatives with
     /// respect to that state and to the inputs.
-    pub(super) fn accelerated(
+    pub(super) fn acceleration_in_state(
         &self,
         h: T,
         state: (&SVector<T, NQ>, &SVector<T, NV>),
@@ -128,12 +128,12 @@ where
     }
 
     /// Returns the state after a step with a given displacement and final velocity.
-    pub(super) fn end(
+    pub(super) fn end_of_step(
         &self,
         displacement: &Sensitive<T, NV, NU>,
         v: &Sensitive<T, NV, NU>,
     ) -> Transition<T, NQ, NV, NU> {
-        let (q, motion) = self.displace(displacement);
+        let (q, motion) = self.displace_configuration(displacement);
         Transition {
             q,
             v: v.value,
@@ -148,8 +148,8 @@ where
     }
 
     /// Returns the configuration at the start; its derivative with respect to itself is the identity.
-    pub(super) fn here(&self) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
-        (*self.q, Sensitive::displacement())
+    pub(super) fn start_configuration(&self) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
+        (*self.q, Sensitive::zero_displacement())
     }
 }
 
@@ -174,11 +174,11 @@ pub fn semi_implicit_into<M, T, const NQ: usize, const NV: usize, const NU: usiz
     multiple_into(h, by_q, &mut into.v_by_q);
     multiple_into(h, by_v, &mut into.v_by_v);
     multiple_into(h, by_u, &mut into.v_by_u);
-    chain(mechanism, h, (q, v), acceleration, into);
+    complete_step_by_chain_rule(mechanism, h, (q, v), acceleration, into);
 }
 
 /// Completes a step whose derivatives of the change of velocity are already in `step`.
-fn chain<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+fn complete_step_by_chain_rule<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     h: T,
     (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
@@ -206,7 +206,7 @@ fn chain<M, T, const NQ: usize, const NV: usize, const NU: usize>(
         Some(others) => Chained { period: h, by_q, by_displacement, others: [others; 2] },
         None => Chained::new(h, by_q, by_displacement),
     });
-    let [_, d] = chain.nearly();
+    let [_, d] = chain.nearly_identity_matrices();
     d.lead_multiple_into(h, v_by_q, q_by_q);
     d.lead_multiple_into(h, v_by_v, q_by_v);
     d.lead_multiple_into(h, v_by_u, q_by_u);
@@ -251,7 +251,7 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
         scale(v_by_q, h);
         scale(v_by_v, h);
         scale(v_by_u, h);
-        chain(mechanism, h, (q, v), &acceleration, step);
+        complete_step_by_chain_rule(mechanism, h, (q, v), &acceleration, step);
         Ok(())
     }
 
@@ -273,7 +273,7 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
     where
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        implicit::pushed(self, mechanism, t, q, v, u)
+        implicit::constrained_euler_step(self, mechanism, t, q, v, u)
     }
 }
 
@@ -295,29 +295,37 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
         if mechanism.features().is_plain() {
             return Ok(plain::runge_kutta(&start, v, h));
         }
-        let v = Sensitive::velocity(v);
+        let v = Sensitive::start_velocity(v);
         let stage_derivatives =
             |h: T, (rate, acceleration): &(Sensitive<T, NV, NU>, Sensitive<T, NV, NU>)| {
-                let (displacement, v) = (rate.scaled(h), v.plus(h, acceleration));
+                let (displacement, v) = (rate.scaled_derivatives(h), v.plus_scaled(h, acceleration));
                 let (by_q, by_dv, by_v) =
                     mechanism.displacement_rate_derivatives(q, &displacement.value, &v.value);
                 let value = mechanism.displacement_rate(q, &displacement.value, &v.value);
-                let mut rate = Sensitive::compose(value, (&by_dv, &displacement), (&by_v, &v));
+                let mut rate = Sensitive::compose_derivatives(value, (&by_dv, &displacement), (&by_v, &v));
                 if mechanism.features().speeds {
                     rate.by_q += by_q;
                 }
-                (rate, start.acceleration(h, &start.displace(&displacement), &v))
+                (rate, start.acceleration_after(h, &start.displace_configuration(&displacement), &v))
             };
         let half = h * constant(0.5);
-        let k1 = (v, start.acceleration(T::zero(), &start.here(), &v));
+        let k1 = (v, start.acceleration_after(T::zero(), &start.start_configuration(), &v));
         let k2 = stage_derivatives(half, &k1);
         let k3 = stage_derivatives(half, &k2);
         let k4 = stage_derivatives(h, &k3);
         let two = constant::<T>(2.0);
         let sixth = h / constant(6.0);
-        let displacement = k1.0.plus(two, &k2.0).plus(two, &k3.0).plus(T::one(), &k4.0).scaled(sixth);
-        let change = k1.1.plus(two, &k2.1).plus(two, &k3.1).plus(T::one(), &k4.1).scaled(sixth);
-        Ok(start.end(&displacement, &v.plus(T::one(), &change)))
+        let displacement =
+            k1.0.plus_scaled(two, &k2.0)
+                .plus_scaled(two, &k3.0)
+                .plus_scaled(T::one(), &k4.0)
+                .scaled_derivatives(sixth);
+        let change =
+            k1.1.plus_scaled(two, &k2.1)
+                .plus_scaled(two, &k3.1)
+                .plus_scaled(T::one(), &k4.1)
+                .scaled_derivatives(sixth);
+        Ok(start.end_of_step(&displacement, &v.plus_scaled(T::one(), &change)))
     }
 
     fn differentiate_held<
@@ -338,6 +346,6 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
     where
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        projected::projected(mechanism, t + self.length(), self.differentiate(mechanism, t, q, v, u)?)
+        projected::project_step(mechanism, t + self.length(), self.differentiate(mechanism, t, q, v, u)?)
     }
 }

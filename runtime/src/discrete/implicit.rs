@@ -7,17 +7,17 @@
 //! ([`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint)).
 
 use super::projected::Corrections;
-use super::{DifferentiableStep, Transition, advanced};
-use crate::constraint::{ConstrainedDerivatives, column, each_column, multipliers};
+use super::{DifferentiableStep, Transition, state_after_step};
+use crate::constraint::{ConstrainedDerivatives, column_or_zeros, each_column, multipliers_of_forces};
 use crate::derivatives::{ByMotion, Derivatives};
 use crate::integrate::{Error, ImplicitMidpoint, SemiImplicitEuler};
 use crate::private::{constant, epsilon};
-use crate::speeds::{at_midpoint, led, way_of};
+use crate::speeds::{at_midpoint, reached_configurations, way_of};
 use crate::{Real, at};
 use nalgebra::{SMatrix, SVector};
 
 /// Returns the derivatives of the momentum with respect to configuration and velocity.
-fn momentum<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+fn momentum_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: T,
     q: &SVector<T, NQ>,
@@ -35,7 +35,7 @@ where
 }
 
 /// Returns the derivatives of the momentum's rate under inputs.
-fn rate<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+fn momentum_rate_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: T,
     q: &SVector<T, NQ>,
@@ -56,7 +56,7 @@ where
 }
 
 /// Returns the derivatives of the velocity-dependent part of the momentum's rate.
-fn inertial<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+fn inertial_rate_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     t: T,
     q: &SVector<T, NQ>,
@@ -176,7 +176,14 @@ where
     fn end<const C: usize>(&self, p: &SMatrix<T, NV, C>, by_q: &SMatrix<T, NV, C>) -> SMatrix<T, NV, C> {
         let held = self.0;
         let (forces, gaps) = (p - held.balance_by_q * by_q, held.rates_by_q * by_q);
-        each_column(|j| held.m.constraint_response(held.t, held.end, &column(&forces, j), &column(&gaps, j)))
+        each_column(|j| {
+            held.m.constraint_response(
+                held.t,
+                held.end,
+                &column_or_zeros(&forces, j),
+                &column_or_zeros(&gaps, j),
+            )
+        })
     }
 }
 
@@ -185,30 +192,30 @@ where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
-    fn half(&self) -> T {
+    fn half_step(&self) -> T {
         self.h * constant(0.5)
     }
 
     /// Returns the derivative of the residual of the midpoint's equation with respect to the midpoint's
     /// velocity.
-    fn matrix(&self) -> SMatrix<T, NV, NV> {
-        let half = self.half();
-        let (by_q, by_v) = momentum(self.m, self.t + half, &self.middle, &self.w);
+    fn residual_derivative(&self) -> SMatrix<T, NV, NV> {
+        let half = self.half_step();
+        let (by_q, by_v) = momentum_derivatives(self.m, self.t + half, &self.middle, &self.w);
         let moves = self.led[0].1;
         by_v - self.rate.1 * half + (by_q - self.rate.0 * half) * moves * half
     }
 
     /// Returns the changes of configuration and velocity after the step, due to changes of the configuration
     /// before it, of the momentum at the start and of the momentum's rate.
-    fn changes<const C: usize>(
+    fn changes_after_step<const C: usize>(
         &self,
         answer: &impl Answer<T, NV>,
         by_q: &SMatrix<T, NV, C>,
         start: &SMatrix<T, NV, C>,
         rate: &SMatrix<T, NV, C>,
     ) -> (SMatrix<T, NV, C>, SMatrix<T, NV, C>) {
-        let half = self.half();
-        let (p_by_q, mass) = momentum(self.m, self.t + half, &self.middle, &self.w);
+        let half = self.half_step();
+        let (p_by_q, mass) = momentum_derivatives(self.m, self.t + half, &self.middle, &self.w);
         let [(turned, moves), end] = self.led;
         let force = start + rate * half - (p_by_q - self.rate.0 * half) * turned * by_q;
         let w = answer.middle(&force, by_q);
@@ -219,19 +226,20 @@ where
         (end, answer.end(&p, &end))
     }
 
-    fn transition(&self, answer: &impl Answer<T, NV>) -> Transition<T, NQ, NV, NU> {
+    fn transition_of_step(&self, answer: &impl Answer<T, NV>) -> Transition<T, NQ, NV, NU> {
         let none = SMatrix::zeros();
-        let (q_by_q, v_by_q) = self.changes(answer, &SMatrix::identity(), &self.start.0, &none);
-        let (q_by_v, v_by_v) = self.changes(answer, &none, &self.start.1, &none);
-        let (q_by_u, v_by_u) = self.changes(answer, &SMatrix::zeros(), &self.start.2, &self.rate.2);
+        let (q_by_q, v_by_q) = self.changes_after_step(answer, &SMatrix::identity(), &self.start.0, &none);
+        let (q_by_v, v_by_v) = self.changes_after_step(answer, &none, &self.start.1, &none);
+        let (q_by_u, v_by_u) =
+            self.changes_after_step(answer, &SMatrix::zeros(), &self.start.2, &self.rate.2);
         let (q, v) = self.end;
         Transition { q, v, q_by_q, q_by_v, q_by_u, v_by_q, v_by_v, v_by_u, chained: None }
     }
 
-    fn free(&self) -> Transition<T, NQ, NV, NU> {
+    fn transition_without_constraints(&self) -> Transition<T, NQ, NV, NU> {
         let (q, v) = &self.end;
-        let (momentum_by_q, mass) = momentum(self.m, self.t + self.h, q, v);
-        self.transition(&Free { matrix: self.matrix(), mass, momentum_by_q })
+        let (momentum_by_q, mass) = momentum_derivatives(self.m, self.t + self.h, q, v);
+        self.transition_of_step(&Free { matrix: self.residual_derivative(), mass, momentum_by_q })
     }
 
     fn constrained_transition<const NH: usize, const NC: usize>(
@@ -241,13 +249,13 @@ where
     where
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        let (m, t, h, half, still) = (self.m, self.t, self.h, self.half(), SVector::zeros());
+        let (m, t, h, half, still) = (self.m, self.t, self.h, self.half_step(), SVector::zeros());
         let (middle, (end, after)) = (self.middle, &self.end);
         m.check_regular(t, self.q)?;
         m.check_regular(t + h, end)?;
-        let matrix = self.matrix();
+        let matrix = self.residual_derivative();
         let own = m.generalized_momentum(t + half, &middle, &self.w);
-        let lambda = multipliers(m, t, self.q, &(own - self.kick - gain));
+        let lambda = multipliers_of_forces(m, t, self.q, &(own - self.kick - gain));
         let jacobian = m.constraint_jacobian(t, self.q);
         // Constraints on configurations at the end, divided by the period; constraints on velocities at the
         // midpoint.
@@ -265,7 +273,7 @@ where
             by_q.set_row(k, &q);
         }
         let p = own + gain;
-        let mu = multipliers(m, t + h, end, &(m.generalized_momentum(t + h, end, after) - p));
+        let mu = multipliers_of_forces(m, t + h, end, &(m.generalized_momentum(t + h, end, after) - p));
         let held = Held {
             m,
             matrix,
@@ -275,10 +283,10 @@ where
             by_q,
             t: t + h,
             end,
-            balance_by_q: momentum(m, t + h, end, after).0 + m.balance(t + h, end, &still, &mu).0,
+            balance_by_q: momentum_derivatives(m, t + h, end, after).0 + m.balance(t + h, end, &still, &mu).0,
             rates_by_q: m.equation_derivatives(t + h, end, after, &still, &SVector::zeros()).rates_by_q,
         };
-        Ok(self.transition(&Numbered::<M, T, NQ, NV, NU, NH, NC>(&held)))
+        Ok(self.transition_of_step(&Numbered::<M, T, NQ, NV, NU, NH, NC>(&held)))
     }
 }
 
@@ -296,7 +304,7 @@ impl<T: Real> DifferentiableStep<T> for ImplicitMidpoint<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        Ok(self.made(m, t, q, v, u)?.free())
+        Ok(self.prepare_step(m, t, q, v, u)?.transition_without_constraints())
     }
 
     fn differentiate_held<
@@ -317,15 +325,15 @@ impl<T: Real> DifferentiableStep<T> for ImplicitMidpoint<T> {
     where
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        let made = self.made(m, t, q, v, u)?;
-        let (now, middle) = (t + made.half(), made.middle);
+        let made = self.prepare_step(m, t, q, v, u)?;
+        let (now, middle) = (t + made.half_step(), made.middle);
         let force = m.momentum_rate(now, &middle, &made.w) + m.generalized_forces(now, &middle, &made.w, u);
-        made.constrained_transition(&(force * made.half()))
+        made.constrained_transition(&(force * made.half_step()))
     }
 }
 
 impl<T: Real> ImplicitMidpoint<T> {
-    fn made<'a, M, const NQ: usize, const NV: usize, const NU: usize>(
+    fn prepare_step<'a, M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         m: &'a M,
         t: T,
@@ -337,13 +345,13 @@ impl<T: Real> ImplicitMidpoint<T> {
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         let h = self.length();
-        let (end, mean) = advanced(m, self, t, q, v, u, h)?;
+        let (end, mean) = state_after_step(m, self, t, q, v, u, h)?;
         let half = h * constant(0.5);
         let w = at_midpoint(m, q, mean, half);
-        let (by_q, by_v) = momentum(m, t, q, v);
+        let (by_q, by_v) = momentum_derivatives(m, t, q, v);
         let middle = m.integrate(q, &way_of(m, q, &w, half));
         Ok(Made {
-            led: led(m, q, &w, half),
+            led: reached_configurations(m, q, &w, half),
             middle,
             m,
             t,
@@ -351,7 +359,7 @@ impl<T: Real> ImplicitMidpoint<T> {
             q,
             w,
             end,
-            rate: rate(m, t + half, &middle, &w, u),
+            rate: momentum_rate_derivatives(m, t + half, &middle, &w, u),
             start: (by_q, by_v, SMatrix::zeros()),
             kick: m.generalized_momentum(t, q, v),
         })
@@ -360,7 +368,7 @@ impl<T: Real> ImplicitMidpoint<T> {
 
 /// Returns a constrained semi-implicit Euler step with its Jacobians. Forces are evaluated at the start of
 /// the step, inertial terms at the midpoint.
-pub(super) fn pushed<
+pub(super) fn constrained_euler_step<
     M,
     T,
     const NQ: usize,
@@ -381,16 +389,16 @@ where
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
     let (h, still) = (method.length(), SVector::zeros());
-    let (end, mean) = advanced(m, method, t, q, v, u, h)?;
+    let (end, mean) = state_after_step(m, method, t, q, v, u, h)?;
     let half = h * constant(0.5);
     let w = at_midpoint(m, q, mean, half);
-    let (by_q, by_v) = momentum(m, t, q, v);
+    let (by_q, by_v) = momentum_derivatives(m, t, q, v);
     let (force_by_q, force_by_v, force_by_u) = m.generalized_forces_derivatives(t, q, v, u);
     let rest_by_q = m.momentum_rate_derivatives(t, q, &still).0;
     let middle = m.integrate(q, &way_of(m, q, &w, half));
     let force = m.momentum_rate(t, q, &still) + m.generalized_forces(t, q, v, u);
     let made = Made {
-        led: led(m, q, &w, half),
+        led: reached_configurations(m, q, &w, half),
         middle,
         m,
         t,
@@ -398,7 +406,7 @@ where
         q,
         w,
         end,
-        rate: inertial(m, t + half, &middle, &w),
+        rate: inertial_rate_derivatives(m, t + half, &middle, &w),
         start: (by_q + (force_by_q + rest_by_q) * h, by_v + force_by_v * h, force_by_u * h),
         kick: m.generalized_momentum(t, q, v) + force * h,
     };

@@ -101,23 +101,23 @@ struct Changing<T, const NV: usize, const NP: usize> {
 }
 
 impl<T: Real, const NV: usize, const NP: usize> Changing<T, NV, NP> {
-    fn fixed(value: &SVector<T, NV>) -> Self {
+    fn parameter_independent(value: &SVector<T, NV>) -> Self {
         Self { value: *value, by: SMatrix::zeros() }
     }
 
     /// Returns the vector `self + s other` together with its parameter derivatives.
-    fn plus(&self, s: T, other: &Self) -> Self {
+    fn plus_scaled(&self, s: T, other: &Self) -> Self {
         Self { value: self.value + other.value * s, by: self.by + other.by * s }
     }
 
-    fn scaled(&self, s: T) -> Self {
+    fn scaled_derivatives(&self, s: T) -> Self {
         Self { value: self.value * s, by: self.by * s }
     }
 }
 
 /// Returns the acceleration at a stage of a step that starts with `q` at time `t`: after `h` seconds, for a
 /// displacement and a velocity.
-fn acceleration<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
+fn acceleration_at_stage<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
     m: &M,
     t: T,
     (q, displacement): (&SVector<T, NQ>, &Changing<T, NV, NP>),
@@ -171,9 +171,12 @@ impl<T: Real> StepByParameters<T> for SemiImplicitEuler<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
     {
-        let (h, v) = (self.length(), Changing::fixed(v));
-        let after = v.plus(h, &acceleration(m, t, (q, &Changing::fixed(&SVector::zeros())), &v, u));
-        (configuration_derivatives(m, q, &after.scaled(h)), after.by)
+        let (h, v) = (self.length(), Changing::parameter_independent(v));
+        let after = v.plus_scaled(
+            h,
+            &acceleration_at_stage(m, t, (q, &Changing::parameter_independent(&SVector::zeros())), &v, u),
+        );
+        (configuration_derivatives(m, q, &after.scaled_derivatives(h)), after.by)
     }
 }
 
@@ -188,23 +191,32 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
     {
-        let (h, v) = (self.length(), Changing::fixed(v));
+        let (h, v) = (self.length(), Changing::parameter_independent(v));
         let half = h * constant(0.5);
         let stage_derivatives = |after: T, (rate, change): &(Changing<T, NV, NP>, Changing<T, NV, NP>)| {
-            let (displacement, v) = (rate.scaled(after), v.plus(after, change));
+            let (displacement, v) = (rate.scaled_derivatives(after), v.plus_scaled(after, change));
             let (_, by_dv, by_v) = m.displacement_rate_derivatives(q, &displacement.value, &v.value);
             let value = m.displacement_rate(q, &displacement.value, &v.value);
             let mut by = product(&by_v, &v.by);
             add_product(&mut by, &by_dv, &displacement.by);
-            (Changing { value, by }, acceleration(m, t + after, (q, &displacement), &v, u))
+            (Changing { value, by }, acceleration_at_stage(m, t + after, (q, &displacement), &v, u))
         };
-        let k1 = (v, acceleration(m, t, (q, &Changing::fixed(&SVector::zeros())), &v, u));
+        let k1 =
+            (v, acceleration_at_stage(m, t, (q, &Changing::parameter_independent(&SVector::zeros())), &v, u));
         let k2 = stage_derivatives(half, &k1);
         let k3 = stage_derivatives(half, &k2);
         let k4 = stage_derivatives(h, &k3);
         let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
-        let displacement = k1.0.plus(two, &k2.0).plus(two, &k3.0).plus(T::one(), &k4.0).scaled(sixth);
-        let change = k1.1.plus(two, &k2.1).plus(two, &k3.1).plus(T::one(), &k4.1).scaled(sixth);
+        let displacement =
+            k1.0.plus_scaled(two, &k2.0)
+                .plus_scaled(two, &k3.0)
+                .plus_scaled(T::one(), &k4.0)
+                .scaled_derivatives(sixth);
+        let change =
+            k1.1.plus_scaled(two, &k2.1)
+                .plus_scaled(two, &k3.1)
+                .plus_scaled(T::one(), &k4.1)
+                .scaled_derivatives(sixth);
         (configuration_derivatives(m, q, &displacement), change.by)
     }
 }

@@ -30,7 +30,7 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
 /// Returns the acceleration of a Runge–Kutta stage `after` seconds after the start, with derivatives.
 /// Multiples of the earlier accelerations `near` and `far` are added to the velocity and to the displacement
 /// of the stage.
-fn stage<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+fn acceleration_stage<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     start: &Start<'_, M, T, NQ, NV, NU>,
     v: &SVector<T, NV>,
     after: T,
@@ -49,7 +49,7 @@ where
         displacement += far.value * r;
     }
     let q = start.mechanism.integrate(start.q, &displacement);
-    let mut found = start.accelerated(after, (&q, &velocity));
+    let mut found = start.acceleration_in_state(after, (&q, &velocity));
     if near.is_none() && far.is_none() {
         return found;
     }
@@ -75,14 +75,14 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     let half = h * constant(0.5);
-    let k1 = stage(start, v, T::zero(), None, None);
-    let k2 = stage(start, v, half, Some((half, &k1)), None);
-    let k3 = stage(start, v, half, Some((half, &k2)), Some((half * half, &k1)));
-    let k4 = stage(start, v, h, Some((h, &k3)), Some((h * half, &k2)));
+    let k1 = acceleration_stage(start, v, T::zero(), None, None);
+    let k2 = acceleration_stage(start, v, half, Some((half, &k1)), None);
+    let k3 = acceleration_stage(start, v, half, Some((half, &k2)), Some((half * half, &k1)));
+    let k4 = acceleration_stage(start, v, h, Some((h, &k3)), Some((h * half, &k2)));
     // q⁺ = q + h v + h²/6 (a₁ + a₂ + a₃), v⁺ = v + h/6 (a₁ + 2 a₂ + 2 a₃ + a₄).
     let sixth = h / constant(6.0);
-    let change = sum(sixth, [(1.0, &k1), (2.0, &k2), (2.0, &k3), (1.0, &k4)]);
-    let mut way = sum(h * sixth, [(1.0, &k1), (1.0, &k2), (1.0, &k3)]);
+    let change = weighted_sum(sixth, [(1.0, &k1), (2.0, &k2), (2.0, &k3), (1.0, &k4)]);
+    let mut way = weighted_sum(h * sixth, [(1.0, &k1), (1.0, &k2), (1.0, &k3)]);
     way.value += v * h;
     let one = SMatrix::identity();
     Transition {
@@ -99,7 +99,7 @@ where
 }
 
 /// Returns the weighted sum `s Σ weight · term` of vectors with derivatives.
-fn sum<T: Real, const NV: usize, const NU: usize, const N: usize>(
+fn weighted_sum<T: Real, const NV: usize, const NU: usize, const N: usize>(
     s: T,
     terms: [(f64, &Sensitive<T, NV, NU>); N],
 ) -> Sensitive<T, NV, NU> {

@@ -4,7 +4,8 @@ use super::Transition;
 use crate::Real;
 use crate::blocks::product;
 use crate::constraint::{
-    ConstrainedDerivatives, ConstraintError, EquationDerivatives, column, each_column, multipliers,
+    ConstrainedDerivatives, ConstraintError, EquationDerivatives, column_or_zeros, each_column,
+    multipliers_of_forces,
 };
 use crate::integrate::Error;
 use crate::private::{constant, epsilon, to_f64};
@@ -81,28 +82,32 @@ pub(super) trait Corrections<
         let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
         let x = self.constraint_correction(t, near, &gap);
         let done = x.amax() <= constant::<T>(64.0) * epsilon::<T>() * near.amax().max(T::one());
-        let own = multipliers(self, t, near, &(self.mass_matrix(t, near) * x));
+        let own = multipliers_of_forces(self, t, near, &(self.mass_matrix(t, near) * x));
         let (forces, mut gaps) = self.balance(t, near, &x, &own);
         let jacobian = self.constraint_jacobian(t, near);
         for k in 0..NH {
             gaps.set_row(k, &(gaps.row(k) + jacobian.row(k)));
         }
-        let change =
-            each_column(|j| self.constraint_response(t, near, &-column(&forces, j), &column(&gaps, j)));
+        let change = each_column(|j| {
+            self.constraint_response(t, near, &-column_or_zeros(&forces, j), &column_or_zeros(&gaps, j))
+        });
         Correction { x, own, forces, change, done }
     }
 
     /// Returns the derivatives of the velocity correction `x` that results in the velocity `v`.
     fn stop(&self, t: T, (q, v): (&SVector<T, NQ>, &SVector<T, NV>), x: &SVector<T, NV>) -> Stop<T, NV, NC> {
-        let own = multipliers(self, t, q, &(self.mass_matrix(t, q) * x));
+        let own = multipliers_of_forces(self, t, q, &(self.mass_matrix(t, q) * x));
         let forces = self.balance(t, q, x, &own).0;
         let (still, none) = (SVector::zeros(), SVector::zeros());
         let rates = self.equation_derivatives(t, q, v, &still, &SVector::zeros()).rates_by_q;
         let jacobian = self.constraint_jacobian(t, q);
-        let turned =
-            each_column(|j| self.constraint_response(t, q, &-column(&forces, j), &column(&rates, j)));
+        let turned = each_column(|j| {
+            self.constraint_response(t, q, &-column_or_zeros(&forces, j), &column_or_zeros(&rates, j))
+        });
         let kept: SMatrix<T, NV, NV> = SMatrix::identity()
-            + each_column::<T, NV, NV>(|j| self.constraint_response(t, q, &none, &column(&jacobian, j)));
+            + each_column::<T, NV, NV>(|j| {
+                self.constraint_response(t, q, &none, &column_or_zeros(&jacobian, j))
+            });
         Stop { own, forces, turned, kept }
     }
 }
@@ -119,7 +124,7 @@ where
 ///
 /// Newton corrections project the configuration, and one linear correction projects the velocity. Each
 /// correction is differentiated as computed.
-pub(super) fn projected<
+pub(super) fn project_step<
     M,
     T,
     const NQ: usize,

@@ -5,8 +5,8 @@ use super::projected::{Correction, Corrections, MOST_CORRECTIONS, Stop};
 use crate::Real;
 use crate::blocks::product;
 use crate::constraint::{
-    ConstrainedSecondDerivatives, EquationSecondDerivatives, adjoint, column, multipliers, set_column,
-    with_transpose,
+    ConstrainedSecondDerivatives, EquationSecondDerivatives, adjoint_variables, column_or_zeros,
+    multipliers_of_forces, set_column, with_transpose,
 };
 use crate::integrate::Error;
 use crate::private::{constant, to_f64};
@@ -35,7 +35,7 @@ struct Contracted<'a, T, const NV: usize, const NC: usize> {
 impl<T: Real, const NV: usize, const NC: usize> Contracted<'_, T, NV, NC> {
     /// Returns the second derivatives of the contracted correction equations: those of the equations of
     /// motion with acceleration `x`, minus those at zero acceleration.
-    fn curvature<M, const NQ: usize, const NU: usize, const NH: usize>(
+    fn curvature_of_equations<M, const NQ: usize, const NU: usize, const NH: usize>(
         &self,
         m: &M,
         t: T,
@@ -78,7 +78,7 @@ where
     let all = product(&m.mass_matrix(t, q), change) + forces;
     let mut changes = SMatrix::zeros();
     for j in 0..NV {
-        set_column(&mut changes, j, &multipliers(m, t, q, &column(&all, j)));
+        set_column(&mut changes, j, &multipliers_of_forces(m, t, q, &column_or_zeros(&all, j)));
     }
     changes
 }
@@ -95,10 +95,11 @@ where
     T: Real,
     M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
-    let (w, z) = adjoint(m, t, q, factors);
+    let (w, z) = adjoint_variables(m, t, q, factors);
     let Correction { x, own, forces, change, .. } = found;
     let (still, none) = (SVector::zeros(), SVector::zeros());
-    let equations = Contracted { x, lambda: own, w: &-w, z: &-z, y: &none }.curvature(m, t, q, &still);
+    let equations =
+        Contracted { x, lambda: own, w: &-w, z: &-z, y: &none }.curvature_of_equations(m, t, q, &still);
     // The second derivatives of the residuals are derivatives of the Jacobian's rows.
     let of_residual = |k: usize| z.get(k).copied().filter(|_| k < NH).unwrap_or(T::zero());
     let holonomic = SVector::from_fn(|k, _| of_residual(k));
@@ -111,7 +112,7 @@ where
 }
 
 /// Returns the derivatives of the projection of a state, contracted with factors of the projected state.
-pub(super) fn curvature<
+pub(super) fn curvature_of_projection<
     M,
     T,
     const NQ: usize,
@@ -153,9 +154,10 @@ where
 
     let x = v - v_free;
     let Stop { own, forces, turned, kept } = m.stop(t, (&q, &v), &x);
-    let (w, z) = adjoint(m, t, &q, of_v);
+    let (w, z) = adjoint_variables(m, t, &q, of_v);
     let none = SVector::zeros();
-    let equations = Contracted { x: &x, lambda: &own, w: &-w, z: &none, y: &-z }.curvature(m, t, &q, &v);
+    let equations =
+        Contracted { x: &x, lambda: &own, w: &-w, z: &none, y: &-z }.curvature_of_equations(m, t, &q, &v);
     let by_x = equations.qa + equations.qv;
     let identity = SMatrix::<T, NV, NV>::identity();
     let mixed = product(&by_x, &turned)
@@ -174,7 +176,7 @@ where
         let mut own = SMatrix::zeros();
         if let Some(along) = displacement_if_on_manifold(&found.x) {
             of_x = along.by_dv.tr_mul(&gradient);
-            let Curvature { mixed, second, .. } = along.curvature(m, &gradient);
+            let Curvature { mixed, second, .. } = along.curvature_of_displacement(m, &gradient);
             let twice =
                 second.map_or_else(SMatrix::zeros, |b| found.change.tr_mul(&product(&b, &found.change)));
             own = with_transpose(twice, &product(&mixed, &found.change));

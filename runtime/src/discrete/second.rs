@@ -114,7 +114,7 @@ where
         let Through { method, t, q, v, u } = self.through;
         let free = method.differentiate(mechanism, t, q, v, u)?;
         let end = t + method.period();
-        let added = projection::curvature(mechanism, end, (&free.q, &free.v), self.factors)?;
+        let added = projection::curvature_of_projection(mechanism, end, (&free.q, &free.v), self.factors)?;
         let mut sum =
             method.differentiate_twice(mechanism, t, q, v, u, (&added.gradient.0, &added.gradient.1));
         let new_sensitive = |value, by_q, by_v, by_u| Sensitive { value, by_q, by_v, by_u };
@@ -177,14 +177,18 @@ impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
             return now.second_order_motion(q, v, u, &((by_v + by_q * h) * h));
         }
         let motion = Derivatives::linear_motion(&now, q, v, u);
-        let first = Sensitive::velocity(v);
+        let first = Sensitive::start_velocity(v);
         let change =
             Sensitive { value: motion.acceleration, by_q: motion.by_q, by_v: motion.by_v, by_u: motion.by_u };
-        let displacement = first.plus(h, &change).scaled(h);
+        let displacement = first.plus_scaled(h, &change).scaled_derivatives(h);
         let moved = Displacement::new(mechanism, &displacement.value);
         let of_displacement = moved.by_dv.tr_mul(by_q);
         let mut sum = now.second_order_motion(q, v, u, &((by_v + of_displacement * h) * h));
-        moved.curvature(mechanism, by_q).add_to(&mut sum, &Sensitive::displacement(), &displacement);
+        moved.curvature_of_displacement(mechanism, by_q).add_to(
+            &mut sum,
+            &Sensitive::zero_displacement(),
+            &displacement,
+        );
         sum
     }
 }
@@ -220,22 +224,27 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
     {
         let (h, start) = (self.length(), Start { mechanism, t, q, u });
         let half = h * constant(0.5);
-        let first = Sensitive::velocity(v);
-        let begin = Stage::new(&start, T::zero(), first.scaled(T::zero()), first);
+        let first = Sensitive::start_velocity(v);
+        let begin = Stage::new(&start, T::zero(), first.scaled_derivatives(T::zero()), first);
         let next_stage = |after: T, stage: &Stage<T, NQ, NV, NU>| {
-            let v = first.plus(after, &stage.acceleration());
-            Stage::new(&start, after, stage.rate(&start).scaled(after), v)
+            let v = first.plus_scaled(after, &stage.stage_acceleration());
+            Stage::new(&start, after, stage.displacement_rate(&start).scaled_derivatives(after), v)
         };
         let second = next_stage(half, &begin);
         let third = next_stage(half, &second);
         let fourth = next_stage(h, &third);
         let (sixth, third_part) = (h / constant(6.0), h / constant(3.0));
-        let mut sum = zeros();
+        let mut sum = zero_second_order();
         let mut of_end = *by_q;
         if NQ != NV {
             let two = constant::<T>(2.0);
-            let [k1, k2, k3, k4] = [&begin, &second, &third, &fourth].map(|stage| stage.rate(&start));
-            let displacement = k1.plus(two, &k2).plus(two, &k3).plus(T::one(), &k4).scaled(sixth);
+            let [k1, k2, k3, k4] =
+                [&begin, &second, &third, &fourth].map(|stage| stage.displacement_rate(&start));
+            let displacement = k1
+                .plus_scaled(two, &k2)
+                .plus_scaled(two, &k3)
+                .plus_scaled(T::one(), &k4)
+                .scaled_derivatives(sixth);
             of_end = add_displacement(mechanism, &displacement, by_q, &mut sum);
         }
         // Backwards: factors of each stage's rates, from the end of the step and from later stages.
@@ -280,11 +289,15 @@ where
     M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
 {
     let moved = Displacement::new(mechanism, &displacement.value);
-    moved.curvature(mechanism, lambda).add_to(sum, &Sensitive::displacement(), displacement);
+    moved.curvature_of_displacement(mechanism, lambda).add_to(
+        sum,
+        &Sensitive::zero_displacement(),
+        displacement,
+    );
     moved.by_dv.tr_mul(lambda)
 }
 
-fn zeros<T: Real, const NV: usize, const NU: usize>() -> InputSecondOrder<T, NV, NU> {
+fn zero_second_order<T: Real, const NV: usize, const NU: usize>() -> InputSecondOrder<T, NV, NU> {
     let (state, mixed) = (SMatrix::zeros(), SMatrix::zeros());
     (state, state, state, mixed, mixed, SMatrix::zeros())
 }
@@ -300,14 +313,14 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV
         M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
         let (now, q): (At<'_, M, T>, _) =
-            (at(start.mechanism, start.t + after), start.displace(&displacement));
+            (at(start.mechanism, start.t + after), start.displace_configuration(&displacement));
         let motion = now.linear_motion(&q.0, &v.value, start.u);
         Self { after, displacement, q, v, motion }
     }
 
     /// Returns the rate of displacements from the start, with its derivatives with respect to the start of
     /// the step.
-    fn rate<M>(&self, start: &Start<'_, M, T, NQ, NV, NU>) -> Sensitive<T, NV, NU>
+    fn displacement_rate<M>(&self, start: &Start<'_, M, T, NQ, NV, NU>) -> Sensitive<T, NV, NU>
     where
         M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
@@ -317,13 +330,13 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV
         let (way, v) = (&self.displacement, &self.v);
         let (by_way, by_v) = start.mechanism.tangent_rate_derivatives(&way.value, &v.value);
         let value = start.mechanism.tangent_rate(&way.value, &v.value);
-        Sensitive::compose(value, (&by_way, way), (&by_v, v))
+        Sensitive::compose_derivatives(value, (&by_way, way), (&by_v, v))
     }
 
     /// Returns the acceleration, with its derivatives with respect to the start of the step.
-    fn acceleration(&self) -> Sensitive<T, NV, NU> {
+    fn stage_acceleration(&self) -> Sensitive<T, NV, NU> {
         let LinearMotion { acceleration, by_q, by_v, by_u, .. } = &self.motion;
-        let found = Sensitive::compose(*acceleration, (by_q, &self.q.1), (by_v, &self.v));
+        let found = Sensitive::compose_derivatives(*acceleration, (by_q, &self.q.1), (by_v, &self.v));
         Sensitive { by_u: found.by_u + by_u, ..found }
     }
 

@@ -3,13 +3,13 @@
 
 use super::FirstOrderDerivatives;
 use super::extended::{Extended, split, with_diagonal};
-use crate::derivatives::{ByMotion, unknown};
+use crate::derivatives::{ByMotion, unknown_matrix};
 use crate::{Derivatives, Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
 /// Returns the block matrix of `block` (velocities) with rows for the states below it and columns for the
 /// states next to it.
-fn bordered<T: Real, const NV: usize, const NX: usize, const NE: usize>(
+fn bordered_matrix<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     block: &SMatrix<T, NV, NV>,
     below: &SMatrix<T, NX, NV>,
     beside: &SMatrix<T, NV, NX>,
@@ -99,7 +99,10 @@ where
         let rates = m.state_rate_derivatives(t, q, &v, &SVector::zeros());
         let by_x = m.inverse_dynamics_by_states(t, q, &v, &a);
         let (zero, none) = (SMatrix::zeros(), SMatrix::zeros());
-        (bordered(&by_q, &-rates.by_q, &zero, &none), bordered(&by_v, &-rates.by_v, &by_x, &-rates.by_x))
+        (
+            bordered_matrix(&by_q, &-rates.by_q, &zero, &none),
+            bordered_matrix(&by_v, &-rates.by_v, &by_x, &-rates.by_x),
+        )
     }
 
     fn forward_dynamics_derivatives(
@@ -115,8 +118,8 @@ where
         let by_x = m.forward_dynamics_by_states(t, q, &v, &tau);
         let (zero, none) = (SMatrix::zeros(), SMatrix::zeros());
         (
-            bordered(&by_q, &rates.by_q, &zero, &none),
-            bordered(&by_v, &rates.by_v, &by_x, &rates.by_x),
+            bordered_matrix(&by_q, &rates.by_q, &zero, &none),
+            bordered_matrix(&by_v, &rates.by_v, &by_x, &rates.by_x),
             with_diagonal::<_, NV, NX, NE>(&by_force, nalgebra::one()),
         )
     }
@@ -153,8 +156,8 @@ where
             entry.copied().unwrap_or(nalgebra::zero())
         });
         (
-            bordered(&by_q, &(rates.by_q - alone.by_q), &zero, &none),
-            bordered(&by_v, &(rates.by_v - alone.by_v), &by_x, &(rates.by_x - alone.by_x)),
+            bordered_matrix(&by_q, &(rates.by_q - alone.by_q), &zero, &none),
+            bordered_matrix(&by_v, &(rates.by_v - alone.by_v), &by_x, &(rates.by_x - alone.by_x)),
             by_inputs,
         )
     }
@@ -166,7 +169,7 @@ where
         _q: &SVector<M::Scalar, NQ>,
         _v: &SVector<M::Scalar, NE>,
     ) -> SMatrix<M::Scalar, NE, NE> {
-        unknown()
+        unknown_matrix()
     }
 
     /// Returns NaN: derivatives of momenta with respect to the states are not available.
@@ -176,7 +179,7 @@ where
         _q: &SVector<M::Scalar, NQ>,
         _v: &SVector<M::Scalar, NE>,
     ) -> (SMatrix<M::Scalar, NE, NE>, SMatrix<M::Scalar, NE, NE>) {
-        (unknown(), unknown())
+        (unknown_matrix(), unknown_matrix())
     }
 
     fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>

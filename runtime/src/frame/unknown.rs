@@ -20,8 +20,9 @@ impl Message {
     /// Returns the message that a mechanism has no frame of this name, with the most similar names, or all
     /// names if there are few.
     pub const fn unknown_frame(mechanism: &str, frames: &[&str], name: &str) -> Message {
-        let start = Message::empty().add("`").add(mechanism).add("` has no frame `").add(name).add("`");
-        match start.nearest(frames, name) {
+        let start =
+            Message::empty_message().add("`").add(mechanism).add("` has no frame `").add(name).add("`");
+        match start.append_nearest_names(frames, name) {
             (message, true) => message,
             (message, false) => message.add("; `").add(mechanism).add("::FRAMES` lists those that it has"),
         }
@@ -30,24 +31,24 @@ impl Message {
     /// Returns the message that a list does not contain this name, with the most similar names, or all names
     /// if there are few.
     pub const fn unknown_name(list: &str, names: &[&str], name: &str) -> Message {
-        let start = Message::empty().add("`").add(list).add("` has no entry `").add(name).add("`");
-        start.nearest(names, name).0
+        let start = Message::empty_message().add("`").add(list).add("` has no entry `").add(name).add("`");
+        start.append_nearest_names(names, name).0
     }
 
-    const fn empty() -> Message {
+    const fn empty_message() -> Message {
         Message { text: [0; Message::CAPACITY], length: 0 }
     }
 
     /// Appends the names most similar to `name`, or all names if there are few; the flag states whether
     /// anything was appended.
-    const fn nearest(self, names: &[&str], name: &str) -> (Message, bool) {
+    const fn append_nearest_names(self, names: &[&str], name: &str) -> (Message, bool) {
         let mut message = self;
         let mut first = true;
         let mut edits = 1;
         while edits <= EDITS + 1 {
             let mut k = 0;
             while k < names.len() {
-                if distance(names[k].as_bytes(), name.as_bytes()) == edits {
+                if edit_distance(names[k].as_bytes(), name.as_bytes()) == edits {
                     message = message.add(if first { "; did you mean `" } else { "` or `" }).add(names[k]);
                     first = false;
                 }
@@ -96,7 +97,7 @@ impl Message {
 
 /// Returns the edit distance of two names, ignoring case, if it is at most `EDITS` and a third of the length
 /// of `b`. Otherwise returns `EDITS + 1` if one name contains the other, and `EDITS + 2` if not.
-const fn distance(a: &[u8], b: &[u8]) -> usize {
+const fn edit_distance(a: &[u8], b: &[u8]) -> usize {
     let least = if a.len() < b.len() { a.len() } else { b.len() };
     let mut limit = b.len() / 3;
     limit = if limit > EDITS {
@@ -106,7 +107,7 @@ const fn distance(a: &[u8], b: &[u8]) -> usize {
     } else {
         limit
     };
-    let far = if least >= 3 && (contains(a, b) || contains(b, a)) { EDITS + 1 } else { EDITS + 2 };
+    let far = if least >= 3 && (contains_name(a, b) || contains_name(b, a)) { EDITS + 1 } else { EDITS + 2 };
     if a.len() > LETTERS || b.len() > LETTERS || a.len().abs_diff(b.len()) > limit {
         return far;
     }
@@ -152,7 +153,7 @@ const fn distance(a: &[u8], b: &[u8]) -> usize {
 }
 
 /// Whether `b` is a substring of `a`.
-const fn contains(a: &[u8], b: &[u8]) -> bool {
+const fn contains_name(a: &[u8], b: &[u8]) -> bool {
     let mut start = 0;
     while start + b.len() <= a.len() {
         let mut k = 0;
@@ -172,31 +173,37 @@ mod tests {
     use super::*;
     use std::string::ToString;
 
-    fn message(frames: &[&str], name: &str) -> std::string::String {
+    fn unknown_frame_message(frames: &[&str], name: &str) -> std::string::String {
         Message::unknown_frame("Arm", frames, name).text().to_string()
     }
 
     #[test]
     fn the_nearest_names_are_told() {
         let frames = ["base", "panda_link1", "panda_link2", "panda_hand", "tool"];
-        assert_eq!(message(&frames, "Tool"), "`Arm` has no frame `Tool`; did you mean `tool`?");
+        assert_eq!(unknown_frame_message(&frames, "Tool"), "`Arm` has no frame `Tool`; did you mean `tool`?");
         assert_eq!(
-            message(&frames, "panda_lnik1"),
+            unknown_frame_message(&frames, "panda_lnik1"),
             "`Arm` has no frame `panda_lnik1`; did you mean `panda_link1`?"
         );
         assert_eq!(
-            message(&frames, "pandalink2"),
+            unknown_frame_message(&frames, "pandalink2"),
             "`Arm` has no frame `pandalink2`; did you mean `panda_link2`?"
         );
-        assert_eq!(message(&frames, "bas"), "`Arm` has no frame `bas`; did you mean `base`?");
+        assert_eq!(unknown_frame_message(&frames, "bas"), "`Arm` has no frame `bas`; did you mean `base`?");
         let two = "`Arm` has no frame `panda_link`; did you mean `panda_link1` or `panda_link2`?";
-        assert_eq!(message(&frames, "panda_link"), two);
-        assert_eq!(message(&frames, "hand"), "`Arm` has no frame `hand`; did you mean `panda_hand`?");
-        assert_eq!(message(&["a", "b"], "elbow"), "`Arm` has no frame `elbow`; expected `a`, `b`");
-        assert_eq!(message(&[], "elbow"), "`Arm` has no frame `elbow`");
+        assert_eq!(unknown_frame_message(&frames, "panda_link"), two);
+        assert_eq!(
+            unknown_frame_message(&frames, "hand"),
+            "`Arm` has no frame `hand`; did you mean `panda_hand`?"
+        );
+        assert_eq!(
+            unknown_frame_message(&["a", "b"], "elbow"),
+            "`Arm` has no frame `elbow`; expected `a`, `b`"
+        );
+        assert_eq!(unknown_frame_message(&[], "elbow"), "`Arm` has no frame `elbow`");
         let many = ["a"; 9];
         assert_eq!(
-            message(&many, "elbow"),
+            unknown_frame_message(&many, "elbow"),
             "`Arm` has no frame `elbow`; `Arm::FRAMES` lists those that it has"
         );
     }
@@ -204,7 +211,7 @@ mod tests {
     #[test]
     fn long_names_do_no_harm() {
         let long = "ü".repeat(600);
-        assert!(message(&[&long, "a"], &long[..400]).starts_with("`Arm` has no frame"));
-        assert!(message(&[&long, &long], "a").starts_with("`Arm` has no frame `a`"));
+        assert!(unknown_frame_message(&[&long, "a"], &long[..400]).starts_with("`Arm` has no frame"));
+        assert!(unknown_frame_message(&[&long, &long], "a").starts_with("`Arm` has no frame `a`"));
     }
 }

@@ -1,7 +1,7 @@
 //! Step size control from error tolerances, common to all adaptive methods.
 
 use super::control::{Scale, first_step};
-use super::{Dynamics, Error, State, Step, is_finite, positive, settled};
+use super::{Dynamics, Error, State, Step, check_positive, is_finite, project_end_of_step};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::SVector;
@@ -48,7 +48,7 @@ impl<T: Real, const NV: usize> AdaptiveMemory<T, NV> {
     /// # Errors
     ///
     /// [`Error::TooManySteps`] above the maximum number of trials.
-    pub(super) fn tried(&mut self, settings: &Settings<T>, t: T) -> Result<(), Error> {
+    pub(super) fn count_trial(&mut self, settings: &Settings<T>, t: T) -> Result<(), Error> {
         self.trials += 1;
         if self.trials > settings.most_steps { Err(Error::TooManySteps { t: to_f64(t) }) } else { Ok(()) }
     }
@@ -87,16 +87,16 @@ impl<T: Real> Settings<T> {
     }
 
     pub fn check(&self) -> Result<(), Error> {
-        positive("the relative tolerance", self.relative)?;
-        positive("the absolute tolerance", self.absolute)?;
-        self.first.map_or(Ok(()), |h| positive("the initial step", h))?;
-        self.least.map_or(Ok(()), |h| positive("the shortest step", h))?;
-        self.longest.map_or(Ok(()), |h| positive("the longest step", h))
+        check_positive("the relative tolerance", self.relative)?;
+        check_positive("the absolute tolerance", self.absolute)?;
+        self.first.map_or(Ok(()), |h| check_positive("the initial step", h))?;
+        self.least.map_or(Ok(()), |h| check_positive("the shortest step", h))?;
+        self.longest.map_or(Ok(()), |h| check_positive("the longest step", h))
     }
 
     /// Returns the length and end of the step to try: at most `h`, and without a tiny remainder before
     /// `until`.
-    fn fit(&self, h: T, t: T, until: Option<T>) -> (T, T) {
+    fn fit_step_length(&self, h: T, t: T, until: Option<T>) -> (T, T) {
         let Some(until) = until else { return (h, t + h) };
         let remaining = until - t;
         let h = if h >= remaining * constant(0.99) {
@@ -109,7 +109,7 @@ impl<T: Real> Settings<T> {
         (h, t + h)
     }
 
-    fn limited(&self, h: T) -> T {
+    fn limited_step_length(&self, h: T) -> T {
         self.longest.map_or(h, |longest| h.min(longest))
     }
 
@@ -157,12 +157,12 @@ impl<T: Real> Settings<T> {
         let dimensions = system.dimensions();
         let scale = Scale { relative: self.relative, absolute: self.absolute, dimensions };
         let chosen = memory.step.unwrap_or_else(|| first_step(system, &scale, start, &acceleration));
-        let mut wanted = self.limited(chosen);
+        let mut wanted = self.limited_step_length(chosen);
         let (mut rejected, mut finite) = (false, true);
         loop {
-            let (h, t) = self.fit(wanted, start.t, until);
+            let (h, t) = self.fit_step_length(wanted, start.t, until);
             self.check_size([start.t, t], h, wanted, finite, system.time(start.t))?;
-            memory.tried(self, start.t)?;
+            memory.count_trial(self, start.t)?;
             let trial =
                 attempt(system, &Attempt { start, acceleration: &acceleration, scale: &scale, h, t })?;
             let error = trial.error;
@@ -175,9 +175,9 @@ impl<T: Real> Settings<T> {
             }
             // A step cut short at `until` gives little information about longer steps.
             let longer = if h < wanted { larger.max(wanted) } else { larger };
-            memory.step = Some(self.limited(if rejected { larger.min(h) } else { longer }));
+            memory.step = Some(self.limited_step_length(if rejected { larger.min(h) } else { longer }));
             memory.error = error.max(constant(1e-4));
-            let end = settled(system, trial.step.end, start.t)?;
+            let end = project_end_of_step(system, trial.step.end, start.t)?;
             memory.acceleration = trial.acceleration.filter(|_| !system.is_constrained());
             return Ok(Step { end, ..trial.step });
         }

@@ -16,7 +16,7 @@
 //! generated code provides as an elimination: each iteration reduces the error by a factor of about step ·
 //! velocity · curvature.
 
-use super::{Dynamics, Error, State, is_finite, largest, settled};
+use super::{Dynamics, Error, State, is_finite, largest_magnitude, project_end_of_step};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use crate::speeds;
@@ -28,14 +28,14 @@ pub(super) const MOST_ITERATIONS: usize = 100;
 
 /// Returns the displacement from `q` to a midpoint after a time `half`, at which the configuration moves with
 /// the velocity `v`.
-pub(super) fn way<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn displacement_to_midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     q: &SVector<T, NQ>,
     v: &SVector<T, NV>,
     half: T,
 ) -> SVector<T, NV> {
     if system.has_speeds() {
-        speeds::way(|way| system.displacement_rate(q, way, v), v, half)
+        speeds::displacement_from_end_speeds(|way| system.displacement_rate(q, way, v), v, half)
     } else {
         v * half
     }
@@ -63,17 +63,18 @@ impl<T: Real> Settling<T> {
         q: &SVector<T, NQ>,
         v: &SVector<T, NV>,
     ) -> bool {
-        let moves = constant::<T>(64.0) * epsilon::<T>() * largest(q).max(T::one());
-        let negligible = change <= epsilon::<T>().sqrt() * largest(v) || change * self.half <= moves;
+        let moves = constant::<T>(64.0) * epsilon::<T>() * largest_magnitude(q).max(T::one());
+        let negligible =
+            change <= epsilon::<T>().sqrt() * largest_magnitude(v) || change * self.half <= moves;
         let stalls = self.last.is_some_and(|last| change >= last);
         self.last = Some(change);
-        change <= epsilon::<T>() * largest(v) || (stalls && negligible)
+        change <= epsilon::<T>() * largest_magnitude(v) || (stalls && negligible)
     }
 }
 
 /// Returns the error for a diverged iteration: [`Error::NotFinite`] at the first iteration, otherwise
 /// [`Error::NotConverged`].
-pub(super) fn divergence<T: Real>(t: T, iterations: usize) -> Error {
+pub(super) fn divergence_error<T: Real>(t: T, iterations: usize) -> Error {
     let t = to_f64(t);
     if iterations == 0 { Error::NotFinite { t } } else { Error::NotConverged { t, iterations } }
 }
@@ -113,7 +114,9 @@ pub(super) fn is_crossing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, cons
     ended: &mut Ended,
 ) -> bool {
     let is_singular_state = |t: T, q: &SVector<T, NQ>| system.is_nearly_singular(t, q, &SVector::zeros());
-    let is_small_change = |v: &SVector<T, NV>| largest(&(v - start.v)) <= largest(&start.v) * constant(LEAP);
+    let is_small_change = |v: &SVector<T, NV>| {
+        largest_magnitude(&(v - start.v)) <= largest_magnitude(&start.v) * constant(LEAP)
+    };
     let has_few_iterations = |found: &&Middle<T, NV>| {
         found.iterations <= if is_small_change(&found.v) { MANY_ITERATIONS } else { FEW_ITERATIONS }
     };
@@ -146,7 +149,7 @@ impl<T: Real, const NV: usize> Pace<T, NV> {
     /// Returns the relaxation factor for the next change of an iteration: one while the changes decrease
     /// fast.
     fn next(&mut self, change: &SVector<T, NV>) -> T {
-        let (now, before) = (largest(change), largest(&self.last));
+        let (now, before) = (largest_magnitude(change), largest_magnitude(&self.last));
         let slow = before > T::zero() && now > before * constant(0.3) && now < before * constant(1e3);
         // Scaled by their magnitudes, so that the squares neither overflow nor underflow.
         let (own, last) = (change / before, self.last / before);
@@ -162,7 +165,7 @@ impl<T: Real, const NV: usize> Pace<T, NV> {
 /// the impulse at its end. With the momentum `p` at the start and its `rate` `ṗ(t, q, v)`, the midpoint
 /// satisfies `M(q_m) v = p + Jᵀ(q₀) λ + (h/2) ṗ(q_m, v)` where `q_m = q₀ ⊕ (h/2) v`, and the constraints are
 /// satisfied at `q₀ ⊕ h v`.
-pub(super) fn midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn solve_midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     rate: impl Fn(&mut D, T, &SVector<T, NQ>, &SVector<T, NV>) -> SVector<T, NV>,
     start: &State<T, NQ, NV>,
@@ -175,16 +178,16 @@ pub(super) fn midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const N
     let mut settling = Settling::new(half);
     let mut pace = Pace { last: SVector::zeros(), share: T::one() };
     for iterations in 0..MOST_ITERATIONS {
-        let q = system.integrate(&start.q, &way(system, &start.q, &v, half));
+        let q = system.integrate(&start.q, &displacement_to_midpoint(system, &start.q, &v, half));
         let gain = rate(system, t, &q, &v) * half;
         let own = system.momentum(t, &q, &v);
         let change = system.impulse(start.t, &start.q, &v, h, &(p + gain - own));
         v += change * pace.next(&change);
         if !is_finite(&v) {
-            return Err(divergence(start.t, iterations));
+            return Err(divergence_error(start.t, iterations));
         }
-        if settling.is_done(largest(&change), &q, &v) {
-            let way = way(system, &start.q, &v, half);
+        if settling.is_done(largest_magnitude(&change), &q, &v) {
+            let way = displacement_to_midpoint(system, &start.q, &v, half);
             let q = system.integrate(&start.q, &way);
             let p = system.momentum(t, &q, &v) + rate(system, t, &q, &v) * half;
             return Ok(Middle { v, p, way: way * two, iterations });
@@ -198,7 +201,7 @@ pub(super) fn midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const N
 /// constraints before its acceleration is evaluated. This acceleration is continuous there; impulses at the
 /// ends of a step are not, because their directions rotate within the step. Order 2. `None` if the iteration
 /// does not converge.
-pub(super) fn passing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn step_past_singularity<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     t: T,
@@ -209,7 +212,7 @@ pub(super) fn passing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
     let mut v = start.v;
     let mut last: Option<T> = None;
     for iteration in 0..MOST_ITERATIONS {
-        let way = way(system, &start.q, &v, half);
+        let way = displacement_to_midpoint(system, &start.q, &v, half);
         let q = system.integrate(&start.q, &way);
         let (q, on) = system.project(middle, &q, &v).ok()?;
         let mut gain = system.acceleration(middle, &q, &on) * half;
@@ -218,7 +221,7 @@ pub(super) fn passing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
         if circles {
             gain = (gain + v - start.v) * constant::<T>(0.5);
         }
-        let change = largest(&(start.v + gain - v));
+        let change = largest_magnitude(&(start.v + gain - v));
         v = start.v + gain;
         if !is_finite(&v) {
             return None;
@@ -226,13 +229,15 @@ pub(super) fn passing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
         // Accelerations near singular configurations have this relative accuracy at best.
         let known = epsilon::<T>().cbrt();
         let stalls = last.is_some_and(|last| change >= last);
-        let settles = change <= known * largest(&gain)
-            || change <= epsilon::<T>() * largest(&v)
-            || (circles && stalls && change <= known * largest(&v));
+        let settles = change <= known * largest_magnitude(&gain)
+            || change <= epsilon::<T>() * largest_magnitude(&v)
+            || (circles && stalls && change <= known * largest_magnitude(&v));
         if settles {
-            let way = self::way(system, &start.q, &v, half) * constant::<T>(2.0);
+            let way = self::displacement_to_midpoint(system, &start.q, &v, half) * constant::<T>(2.0);
             let q = system.integrate(&start.q, &way);
-            return settled(system, State { t, q, v: v + gain }, start.t).ok().map(|end| (way, end));
+            return project_end_of_step(system, State { t, q, v: v + gain }, start.t)
+                .ok()
+                .map(|end| (way, end));
         }
         last = Some(change);
     }

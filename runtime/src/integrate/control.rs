@@ -16,7 +16,7 @@ pub(super) struct Scale<T> {
 impl<T: Real> Scale<T> {
     /// Returns the scale of every coordinate: its magnitude if configuration and tangent space have the same
     /// number of entries, otherwise 1.
-    fn sizes<const NQ: usize, const NV: usize>(&self, q: &SVector<T, NQ>) -> SVector<T, NV> {
+    fn scales_of_coordinates<const NQ: usize, const NV: usize>(&self, q: &SVector<T, NQ>) -> SVector<T, NV> {
         let mut sizes: SVector<T, NV> = SVector::repeat(T::one());
         if self.dimensions[0] == self.dimensions[1] {
             sizes.iter_mut().zip(q.iter()).for_each(|(size, q)| *size = q.abs());
@@ -25,7 +25,7 @@ impl<T: Real> Scale<T> {
     }
 
     /// Returns `Σ (x / (absolute + relative · size))²`.
-    fn squares<const N: usize>(&self, x: &SVector<T, N>, size: &SVector<T, N>) -> T {
+    fn sum_of_scaled_squares<const N: usize>(&self, x: &SVector<T, N>, size: &SVector<T, N>) -> T {
         x.iter().zip(size.iter()).fold(T::zero(), |sum, (x, size)| {
             let part = *x / (self.absolute + self.relative * *size);
             sum + part * part
@@ -35,7 +35,7 @@ impl<T: Real> Scale<T> {
     /// Returns the root mean square of displacement and velocity entries, each divided by its tolerance.
     fn norm<const N: usize>(&self, x: [&SVector<T, N>; 2], sizes: [&SVector<T, N>; 2]) -> T {
         let ([x, v], [x_size, v_size]) = (x, sizes);
-        let sum = self.squares(x, x_size) + self.squares(v, v_size);
+        let sum = self.sum_of_scaled_squares(x, x_size) + self.sum_of_scaled_squares(v, v_size);
         (sum / constant((2 * self.dimensions[1].max(1)) as f64)).sqrt()
     }
 
@@ -49,14 +49,17 @@ impl<T: Real> Scale<T> {
     ) -> T {
         let (start, end) = (&step.start, &step.end);
         let moved = displacement.abs();
-        let size = larger(&larger(&self.sizes(&start.q), &self.sizes(&end.q)), &moved);
-        let speed = larger(&start.v.abs(), &end.v.abs());
+        let size = elementwise_maximum(
+            &elementwise_maximum(&self.scales_of_coordinates(&start.q), &self.scales_of_coordinates(&end.q)),
+            &moved,
+        );
+        let speed = elementwise_maximum(&start.v.abs(), &end.v.abs());
         self.norm([&error.displacement, &error.velocity], [&size, &speed])
     }
 }
 
 /// Returns the elementwise maximum of two vectors.
-fn larger<T: Real, const N: usize>(a: &SVector<T, N>, b: &SVector<T, N>) -> SVector<T, N> {
+fn elementwise_maximum<T: Real, const N: usize>(a: &SVector<T, N>, b: &SVector<T, N>) -> SVector<T, N> {
     a.zip_map(b, |a, b| a.max(b))
 }
 
@@ -69,7 +72,7 @@ pub(super) fn first_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
     acceleration: &SVector<T, NV>,
 ) -> T {
     let small = constant::<T>(1e-5);
-    let size = scale.sizes(&start.q);
+    let size = scale.scales_of_coordinates(&start.q);
     let speed = start.v.abs();
     let scaled_state_norm = |x: &SVector<T, NV>, v: &SVector<T, NV>| scale.norm([x, v], [&size, &speed]);
     let (state, rate) = (scaled_state_norm(&size, &start.v), scaled_state_norm(&start.v, acceleration));

@@ -6,7 +6,7 @@ use crate::Real;
 
 mod stages;
 
-use stages::stages;
+use stages::step_stages;
 
 /// Constants of the step-size controller of DOPRI5.
 const CONTROL: Control = Control { exponent: 0.2 - 0.75 * 0.04, beta: 0.04, factors: [10.0, 5.0] };
@@ -59,7 +59,8 @@ impl<T: Real> Method<T> for DormandPrince<T> {
         until: Option<T>,
         _dense: bool,
     ) -> Result<Step<T, NQ, NV>, Error> {
-        self.settings
-            .advance(&CONTROL, memory, system, start, until, |system, attempt| Ok(stages(system, attempt)))
+        self.settings.advance(&CONTROL, memory, system, start, until, |system, attempt| {
+            Ok(step_stages(system, attempt))
+        })
     }
 }

@@ -1,7 +1,7 @@
 //! The method of Dormand and Prince of order 8 with adaptive steps.
 
 use super::adaptive::{AdaptiveMemory, Attempt, Control, Settings, Trial, adaptive};
-use super::stages::{Rates, stage, weighted};
+use super::stages::{Rates, rates_at_stage, weighted_stage_rates};
 use super::{Dynamics, Error, Jump, Method, State, Step};
 use crate::Real;
 use crate::private::constant;
@@ -66,13 +66,13 @@ impl<T: Real> Method<T> for DormandPrince8<T> {
         dense: bool,
     ) -> Result<Step<T, NQ, NV>, Error> {
         self.settings.advance(&CONTROL, memory, system, start, until, |system, attempt| {
-            Ok(trial(system, attempt, dense))
+            Ok(trial_step(system, attempt, dense))
         })
     }
 }
 
 /// Returns a step, with its interpolating polynomial if `dense`.
-pub(super) fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     attempt: &Attempt<'_, T, NQ, NV>,
     dense: bool,
@@ -84,7 +84,7 @@ pub(super) fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: 
         let weights = STAGES.iter().skip(stages.start - 1);
         for ((index, weights), part) in stages.clone().zip(weights).zip(TIMES.iter().skip(stages.start)) {
             let time = if *part == 1.0 { t } else { start.t + h * constant(*part) };
-            let (rates, state) = stage(system, start, time, &weighted(h, weights, k));
+            let (rates, state) = rates_at_stage(system, start, time, &weighted_stage_rates(h, weights, k));
             if let Some(place) = k.get_mut(index) {
                 *place = rates;
             }
@@ -93,18 +93,18 @@ pub(super) fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: 
         end
     };
     reach(&mut k, 1..END);
-    let change = weighted(h, STAGES[END - 1], &k);
+    let change = weighted_stage_rates(h, STAGES[END - 1], &k);
     let end = reach(&mut k, END..END + 1);
     let displacement = change.displacement;
     let mut step = Step::linear(*start, end, displacement);
-    let fifth = scale.error(&step, &displacement, &weighted(h, FIFTH, &k));
-    let third = scale.error(&step, &displacement, &weighted(h, THIRD, &k));
+    let fifth = scale.error(&step, &displacement, &weighted_stage_rates(h, FIFTH, &k));
+    let third = scale.error(&step, &displacement, &weighted_stage_rates(h, THIRD, &k));
     let both = fifth * fifth + third * third * constant(0.01);
     let error = if both == T::zero() { both } else { fifth * fifth / both.sqrt() };
     let after = k[END];
     if dense && error <= T::one() {
         reach(&mut k, END + 1..16);
-        let [a, b, c, d] = TERMS.map(|weights| weighted(h, weights, &k));
+        let [a, b, c, d] = TERMS.map(|weights| weighted_stage_rates(h, weights, &k));
         let path_coefficients = |before: &SVector<T, NV>, change: &SVector<T, NV>, after: &SVector<T, NV>| {
             (before * h - change, change * constant::<T>(2.0) - (before + after) * h)
         };

@@ -133,7 +133,7 @@ impl fmt::Display for Error {
 
 impl Error {
     /// Returns the error with its time increased by `origin`, s.
-    pub(super) fn shifted(mut self, origin: f64) -> Self {
+    pub(super) fn shift_time_origin(mut self, origin: f64) -> Self {
         match &mut self {
             Self::NotFinite { t }
             | Self::StepTooSmall { t, .. }

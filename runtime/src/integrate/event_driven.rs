@@ -2,10 +2,11 @@
 
 use super::adaptive::{AdaptiveMemory, Attempt, Settings, adaptive};
 use super::control::Scale;
-use super::eighth::{CONTROL, trial};
+use super::eighth::{CONTROL, trial_step};
 use super::local::Local;
 use super::{
-    ContinuousInputs, Dynamics, Error, Inputs, Jump, Method, State, Step, System, TimeStepping, settled,
+    ContinuousInputs, Dynamics, Error, Inputs, Jump, Method, State, Step, System, TimeStepping,
+    project_end_of_step,
 };
 use crate::Real;
 use crate::contact::{Contacts, Phase, Phased, Visitor, Watch, kept, separated};
@@ -100,7 +101,7 @@ const LONGEST: u32 = 14;
 
 impl<T: Real, const NV: usize> EventMemory<T, NV> {
     /// Counts a step of the given length, in multiples of the shortest time-stepping step.
-    fn count(&mut self, length: T, is_shared: bool) {
+    fn count_step(&mut self, length: T, is_shared: bool) {
         self.shared = if is_shared { LATELY } else { self.shared.saturating_sub(1) };
         let (short, weight) = if self.shared > 0 { (SHORT_SHARED, FEWER) } else { (SHORT, 1) };
         if length < constant(short) {
@@ -160,7 +161,7 @@ impl<T: Real> Method<T> for EventDriven<T> {
             return step;
         }
         self.settings.advance(&CONTROL, &mut memory.adaptive, system, start, until, |system, attempt| {
-            Ok(trial(system, attempt, dense))
+            Ok(trial_step(system, attempt, dense))
         })
     }
 }
@@ -178,7 +179,7 @@ pub struct Section<'a, T, const NQ: usize, const NV: usize> {
 
 impl<T: Real, const NQ: usize, const NV: usize> Section<'_, T, NQ, NV> {
     /// Returns the arguments of the step with the origin of its times increased by `origin`, s.
-    pub(super) fn shifted(self, origin: T) -> Self {
+    pub(super) fn shift_time_origin(self, origin: T) -> Self {
         Self { origin: self.origin + origin, ..self }
     }
 }
@@ -223,12 +224,12 @@ where
         }
         let resolution = epsilon::<T>().sqrt();
         if let Some(Ok(step)) = located {
-            memory.count((step.end.t - start.t) / resolution, shared);
+            memory.count_step((step.end.t - start.t) / resolution, shared);
             Ok(step)
         } else {
             let h = resolution * constant(f64::from(1_u32 << memory.stretch));
             memory.stretch = (memory.stretch + 1).min(LONGEST);
-            memory.adaptive.tried(&settings, start.t)?;
+            memory.adaptive.count_trial(&settings, start.t)?;
             let until = until.map_or(start.t + h, |until| until.min(start.t + h));
             let mut system =
                 System::new(mechanism, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
@@ -296,7 +297,7 @@ where
             let mut local = Local { system: &mut system, origin };
             memory.acceleration = Some(self.acceleration);
             let made = settings.advance(&CONTROL, memory, &mut local, &begin, until, |system, attempt| {
-                Ok(trial(system, attempt, true))
+                Ok(trial_step(system, attempt, true))
             });
             made.map(|step| {
                 let states = [0.25, 0.5, 0.75].map(|part| step.at(&local, constant(part)));
@@ -308,14 +309,19 @@ where
             Err(error) => return Some(Err(error)),
         };
         let past = quarters.into_iter().chain([step.end]).find(|state| self.event_value(state) < T::zero());
-        let Some(past) = past else { return Some(self.ended(step)) };
+        let Some(past) = past else { return Some(self.project_end_of_step(step)) };
         let least = landing.map_or(epsilon::<T>().powf(constant(0.75)), |s| s * constant(1e-3));
-        self.located(settings, past.t - begin.t, least).map(|step| self.ended(step))
+        self.step_to_event(settings, past.t - begin.t, least).map(|step| self.project_end_of_step(step))
     }
 
     /// Returns the step that ends at an event, which lies before `h` seconds; `None` if it lies before
     /// `least`.
-    fn located<const NU: usize>(&mut self, settings: &Settings<T>, h: T, least: T) -> Option<Step<T, NQ, NV>>
+    fn step_to_event<const NU: usize>(
+        &mut self,
+        settings: &Settings<T>,
+        h: T,
+        least: T,
+    ) -> Option<Step<T, NQ, NV>>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
         I: Inputs<T, NQ, NV, NU>,
@@ -338,17 +344,17 @@ where
             if after.0 < least {
                 return None;
             }
-            let state = self.tried(settings, middle, false).end;
+            let state = self.try_step(settings, middle, false).end;
             let left = self.event_value(&state);
             // The function is steep where one event follows another, so the smallest negative value counts as
             // past the event.
             if left < T::zero() { after = (middle, Some(left)) } else { before = (middle, Some(left)) }
         }
-        Some(self.tried(settings, after.0, true))
+        Some(self.try_step(settings, after.0, true))
     }
 
     /// Returns a trial step of `h` seconds with the current contact modes, without a search for events.
-    fn tried<const NU: usize>(&mut self, settings: &Settings<T>, h: T, dense: bool) -> Step<T, NQ, NV>
+    fn try_step<const NU: usize>(&mut self, settings: &Settings<T>, h: T, dense: bool) -> Step<T, NQ, NV>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
         I: Inputs<T, NQ, NV, NU>,
@@ -361,21 +367,24 @@ where
         let scale = Scale { relative: settings.relative, absolute: settings.absolute, dimensions };
         let attempt =
             Attempt { start: &begin, acceleration: &self.acceleration, scale: &scale, h, t: begin.t + h };
-        trial(&mut local, &attempt, dense).step
+        trial_step(&mut local, &attempt, dense).step
     }
 
     /// Returns the step with its end projected onto active contacts and constraints.
-    fn ended<const NU: usize>(&mut self, step: Step<T, NQ, NV>) -> Result<Step<T, NQ, NV>, Error>
+    fn project_end_of_step<const NU: usize>(
+        &mut self,
+        step: Step<T, NQ, NV>,
+    ) -> Result<Step<T, NQ, NV>, Error>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
         I: Inputs<T, NQ, NV, NU>,
     {
         let Self { phased, origin, begin, .. } = *self;
-        let end = step.end.finite().map_err(|_| Error::NotFinite { t: to_f64(begin.t) })?;
+        let end = step.end.check_finite().map_err(|_| Error::NotFinite { t: to_f64(begin.t) })?;
         let (q, v) = kept(phased, origin + end.t, &end.q, &end.v);
         let inputs = &mut *self.inputs;
         let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
         let local = Local { system: &mut system, origin };
-        Ok(Step { end: settled(&local, State { q, v, ..end }, begin.t)?, ..step })
+        Ok(Step { end: project_end_of_step(&local, State { q, v, ..end }, begin.t)?, ..step })
     }
 }

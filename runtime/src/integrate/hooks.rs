@@ -178,7 +178,7 @@ pub trait Hooks<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
         (given, _): Assumed<'_, T, NV>,
         _h: T,
     ) -> Result<Touched<T, NQ, NV>, ConstraintError> {
-        Ok(Touched::free(*q, free + given))
+        Ok(Touched::state_without_contacts(*q, free + given))
     }
 
     /// Passes the mechanism to `visitor`, with the numbers of its contacts as const parameters. `None` for

@@ -1,9 +1,13 @@
 //! Implicit midpoint rule, formulated in generalized momenta.
 
 use super::constrained::{
-    Ended, MOST_ITERATIONS, Middle, Settling, divergence, is_crossing, midpoint, passing,
+    Ended, MOST_ITERATIONS, Middle, Settling, divergence_error, is_crossing, solve_midpoint,
+    step_past_singularity,
 };
-use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, is_finite, largest, positive, settled};
+use super::{
+    Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step, is_finite, largest_magnitude,
+    project_end_of_step,
+};
 use crate::Real;
 use crate::private::{constant, to_f64};
 use nalgebra::SVector;
@@ -63,7 +67,7 @@ impl<T: Real> ImplicitMidpoint<T> {
 
 /// Returns an improved estimate of the displacement from `q` to the midpoint after a time `half`: the
 /// displacement rate there times `half`.
-fn displacement<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn improved_displacement<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     q: &SVector<T, NQ>,
     way: &SVector<T, NV>,
@@ -74,7 +78,7 @@ fn displacement<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usiz
 }
 
 /// Solves the midpoint equations by iteration, starting with the estimate `v` of the midpoint's velocity.
-fn solve<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn iterate_midpoint_equations<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     p: &SVector<T, NV>,
@@ -84,17 +88,17 @@ fn solve<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     let mut settling = Settling::new(half);
     let mut way = v * half;
     for iterations in 0..MOST_ITERATIONS {
-        way = displacement(system, &start.q, &way, &v, half);
+        way = improved_displacement(system, &start.q, &way, &v, half);
         let q = system.integrate(&start.q, &way);
         let rate = system.momentum_rate(start.t + half, &q, &v);
         let next = system.velocity(start.t + half, &q, &(p + rate * half), &v);
         if !is_finite(&next) {
-            return Err(divergence(start.t, iterations));
+            return Err(divergence_error(start.t, iterations));
         }
-        let change = largest(&(next - v));
+        let change = largest_magnitude(&(next - v));
         v = next;
         if settling.is_done(change, &q, &v) {
-            way = displacement(system, &start.q, &way, &v, half);
+            way = improved_displacement(system, &start.q, &way, &v, half);
             let q = system.integrate(&start.q, &way);
             return Ok((q, [way, v, system.momentum_rate(start.t + half, &q, &v)]));
         }
@@ -108,7 +112,7 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
     const FIXED: bool = true;
 
     fn check(&self) -> Result<(), Error> {
-        positive("the step", self.step)
+        check_positive("the step", self.step)
     }
 
     fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
@@ -134,29 +138,29 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
         let p = memory.momentum.unwrap_or_else(|| system.momentum(start.t, &start.q, &start.v));
         let guess = start.v + memory.change;
         let (displacement, v, end, momentum) = if system.is_constrained() {
-            let found = midpoint(system, D::momentum_rate, start, &p, h, guess);
+            let found = solve_midpoint(system, D::momentum_rate, start, &p, h, guess);
             let crossing = is_crossing(system, start, h, &found, &mut memory.ended);
-            let passed = if crossing { passing(system, start, t, h) } else { None };
+            let passed = if crossing { step_past_singularity(system, start, t, h) } else { None };
             let (way, end) = match passed {
                 Some(passed) => passed,
                 None => {
                     let Middle { v, p, way, .. } = found?;
                     let q = system.integrate(&start.q, &way);
                     let v1 = system.velocity(t, &q, &p, &(v + v - start.v));
-                    (way, settled(system, State { t, q, v: v1 }, start.t)?)
+                    (way, project_end_of_step(system, State { t, q, v: v1 }, start.t)?)
                 }
             };
             // The constraint impulse at the end changes the momentum.
             (way, way / h, end, None)
         } else {
-            let (q, [way, v, rate]) = solve(system, start, &p, half, guess)?;
+            let (q, [way, v, rate]) = iterate_midpoint_equations(system, start, &p, half, guess)?;
             let p = p + rate * h;
             let (q, displacement) = match system.has_speeds() {
                 true => (system.integrate(&start.q, &(way * constant::<T>(2.0))), way * constant::<T>(2.0)),
                 false => (system.integrate(&q, &(v * half)), v * h),
             };
             let end = State { t, q, v: system.velocity(t, &q, &p, &(v + v - start.v)) };
-            (displacement, v, settled(system, end, start.t)?, Some(p))
+            (displacement, v, project_end_of_step(system, end, start.t)?, Some(p))
         };
         *memory = MidpointMemory { momentum, change: end.v - v, ended: memory.ended };
         let step = Step::linear(*start, end, displacement);

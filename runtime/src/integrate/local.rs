@@ -79,7 +79,7 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
     }
 
     fn follow(&mut self, section: Section<'_, T, NQ, NV>) -> Option<Result<Step<T, NQ, NV>, Error>> {
-        self.system.follow(section.shifted(self.origin))
+        self.system.follow(section.shift_time_origin(self.origin))
     }
 
     fn momentum(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
@@ -135,7 +135,7 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
 
 impl<T: Real, const NQ: usize, const NV: usize> State<T, NQ, NV> {
     /// Returns the state at time `t` of another time origin.
-    pub(crate) fn timed(self, t: T) -> Self {
+    pub(crate) fn state_with_time(self, t: T) -> Self {
         Self { t, ..self }
     }
 }

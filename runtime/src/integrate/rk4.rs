@@ -1,6 +1,6 @@
 //! Classical Runge–Kutta method of order 4.
 
-use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
+use super::{Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step, project_end_of_step};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
@@ -31,7 +31,7 @@ impl<T: Real> Rk4<T> {
 type Rates<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
 
 /// Returns the rates at time `h` after `start`, reached with the mean rates `mean`.
-fn rates<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn rates_after<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     h: T,
@@ -61,12 +61,16 @@ pub(super) fn rk4_change<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
         (displacement, added.map_or(acceleration, |added| acceleration + added))
     };
     let k1 = add_acceleration((start.v, before), &added.copied());
-    let k2 =
-        add_acceleration(rates(system, start, half, &k1), &transported_acceleration(system, &(k1.0 * half)));
-    let k3 =
-        add_acceleration(rates(system, start, half, &k2), &transported_acceleration(system, &(k2.0 * half)));
+    let k2 = add_acceleration(
+        rates_after(system, start, half, &k1),
+        &transported_acceleration(system, &(k1.0 * half)),
+    );
+    let k3 = add_acceleration(
+        rates_after(system, start, half, &k2),
+        &transported_acceleration(system, &(k2.0 * half)),
+    );
     let at_end = transported_acceleration(system, &(k3.0 * h));
-    let k4 = add_acceleration(rates(system, start, h, &k3), &at_end);
+    let k4 = add_acceleration(rates_after(system, start, h, &k3), &at_end);
     let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
     let mean = ((k1.0 + k4.0 + (k2.0 + k3.0) * two) * sixth, (k1.1 + k4.1 + (k2.1 + k3.1) * two) * sixth);
     (mean, at_end)
@@ -79,7 +83,7 @@ impl<T: Real> Method<T> for Rk4<T> {
     const FIXED: bool = true;
 
     fn check(&self) -> Result<(), Error> {
-        positive("the step", self.step)
+        check_positive("the step", self.step)
     }
 
     fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
@@ -103,7 +107,7 @@ impl<T: Real> Method<T> for Rk4<T> {
         let before = known.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
         let ((displacement, change), _) = rk4_change(system, start, h, before, None);
         let end = State { t, q: system.integrate(&start.q, &displacement), v: start.v + change };
-        let end = settled(system, end, start.t)?;
+        let end = project_end_of_step(system, end, start.t)?;
         let step = Step::linear(*start, end, displacement);
         if !dense {
             return Ok(step);

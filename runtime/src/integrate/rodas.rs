@@ -1,7 +1,7 @@
 //! A linearly implicit method of order 4 for stiff mechanisms, with adaptive steps.
 
 use super::adaptive::{AdaptiveMemory, Attempt, Control, Settings, Trial, adaptive};
-use super::rosenbrock::{Along, Slopes, elapsed, shortly, slopes};
+use super::rosenbrock::{Along, Slopes, elapsed_time, sampling_delay, slopes_at_start};
 use super::stages::Rates;
 use super::{Dynamics, Error, Jump, Method, State, Step};
 use crate::Real;
@@ -127,9 +127,9 @@ impl<T: Real> Method<T> for Rodas<T> {
         let (mut found, before) = (None, memory.slopes);
         let advanced =
             self.settings.advance(&CONTROL, &mut memory.steps, system, start, until, |system, attempt| {
-                let known = found.unwrap_or_else(|| linear(system, attempt, before));
+                let known = found.unwrap_or_else(|| linearize_step(system, attempt, before));
                 found = Some(known);
-                trial(system, attempt, &known)
+                trial_step(system, attempt, &known)
                     .ok_or(Error::NotConverged { t: to_f64(start.t), iterations: 0 })
             });
         memory.slopes = found.map(|linear: Linear<T, NV>| linear.slopes).or(before);
@@ -145,18 +145,19 @@ struct Linear<T, const NV: usize> {
     turn: SMatrix<T, NV, NV>,
 }
 
-fn linear<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn linearize_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     attempt: &Attempt<'_, T, NQ, NV>,
     before: Option<Slopes<T, NV>>,
 ) -> Linear<T, NV> {
     let Attempt { start, acceleration, h, .. } = *attempt;
-    let mut slopes = slopes(system, start, acceleration, h, Along::All).or(before).unwrap_or(Slopes::zero());
+    let mut slopes =
+        slopes_at_start(system, start, acceleration, h, Along::All).or(before).unwrap_or(Slopes::zero());
     // Order 4 requires a better time derivative than a forward difference; inputs may jump at the start.
-    let later = shortly(system, start.t, h);
+    let later = sampling_delay(system, start.t, h);
     let [first, second] = [later, later * constant(2.0)].map(|later| {
         let change = system.acceleration(start.t + later, &start.q, &start.v) - acceleration;
-        (elapsed(system, start.t, later), change)
+        (elapsed_time(system, start.t, later), change)
     });
     let between = second.0 - first.0;
     if first.0 > T::zero() && between > T::zero() {
@@ -176,7 +177,10 @@ fn linear<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
 }
 
 /// Returns the weighted sum of the displacement and velocity increments of six stages.
-fn sum<T: Real, const NV: usize>(weights: &[f64], stages: &[Rates<T, NV>; 6]) -> Rates<T, NV> {
+fn weighted_sum_of_stages<T: Real, const NV: usize>(
+    weights: &[f64],
+    stages: &[Rates<T, NV>; 6],
+) -> Rates<T, NV> {
     let mut total = Rates { displacement: SVector::zeros(), velocity: SVector::zeros() };
     for (weight, stage) in weights.iter().zip(stages) {
         total.displacement += stage.displacement * constant::<T>(*weight);
@@ -186,7 +190,7 @@ fn sum<T: Real, const NV: usize>(weights: &[f64], stages: &[Rates<T, NV>; 6]) ->
 }
 
 /// Returns a step; `None` if its matrix is singular.
-fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     attempt: &Attempt<'_, T, NQ, NV>,
     linear: &Linear<T, NV>,
@@ -204,7 +208,7 @@ fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
         let (Some(starts), Some(added), Some(in_time)) = (STARTS.get(k), ADDED.get(k), IN_TIME.get(k)) else {
             break;
         };
-        change = sum(starts, &u);
+        change = weighted_sum_of_stages(starts, &u);
         let (rate, force) = match k {
             0 => (start.v, *acceleration),
             _ => {
@@ -216,10 +220,10 @@ fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
                 )
             }
         };
-        let added = sum(added, &u);
+        let added = weighted_sum_of_stages(added, &u);
         let r = rate + added.displacement / h;
         let s = force + added.velocity / h + slopes.by_t * (h * constant(*in_time));
-        let a = matrix.solve(s + of_b * r);
+        let a = matrix.solve_factorised(s + of_b * r);
         if let Some(place) = u.get_mut(k) {
             *place = Rates { displacement: a, velocity: of_a * a - r };
         }
@@ -229,7 +233,7 @@ fn trial<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     let v = start.v + change.velocity + error.velocity;
     let end = State { t, q: system.integrate(&start.q, &displacement), v };
     let mut step = Step::linear(*start, end, displacement);
-    let [square, cube] = TERMS.map(|weights| sum(&weights, &u));
+    let [square, cube] = TERMS.map(|weights| weighted_sum_of_stages(&weights, &u));
     step.displacement = step.displacement.with_terms([square.displacement, cube.displacement]);
     step.velocity = step.velocity.with_terms([square.velocity, cube.velocity]);
     let error = scale.error(&step, &displacement, &error);
@@ -271,7 +275,7 @@ impl<T: Real, const N: usize> Factored<T, N> {
         Some(Self { both, exchanged })
     }
 
-    fn solve(&self, mut b: SVector<T, N>) -> SVector<T, N> {
+    fn solve_factorised(&self, mut b: SVector<T, N>) -> SVector<T, N> {
         for (k, with) in self.exchanged.iter().enumerate() {
             b.swap_rows(k, *with);
         }

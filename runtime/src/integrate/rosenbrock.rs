@@ -1,6 +1,6 @@
 //! Linearly implicit (Rosenbrock) integration method for stiff mechanisms.
 
-use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
+use super::{Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step, project_end_of_step};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::{SMatrix, SVector};
@@ -59,7 +59,7 @@ pub(super) enum Along {
 
 /// Returns the derivatives at the start of a step, with a zero time derivative. `None` in and near singular
 /// configurations, where branches of the motion intersect.
-pub(super) fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn slopes_at_start<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     acceleration: &SVector<T, NV>,
@@ -105,7 +105,7 @@ pub(super) fn slopes<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
 
 /// Returns the delay after the start of a step of `h` seconds at which time derivatives are sampled: a
 /// thousandth of the step, and at least several rounding units of the run's clock.
-pub(super) fn shortly<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn sampling_delay<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     start: T,
     h: T,
@@ -116,7 +116,7 @@ pub(super) fn shortly<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
 
 /// Returns the time from the start of a step to `later`, rounded as on the run's clock, of which
 /// accelerations are functions.
-pub(super) fn elapsed<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn elapsed_time<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
     start: T,
     later: T,
@@ -125,7 +125,10 @@ pub(super) fn elapsed<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
 }
 
 /// Solves `m x = b` by Gaussian elimination with row pivoting; `None` for a singular matrix.
-fn solve<T: Real, const N: usize>(mut m: SMatrix<T, N, N>, mut b: SVector<T, N>) -> Option<SVector<T, N>> {
+fn solve_linear_system<T: Real, const N: usize>(
+    mut m: SMatrix<T, N, N>,
+    mut b: SVector<T, N>,
+) -> Option<SVector<T, N>> {
     for k in 0..N {
         let best = (k..N).max_by(|i, j| {
             let order = m[(*i, k)].abs().partial_cmp(&m[(*j, k)].abs());
@@ -161,7 +164,7 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
     const FIXED: bool = true;
 
     fn check(&self) -> Result<(), Error> {
-        positive("the step", self.step)
+        check_positive("the step", self.step)
     }
 
     fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
@@ -185,9 +188,9 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
         let (h, t) = equal_step(self.step, start.t, until)?;
         let before = system.acceleration(start.t, &start.q, &start.v);
         let mut slopes =
-            slopes(system, start, &before, h, Along::Allowed).or(*memory).unwrap_or(Slopes::zero());
-        let later = shortly(system, start.t, h);
-        let passed = elapsed(system, start.t, later);
+            slopes_at_start(system, start, &before, h, Along::Allowed).or(*memory).unwrap_or(Slopes::zero());
+        let later = sampling_delay(system, start.t, h);
+        let passed = elapsed_time(system, start.t, later);
         if passed > T::zero() {
             slopes.by_t = (system.acceleration(start.t + later, &start.q, &start.v) - before) / passed;
         }
@@ -196,7 +199,7 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
         // (1 − γhJ) (kφ, kv) = (a, b) with J = [0 1; Fφ Fv] reduces to kφ = a + γh kv and one system for kv.
         let matrix = SMatrix::identity() - slopes.by_v * part - slopes.by_q * (part * part);
         let solve_stage = |a: SVector<T, NV>, b: SVector<T, NV>| {
-            let kv = solve(matrix, b + slopes.by_q * a * part)?;
+            let kv = solve_linear_system(matrix, b + slopes.by_q * a * part)?;
             Some((a + kv * part, kv))
         };
         let singular = Error::NotConverged { t: to_f64(start.t), iterations: 0 };
@@ -211,7 +214,7 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
         let displacement = (first.0 * three + second.0) * half;
         let v = start.v + (first.1 * three + second.1) * half;
         let end = State { t, q: system.integrate(&start.q, &displacement), v };
-        let end = settled(system, end, start.t)?;
+        let end = project_end_of_step(system, end, start.t)?;
         *memory = Some(slopes);
         let step = Step::linear(*start, end, displacement);
         if !dense {

@@ -1,7 +1,7 @@
 //! Semi-implicit (symplectic) Euler method.
 
-use super::constrained::{Ended, Middle, is_crossing, midpoint, passing};
-use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
+use super::constrained::{Ended, Middle, is_crossing, solve_midpoint, step_past_singularity};
+use super::{Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step, project_end_of_step};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
@@ -42,7 +42,7 @@ impl<T: Real> SemiImplicitEuler<T> {
 }
 
 /// Returns the generalized forces that do not depend on velocities, including inputs.
-fn force<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn velocity_independent_forces<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     state: &State<T, NQ, NV>,
 ) -> SVector<T, NV> {
@@ -52,7 +52,7 @@ fn force<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
 
 /// Advances a semi-implicit Euler step near a singular configuration. As elsewhere, the method is equivalent
 /// to a time-reversible method whose state is observed half an impulse earlier.
-fn pass<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn advance_past_singularity<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     t: T,
@@ -62,12 +62,12 @@ fn pass<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     let advance_by_forces = |system: &mut D, state: &State<T, NQ, NV>, h: T| {
         // Responses to forces, not to impulses: next to stiff springs, impulses of short steps would be lost
         // in rounding.
-        let force = force(system, state);
+        let force = velocity_independent_forces(system, state);
         let v = state.v + system.response(state.t, &state.q, &state.v, &force) * h;
-        settled(system, State { v, ..*state }, state.t).ok()
+        project_end_of_step(system, State { v, ..*state }, state.t).ok()
     };
     let later = advance_by_forces(system, start, half)?;
-    let (way, end) = passing(system, &later, t, h)?;
+    let (way, end) = step_past_singularity(system, &later, t, h)?;
     Some((way, advance_by_forces(system, &end, -half)?))
 }
 
@@ -77,7 +77,7 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
     const FIXED: bool = true;
 
     fn check(&self) -> Result<(), Error> {
-        positive("the step", self.step)
+        check_positive("the step", self.step)
     }
 
     fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
@@ -106,24 +106,32 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
             SVector::zeros()
         };
         let (way, end) = if constrained {
-            let p = system.momentum(start.t, &start.q, &start.v) + force(system, start) * h;
+            let p =
+                system.momentum(start.t, &start.q, &start.v) + velocity_independent_forces(system, start) * h;
             let inertial_rate_of_state = |system: &mut D, t, q: &_, v: &_| system.inertial_rate(t, q, v);
-            let found = midpoint(system, inertial_rate_of_state, start, &p, h, start.v);
+            let found = solve_midpoint(system, inertial_rate_of_state, start, &p, h, start.v);
             let crossing = is_crossing(system, start, h, &found, memory);
-            let passed = if crossing { pass(system, start, t, h) } else { None };
+            let passed = if crossing { advance_past_singularity(system, start, t, h) } else { None };
             match passed {
                 Some(passed) => passed,
                 None => {
                     let Middle { v, p, way, .. } = found?;
                     let q = system.integrate(&start.q, &way);
-                    (way, settled(system, State { t, q, v: system.velocity(t, &q, &p, &v) }, start.t)?)
+                    (
+                        way,
+                        project_end_of_step(
+                            system,
+                            State { t, q, v: system.velocity(t, &q, &p, &v) },
+                            start.t,
+                        )?,
+                    )
                 }
             }
         } else {
             let v = start.v + before * h;
             let way = v * h;
             let q = system.integrate(&start.q, &way);
-            (way, settled(system, State { t, q, v }, start.t)?)
+            (way, project_end_of_step(system, State { t, q, v }, start.t)?)
         };
         let step = Step::linear(*start, end, way);
         if !dense {

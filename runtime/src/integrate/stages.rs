@@ -14,7 +14,7 @@ pub(super) struct Rates<T, const NV: usize> {
 }
 
 /// Returns the weighted sum `h Σ weight · rates` of the rates of several stages.
-pub(super) fn sum<T: Real, const NV: usize, const N: usize>(
+pub(super) fn weighted_sum_of_rates<T: Real, const NV: usize, const N: usize>(
     h: T,
     terms: [(f64, &Rates<T, NV>); N],
 ) -> Rates<T, NV> {
@@ -28,7 +28,7 @@ pub(super) fn sum<T: Real, const NV: usize, const N: usize>(
 }
 
 /// Returns the rates at time `t` after the change `change` from `start`, and the state there.
-pub(super) fn stage<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn rates_at_stage<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     t: T,
@@ -42,7 +42,7 @@ pub(super) fn stage<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: 
 }
 
 /// Returns `h Σ weight · rates` over the stages with the given indices.
-pub(super) fn weighted<T: Real, const NV: usize, const K: usize>(
+pub(super) fn weighted_stage_rates<T: Real, const NV: usize, const K: usize>(
     h: T,
     weights: &[(usize, f64)],
     stages: &[Rates<T, NV>; K],

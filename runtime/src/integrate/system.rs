@@ -254,7 +254,7 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
     /// # Errors
     ///
     /// The errors of [`Method::advance`], and [`Error::Constraint`].
-    pub(crate) fn advance<T: Real, S: Method<T>, const NQ: usize, const NV: usize>(
+    pub(crate) fn advance_step<T: Real, S: Method<T>, const NQ: usize, const NV: usize>(
         &mut self,
         method: &S,
         memory: &mut S::Memory<NV>,
@@ -284,7 +284,7 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
         self.undetermined = None;
         let mut local = Local { system: &mut *self, origin };
         let step = method.advance(memory, &mut local, start, until, dense);
-        step.map_err(|error| match (error.shifted(to_f64(origin)), self.undetermined) {
+        step.map_err(|error| match (error.shift_time_origin(to_f64(origin)), self.undetermined) {
             (
                 Error::NotFinite { t } | Error::StepTooSmall { t, .. } | Error::NotConverged { t, .. },
                 Some(reason),
@@ -293,7 +293,7 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
         })
     }
 
-    fn forces<T: Real, const NQ: usize, const NV: usize>(
+    fn input_forces<T: Real, const NQ: usize, const NV: usize>(
         &mut self,
         t: T,
         q: &SVector<T, NQ>,
@@ -342,7 +342,7 @@ where
     }
 
     fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {
-        let tau = self.forces(t, q, v);
+        let tau = self.input_forces(t, q, v);
         self.mechanism.try_forward_dynamics(t, q, v, &tau).unwrap_or_else(|reason| {
             self.undetermined = Some(reason);
             SVector::repeat(constant(f64::NAN))
@@ -377,7 +377,7 @@ where
             let acceleration = self.acceleration(t, q, v);
             return rate + self.mechanism.inverse_dynamics(t, q, v, &acceleration);
         }
-        rate + self.forces(t, q, v)
+        rate + self.input_forces(t, q, v)
     }
 
     fn inertial_rate(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV> {

@@ -18,12 +18,12 @@ fn equal_steps(h: f64) -> DormandPrince<f64> {
 }
 
 /// Returns the method of order 8 with equal steps.
-fn eighth(h: f64) -> DormandPrince8<f64> {
+fn eighth_order_method(h: f64) -> DormandPrince8<f64> {
     DormandPrince8::new().tolerance(1e6, 1e6).initial_step(h).max_step(h)
 }
 
 /// Returns the observed order: log₂ of the ratio of the errors with step `h` and step `h / 2`.
-fn order(error: impl Fn(f64) -> f64, h: f64) -> f64 {
+fn observed_order(error: impl Fn(f64) -> f64, h: f64) -> f64 {
     (error(h) / error(h / 2.0)).log2()
 }
 
@@ -72,7 +72,7 @@ fn thrown_error<S: Method<f64>>(method: S) -> f64 {
 
 fn assert_orders<F: Fn(f64) -> f64>(expected: f64, h: f64, errors: [F; 3]) {
     for (case, error) in errors.iter().enumerate() {
-        let found = order(error, h);
+        let found = observed_order(error, h);
         std::println!("order {expected}, case {case}: {found:.3}, error {:.1e}", error(h));
         assert!((found - expected).abs() < 0.25, "case {case}: order {found}, expected {expected}");
     }
@@ -106,9 +106,11 @@ orders! {
 #[test]
 fn dormand_prince_8_has_order_eight() {
     let cases: [&dyn Fn(f64) -> f64; 3] =
-        [&|h| driven_error(eighth(h)), &|h| top_error(eighth(h)), &|h| thrown_error(eighth(h))];
+        [&|h| driven_error(eighth_order_method(h)), &|h| top_error(eighth_order_method(h)), &|h| {
+            thrown_error(eighth_order_method(h))
+        }];
     for (case, error) in cases.iter().enumerate() {
-        let found = order(error, 0.5);
+        let found = observed_order(error, 0.5);
         std::println!("order 8, case {case}: {found:.3}, error {:.1e}", error(0.5));
         assert!((found - 8.0).abs() < 0.6, "case {case}: order {found}");
     }
@@ -125,7 +127,7 @@ fn dense_output_has_order_four() {
             worst.max((sample.q[0] - sample.t.cos() - 0.5 * sample.t.sin()).abs())
         })
     };
-    let found = order(dense_output_error, 0.1);
+    let found = observed_order(dense_output_error, 0.1);
     std::println!("dense output: {found:.3}");
     assert!((found - 5.0).abs() < 0.25, "{found}");
 }
@@ -135,12 +137,12 @@ fn dense_output_of_order_eight_has_order_seven() {
     let dense_output_error = |h: f64| {
         let oscillator = oscillator::<f64>();
         let samples = simulate(&oscillator).from([1.0], [0.5]).duration(h).sample_every(h / 7.0);
-        samples.method(eighth(h)).fold(0.0_f64, |worst, sample| {
+        samples.method(eighth_order_method(h)).fold(0.0_f64, |worst, sample| {
             let sample = sample.unwrap();
             worst.max((sample.q[0] - sample.t.cos() - 0.5 * sample.t.sin()).abs())
         })
     };
-    let found = order(dense_output_error, 1.0);
+    let found = observed_order(dense_output_error, 1.0);
     std::println!("dense output: {found:.3}, {:.1e}", dense_output_error(1.0));
     assert!((found - 8.0).abs() < 0.5, "{found}");
 }
@@ -204,18 +206,18 @@ fn pendulum_swings_with_the_elliptic_period() {
 }
 
 /// Returns momentum in the ground frame and kinetic energy of a free top.
-fn invariants(top: &Top<f64>, q: SVector<f64, 4>, v: SVector<f64, 3>) -> (Vector3<f64>, f64) {
+fn invariants_of_top(top: &Top<f64>, q: SVector<f64, 4>, v: SVector<f64, 3>) -> (Vector3<f64>, f64) {
     (rotate_vector(q.into(), top.generalized_momentum(0.0, &q, &v)), top.kinetic_energy(0.0, &q, &v))
 }
 
 #[test]
 fn tumbling_body_keeps_momentum_and_energy() {
     let top = Top { inertia: TUMBLING };
-    let start = invariants(&top, top.neutral(), SPIN.into());
+    let start = invariants_of_top(&top, top.neutral(), SPIN.into());
     let run = simulate(&top).from(top.neutral(), SPIN);
     let tight = DormandPrince::new().tolerance(1e-13, 1e-13);
     let exact = run.clone().duration(5.0).method(tight).finish().unwrap();
-    let (momentum, energy) = invariants(&top, exact.q, exact.v);
+    let (momentum, energy) = invariants_of_top(&top, exact.q, exact.v);
     assert!((momentum - start.0).norm() < 2e-12 && (energy - start.1).abs() < 2e-12);
     let small = run.duration(5.0).method(Rk4::step(1e-3)).finish().unwrap();
     assert!((small.v - exact.v).norm() < 1e-12 && (small.q - exact.q).norm() < 1e-12);
@@ -224,10 +226,10 @@ fn tumbling_body_keeps_momentum_and_energy() {
 #[test]
 fn midpoint_rule_keeps_the_invariants_of_the_top() {
     let top = Top { inertia: TUMBLING };
-    let start = invariants(&top, top.neutral(), SPIN.into());
+    let start = invariants_of_top(&top, top.neutral(), SPIN.into());
     let run = simulate(&top).from(top.neutral(), SPIN).method(ImplicitMidpoint::step(0.05));
     let end = run.duration(500.0).finish().unwrap();
-    let (momentum, energy) = invariants(&top, end.q, end.v);
+    let (momentum, energy) = invariants_of_top(&top, end.q, end.v);
     assert!((energy - start.1).abs() < 1e-11, "{}", energy - start.1);
     assert!((momentum.norm() - start.0.norm()).abs() < 1e-11);
     assert!((momentum - start.0).norm() > 1e-9, "only its length is kept exactly");

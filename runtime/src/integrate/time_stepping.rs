@@ -1,7 +1,7 @@
 //! Time stepping: motion with impacts and friction in steps of fixed length.
 
 use super::rk4::rk4_change;
-use super::{Dynamics, Error, Jump, Method, State, Step, equal_step, positive, settled};
+use super::{Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step, project_end_of_step};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::contact::{Impulses, Touched};
@@ -29,8 +29,9 @@ use nalgebra::SVector;
 /// sticking contacts have no slip velocity, and bodies at rest do not creep under any load that friction
 /// supports. Impact impulses add no energy. Under sustained contact the energy is accurate to order 2: for a
 /// bob of 1 kg in a frictionless bowl of 1 m, its relative error is `3e-6` after 2 s in steps of 1 ms. The
-/// order is 1 if the slip direction rotates at contacts with indeterminate forces, such as the corners of a
-/// box.
+/// order is 1 through steps in which the slip velocity reverses, since its zero is not located. A motion that
+/// depends on indeterminate forces, such as that of a table with four legs that rotates while it slides, is
+/// one of several that satisfy the laws; it may change with the length of the steps.
 ///
 /// When surfaces collide, their penetration is at most their approach in one step. In sustained contact, the
 /// penetration is removed by displacements of the bodies weighted with the inverse inertia (Acary, *Projected
@@ -175,7 +176,7 @@ impl<T: Real, const NV: usize> TouchMemory<T, NV> {
 
     /// Records the contribution of the contacts in a step, their impulses, and the violation of the contact
     /// conditions.
-    fn note(&mut self, rate: SVector<T, NV>, impulses: Impulses<T, NV>, violation: T) {
+    fn record_contact_step(&mut self, rate: SVector<T, NV>, impulses: Impulses<T, NV>, violation: T) {
         let max_magnitude = |size: T, x: &T| size.max(x.abs());
         let size = rate.iter().fold(T::zero(), max_magnitude);
         let change = (rate - self.rate).iter().fold(T::zero(), max_magnitude);
@@ -196,7 +197,7 @@ impl<T: Real> Method<T> for TimeStepping<T> {
     const CONTACTS: bool = true;
 
     fn check(&self) -> Result<(), Error> {
-        positive("the step", self.step)
+        check_positive("the step", self.step)
     }
 
     fn memory<const NV: usize>(&self) -> Self::Memory<NV> {
@@ -230,24 +231,25 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         let before = earlier.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
         let (rate, impulses) = match memory.steady {
             true => (memory.rate, memory.impulses),
-            false => holding(system, start, &before, &memory.impulses, h).map_err(constraint_error)?,
+            false => enforce_closed_contacts(system, start, &before, &memory.impulses, h)
+                .map_err(constraint_error)?,
         };
         let (free, given) = match self.stages {
-            Stages::RungeKutta => guided(system, start, (&before, &rate), h, t),
+            Stages::RungeKutta => rk4_step_with_contacts(system, start, (&before, &rate), h, t),
             Stages::Midpoint | Stages::Leapfrog => {
                 let (free, given, at_middle) = through_middle(system, start, (&before, &rate), h, t);
                 memory.acceleration = matches!(self.stages, Stages::Leapfrog).then_some(at_middle);
                 (free, given)
             }
         };
-        let free = settled(system, free, start.t)?;
+        let free = project_end_of_step(system, free, start.t)?;
         let v = free.v - given;
         let Touched { q, v, held, impulses, violation } = system
             .contact_step(t, (&start.q, &start.v), (&free.q, &v), (&given, &impulses), h)
             .map_err(constraint_error)?;
-        memory.note(held / h, impulses, violation);
+        memory.record_contact_step(held / h, impulses, violation);
         let end = State { q, v, ..free };
-        let end = if end == free { end } else { settled(system, end, start.t)? };
+        let end = if end == free { end } else { project_end_of_step(system, end, start.t)? };
         Ok(Step::linear(*start, end, (start.v + v) * (h * constant(0.5))))
     }
 }
@@ -255,7 +257,7 @@ impl<T: Real> Method<T> for TimeStepping<T> {
 /// Returns the contribution to the velocity, per second, of the impulses that enforce the contacts closed at
 /// the start of a step of `h` seconds; `before` are the accelerations without these impulses, and the search
 /// begins at the impulses of the previous step.
-pub(crate) fn holding<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(crate) fn enforce_closed_contacts<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     before: &SVector<T, NV>,
@@ -272,7 +274,7 @@ pub(crate) fn holding<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV
 
 /// Returns the end of a step of [`Rk4`](super::Rk4) with the accelerations `before` at its start, under
 /// impulses that add `rate` to the velocity per second, and their total contribution to the velocity.
-pub(crate) fn guided<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(crate) fn rk4_step_with_contacts<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     (before, rate): (&SVector<T, NV>, &SVector<T, NV>),

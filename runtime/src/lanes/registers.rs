@@ -8,7 +8,7 @@ use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};
 use crate::trigonometry;
 #[cfg(feature = "std")]
-use crate::trigonometry::{LARGEST, same};
+use crate::trigonometry::{LARGEST, same_type_reference};
 
 /// Loop that a generated body delegates to the runtime.
 pub trait VectorLoop {
@@ -23,7 +23,7 @@ pub trait VectorLoop {
 /// Available instructions, for single numbers and for several lanes at once.
 pub trait Registers: Copy + 'static {
     /// Whether the processor has a fused multiply-add instruction; otherwise `mul_add` would be a slow
-    /// library call.
+    /// library call. False with the feature `reproducible`, because other processors lack the instruction.
     const FUSED: bool;
     /// Whether there are 32 registers of eight double-precision numbers; otherwise there are 16 of four.
     const WIDE: bool;
@@ -72,11 +72,11 @@ macro_rules! register {
     ($number:ident $lanes:literal $register:ident: ($($a:ident)+) => $f:expr) => {
         if N == $lanes
             && size_of::<T>() == size_of::<$number>()
-            && let ($(Some($a),)+) = ($(same::<_, [$number; $lanes]>($a),)+)
+            && let ($(Some($a),)+) = ($(same_type_reference::<_, [$number; $lanes]>($a),)+)
         {
             $(let $a = wide::$register::new(*$a);)+
             let result = $f.to_array();
-            if let Some(result) = same(&result) {
+            if let Some(result) = same_type_reference(&result) {
                 return *result;
             }
         }
@@ -105,7 +105,11 @@ macro_rules! operations {
 }
 
 impl Registers for Compiled {
-    const FUSED: bool = cfg!(all(feature = "std", any(target_feature = "fma", target_arch = "aarch64")));
+    const FUSED: bool = cfg!(all(
+        feature = "std",
+        not(feature = "reproducible"),
+        any(target_feature = "fma", target_arch = "aarch64")
+    ));
     const WIDE: bool = cfg!(target_feature = "avx512f");
 
     #[inline(always)]
@@ -138,7 +142,8 @@ impl Registers for Compiled {
         macro_rules! case {
             ($lanes:literal $register:ident $bits:ident) => {
                 if L == $lanes
-                    && let (Some(s), Some(c), Some(shifted)) = (same(s), same(c), same(shifted))
+                    && let (Some(s), Some(c), Some(shifted)) =
+                        (same_type_reference(s), same_type_reference(c), same_type_reference(shifted))
                 {
                     use wide::{$bits, $register};
                     let [s, c, quadrant] = [s, c, shifted].map(|x| $register::new(*x).to_bits());
@@ -147,7 +152,7 @@ impl Registers for Compiled {
                     let s = s ^ exchange ^ ((quadrant << 62_u32) & sign);
                     let c = c ^ exchange ^ (((quadrant + one) << 62_u32) & sign);
                     let result: [[f64; $lanes]; 2] = [s, c].map(|x| $register::from_bits(x).to_array());
-                    if let Some(result) = same(&result) {
+                    if let Some(result) = same_type_reference(&result) {
                         return *result;
                     }
                 }
@@ -174,7 +179,7 @@ impl Registers for Compiled {
         macro_rules! case {
             ($lanes:literal $register:ident) => {
                 if L == $lanes
-                    && let Some(x) = same::<_, [[f64; $lanes]; N]>(x)
+                    && let Some(x) = same_type_reference::<_, [[f64; $lanes]; N]>(x)
                 {
                     use wide::$register;
                     // An ordered comparison: NaN is not large.

@@ -6,7 +6,7 @@ use nalgebra::{ComplexField, Matrix3, RealField, SVector, Vector3};
 use std::format;
 
 /// Returns numbers in (0.05, 0.95), negated in odd lanes.
-fn numbers<const N: usize>(seed: u64) -> Lanes<f64, N> {
+fn sample_lanes<const N: usize>(seed: u64) -> Lanes<f64, N> {
     let mut state = seed;
     Lanes::from_fn(|k| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -16,12 +16,12 @@ fn numbers<const N: usize>(seed: u64) -> Lanes<f64, N> {
 }
 
 /// Checks that every lane equals the function of that lane, bit for bit.
-fn check<const N: usize>(
+fn check_lanes<const N: usize>(
     wide: impl Fn(Lanes<f64, N>, Lanes<f64, N>, Lanes<f64, N>) -> Lanes<f64, N>,
     narrow: impl Fn(f64, f64, f64) -> f64,
 ) {
     for seed in 0..100 {
-        let (a, b, c) = (numbers(seed), numbers(seed + 100), numbers(seed + 200));
+        let (a, b, c) = (sample_lanes(seed), sample_lanes(seed + 100), sample_lanes(seed + 200));
         let found = wide(a, b, c);
         for k in 0..N {
             let expected = narrow(a[k], b[k], c[k]);
@@ -30,23 +30,23 @@ fn check<const N: usize>(
     }
 }
 
-fn arithmetic<const N: usize>() {
-    check::<N>(|a, b, _| a + b, |a, b, _| a + b);
-    check::<N>(|a, b, _| a - b, |a, b, _| a - b);
-    check::<N>(|a, b, _| a * b, |a, b, _| a * b);
-    check::<N>(|a, b, _| a / b, |a, b, _| a / b);
-    check::<N>(|a, b, _| a % b, |a, b, _| a % b);
-    check::<N>(|a, _, _| -a, |a, _, _| -a);
-    check::<N>(|a, _, _| a * 0.7 + 0.3, |a, _, _| a * 0.7 + 0.3);
-    check::<N>(A::mul_add, A::mul_add);
-    check::<N>(A::mul_sub, A::mul_sub);
-    check::<N>(A::neg_mul_add, A::neg_mul_add);
-    check::<N>(|a, b, c| a.mul_add(b, c), A::mul_add);
-    check::<N>(|a, _, _| ComplexField::abs(a), |a, _, _| a.abs());
-    check::<N>(|a, b, _| RealField::max(a, b), |a, b, _| a.max(b));
-    check::<N>(|a, b, _| RealField::min(a, b), |a, b, _| a.min(b));
-    check::<N>(|a, b, _| a.copysign(b), |a, b, _| a.copysign(b));
-    check::<N>(|a, _, _| ComplexField::signum(a), |a, _, _| a.signum());
+fn check_arithmetic<const N: usize>() {
+    check_lanes::<N>(|a, b, _| a + b, |a, b, _| a + b);
+    check_lanes::<N>(|a, b, _| a - b, |a, b, _| a - b);
+    check_lanes::<N>(|a, b, _| a * b, |a, b, _| a * b);
+    check_lanes::<N>(|a, b, _| a / b, |a, b, _| a / b);
+    check_lanes::<N>(|a, b, _| a % b, |a, b, _| a % b);
+    check_lanes::<N>(|a, _, _| -a, |a, _, _| -a);
+    check_lanes::<N>(|a, _, _| a * 0.7 + 0.3, |a, _, _| a * 0.7 + 0.3);
+    check_lanes::<N>(A::mul_add, A::mul_add);
+    check_lanes::<N>(A::mul_sub, A::mul_sub);
+    check_lanes::<N>(A::neg_mul_add, A::neg_mul_add);
+    check_lanes::<N>(|a, b, c| a.mul_add(b, c), A::mul_add);
+    check_lanes::<N>(|a, _, _| ComplexField::abs(a), |a, _, _| a.abs());
+    check_lanes::<N>(|a, b, _| RealField::max(a, b), |a, b, _| a.max(b));
+    check_lanes::<N>(|a, b, _| RealField::min(a, b), |a, b, _| a.min(b));
+    check_lanes::<N>(|a, b, _| a.copysign(b), |a, b, _| a.copysign(b));
+    check_lanes::<N>(|a, _, _| ComplexField::signum(a), |a, _, _| a.signum());
     let assign_all_operators = |mut a: Lanes<f64, N>, b: Lanes<f64, N>, c| {
         a += b;
         a -= c;
@@ -54,17 +54,17 @@ fn arithmetic<const N: usize>() {
         a /= c;
         a
     };
-    check::<N>(assign_all_operators, |a, b, c| (a + b - c) * b / c);
+    check_lanes::<N>(assign_all_operators, |a, b, c| (a + b - c) * b / c);
 }
 
 #[test]
 fn arithmetic_is_that_of_every_lane() {
-    arithmetic::<1>();
-    arithmetic::<2>();
-    arithmetic::<3>();
-    arithmetic::<4>();
-    arithmetic::<8>();
-    arithmetic::<16>();
+    check_arithmetic::<1>();
+    check_arithmetic::<2>();
+    check_arithmetic::<3>();
+    check_arithmetic::<4>();
+    check_arithmetic::<8>();
+    check_arithmetic::<16>();
 }
 
 #[test]
@@ -89,12 +89,12 @@ fn functions_are_those_of_every_lane() {
         (ComplexField::recip, ComplexField::recip),
     ];
     for (wide, narrow) in functions {
-        check(|a, _, _| wide(a), |a, _, _| narrow(a));
+        check_lanes(|a, _, _| wide(a), |a, _, _| narrow(a));
     }
-    check::<8>(|a, b, _| A::atan2(a, b), |a, b, _| A::atan2(a, b));
-    check::<8>(|a, b, _| A::powf(a * a, b), |a, b, _| A::powf(a * a, b));
-    check::<8>(|a, _, _| a.sin_cos().0, |a, _, _| A::sin_cos(a).0);
-    check::<8>(|a, _, _| a.sin_cos().1, |a, _, _| A::sin_cos(a).1);
+    check_lanes::<8>(|a, b, _| A::atan2(a, b), |a, b, _| A::atan2(a, b));
+    check_lanes::<8>(|a, b, _| A::powf(a * a, b), |a, b, _| A::powf(a * a, b));
+    check_lanes::<8>(|a, _, _| a.sin_cos().0, |a, _, _| A::sin_cos(a).0);
+    check_lanes::<8>(|a, _, _| a.sin_cos().1, |a, _, _| A::sin_cos(a).1);
 }
 
 #[test]
@@ -113,7 +113,7 @@ fn sums_have_a_fixed_order() {
     // (1 + tiny) + (tiny + tiny) and so on: the order of the additions determines the result.
     assert_eq!(Lanes([1.0, 0.1, tiny, 0.2]).sum(), (1.0 + tiny) + (0.1 + 0.2));
     assert_eq!(Lanes([0.1, 0.2, 0.3]).sum(), (0.1 + 0.3) + 0.2);
-    let x: f64x8 = numbers(5);
+    let x: f64x8 = sample_lanes(5);
     let halves: Lanes<f64, 4> = Lanes::from_fn(|k| x[k] + x[k + 4]);
     assert_eq!(x.sum(), (halves[0] + halves[2]) + (halves[1] + halves[3]));
     assert_eq!((Lanes([3.0_f64]).sum(), Lanes::<f64, 0>([]).sum()), (3.0, 0.0));
@@ -158,7 +158,7 @@ fn nalgebra_computes_with_lanes() {
 
 #[test]
 fn lanes_of_lanes() {
-    let x = Lanes([numbers::<4>(1), numbers::<4>(2)]);
+    let x = Lanes([sample_lanes::<4>(1), sample_lanes::<4>(2)]);
     let y = A::mul_add(x, x, constant(1.0));
     assert_eq!(y[1][2], A::mul_add(x[1][2], x[1][2], 1.0));
     assert_eq!(x.sum(), x[0] + x[1]);
@@ -168,19 +168,19 @@ fn lanes_of_lanes() {
 /// Checks that in the arithmetic of `R` every lane of a vector equals the result of its numbers alone, bit
 /// for bit.
 fn vectors_are_their_lanes<R: Registers, const N: usize>() {
-    fn several<R: Registers, X: Elementary<R>>(a: X, b: X, c: X) -> X {
+    fn several_operations<R: Registers, X: Elementary<R>>(a: X, b: X, c: X) -> X {
         let (s, c) = R::sin_cos(R::mul_add(a, X::constant(9.0), c));
         let (large, _) = R::sin_cos(b * X::constant(1e6));
         let sum = R::mul_sub(s, c, R::neg_mul_add(a, large, -b)) / (R::abs(b) + X::constant(0.1));
         R::sqrt(R::mul_add(sum, sum, a * a)) - R::atan2(a, b)
     }
     let several_in_lanes = |a: Lanes<f64, N>, b: Lanes<f64, N>, c: Lanes<f64, N>| {
-        several::<R, _>(R::lanes(a.0), R::lanes(b.0), R::lanes(c.0)).lanes()
+        several_operations::<R, _>(R::lanes(a.0), R::lanes(b.0), R::lanes(c.0)).lanes()
     };
-    check::<N>(several_in_lanes, several::<R, f64>);
-    let several_in_single_precision = |a, b, c| several::<R, f32>(a, b, c);
-    let [a, b, c] = [3, 4, 5].map(|seed| numbers::<N>(seed).map(|x| x as f32));
-    let found = several::<R, _>(R::lanes(a.0), R::lanes(b.0), R::lanes(c.0)).lanes();
+    check_lanes::<N>(several_in_lanes, several_operations::<R, f64>);
+    let several_in_single_precision = |a, b, c| several_operations::<R, f32>(a, b, c);
+    let [a, b, c] = [3, 4, 5].map(|seed| sample_lanes::<N>(seed).map(|x| x as f32));
+    let found = several_operations::<R, _>(R::lanes(a.0), R::lanes(b.0), R::lanes(c.0)).lanes();
     for k in 0..N {
         assert_eq!(
             found[k].to_bits(),
@@ -209,7 +209,10 @@ fn vectors_compute_lane_by_lane() {
     ))]
     {
         use x86::{avx2, avx512};
-        if avx2::is_available() && avx2::serves::<f64>() && avx2::serves::<f32>() {
+        if avx2::is_available()
+            && avx2::has_faster_instructions::<f64>()
+            && avx2::has_faster_instructions::<f32>()
+        {
             vectors_of_any_length::<avx2::Avx2>();
         }
         if avx512::is_available() {
@@ -219,7 +222,7 @@ fn vectors_compute_lane_by_lane() {
 }
 
 /// Checks that lanes `I` and `J` of two vectors are stored to rows 1 and 2, and that no other row changes.
-fn stored<T: crate::Real, const I: usize, const J: usize, const N: usize, const M: usize>(
+fn check_stored_lanes<T: crate::Real, const I: usize, const J: usize, const N: usize, const M: usize>(
     number: fn(usize) -> T,
 ) {
     let (a, b) = (Lanes::<T, N>::from_fn(number), Lanes::<T, M>::from_fn(|k| number(100 + k)));
@@ -231,12 +234,12 @@ fn stored<T: crate::Real, const I: usize, const J: usize, const N: usize, const 
 #[test]
 fn lanes_are_stored_in_rows() {
     let half_plus_index = |k| 0.5 + k as f64;
-    stored::<f64, 0, 0, 2, 2>(half_plus_index);
-    stored::<f64, 1, 1, 2, 2>(half_plus_index);
-    stored::<f64, 0, 1, 2, 2>(half_plus_index);
-    stored::<f64, 1, 3, 2, 4>(half_plus_index);
-    stored::<f64, 2, 0, 4, 4>(half_plus_index);
-    stored::<f64, 5, 3, 8, 4>(half_plus_index);
-    stored::<f64, 2, 1, 3, 3>(half_plus_index);
-    stored::<f32, 3, 1, 4, 2>(|k| 0.5 + k as f32);
+    check_stored_lanes::<f64, 0, 0, 2, 2>(half_plus_index);
+    check_stored_lanes::<f64, 1, 1, 2, 2>(half_plus_index);
+    check_stored_lanes::<f64, 0, 1, 2, 2>(half_plus_index);
+    check_stored_lanes::<f64, 1, 3, 2, 4>(half_plus_index);
+    check_stored_lanes::<f64, 2, 0, 4, 4>(half_plus_index);
+    check_stored_lanes::<f64, 5, 3, 8, 4>(half_plus_index);
+    check_stored_lanes::<f64, 2, 1, 3, 3>(half_plus_index);
+    check_stored_lanes::<f32, 3, 1, 4, 2>(|k| 0.5 + k as f32);
 }

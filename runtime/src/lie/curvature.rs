@@ -2,7 +2,9 @@
 //! lists of columns.
 
 use super::jacobians::{ball_tangent_rate_derivatives, even_slopes, free_tangent_rate_derivatives};
-use super::{SERIES_ANGLE, bracket, choose, cross, dot, even_brackets, second_bracket, series};
+use super::{
+    SERIES_ANGLE, bernoulli_series, choose_by_limit, cross, dot, even_brackets, lie_bracket, second_bracket,
+};
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};
 use crate::private::constant;
@@ -13,13 +15,13 @@ type Block<T, const N: usize> = [[T; N]; N];
 /// Returns the second derivatives with respect to `θ²` of the factors of `ad²` and `ad⁴` in the inverse
 /// Jacobian of SE(3).
 fn even_curvatures<T: Real>(square: T) -> [T; 2] {
-    choose(
+    choose_by_limit(
         square,
         constant(SERIES_ANGLE),
         |square| {
             [
-                series(square, 3, |k| (2.0 - k) * (k - 1.0) * (k - 2.0)),
-                series(square, 4, |k| (1.0 - k) * (k - 2.0) * (k - 3.0)),
+                bernoulli_series(square, 3, |k| (2.0 - k) * (k - 1.0) * (k - 2.0)),
+                bernoulli_series(square, 4, |k| (1.0 - k) * (k - 2.0) * (k - 3.0)),
             ]
         },
         |square| {
@@ -105,7 +107,10 @@ fn of_brackets<T: Real, const N: usize>(
 }
 
 /// Returns `λᵀ` times the derivatives with respect to `dv`, for every unit vector of `v`.
-fn contracted<T: Real, const N: usize>(lambda: [T; N], by_dv: impl Fn([T; N]) -> Block<T, N>) -> Block<T, N> {
+fn contracted_derivatives<T: Real, const N: usize>(
+    lambda: [T; N],
+    by_dv: impl Fn([T; N]) -> Block<T, N>,
+) -> Block<T, N> {
     core::array::from_fn(|j| {
         let columns = by_dv(core::array::from_fn(|i| if i == j { T::one() } else { T::zero() }));
         columns.map(|column| column.iter().zip(&lambda).fold(T::zero(), |sum, (x, l)| sum + *x * *l))
@@ -125,7 +130,7 @@ pub fn ball_tangent_rate_second_derivatives<T: Real>(
     let factors = [[second_bracket(square), -fall, -slope], [T::zero(); 3]];
     (
         of_brackets(dv, v, lambda, cross, factors),
-        contracted(lambda, |e| ball_tangent_rate_derivatives(dv, e).0),
+        contracted_derivatives(lambda, |e| ball_tangent_rate_derivatives(dv, e).0),
     )
 }
 
@@ -140,8 +145,8 @@ pub fn free_tangent_rate_second_derivatives<T: Real>(
     let square = dot([x, y, z], [x, y, z]);
     let ([f, g], [f1, g1], [f2, g2]) = (even_brackets(square), even_slopes(square), even_curvatures(square));
     (
-        of_brackets(dv, v, lambda, bracket, [[f, f1, f2], [g, g1, g2]]),
-        contracted(lambda, |e| free_tangent_rate_derivatives(dv, e).0),
+        of_brackets(dv, v, lambda, lie_bracket, [[f, f1, f2], [g, g1, g2]]),
+        contracted_derivatives(lambda, |e| free_tangent_rate_derivatives(dv, e).0),
     )
 }
 
@@ -150,12 +155,15 @@ mod tests {
     use super::*;
 
     /// Returns reproducible pseudorandom numbers between `−size` and `size`.
-    fn figures<const N: usize>(seed: usize, size: f64) -> [f64; N] {
+    fn pseudorandom_numbers<const N: usize>(seed: usize, size: f64) -> [f64; N] {
         core::array::from_fn(|k| size * (12.9898 * (seed * N + k + 1) as f64).sin())
     }
 
     /// Returns central differences of fourth order, column by column, of `λᵀ` times a block of columns.
-    fn slope<const N: usize>(lambda: [f64; N], f: impl Fn([f64; N]) -> Block<f64, N>) -> Block<f64, N> {
+    fn difference_columns<const N: usize>(
+        lambda: [f64; N],
+        f: impl Fn([f64; N]) -> Block<f64, N>,
+    ) -> Block<f64, N> {
         let h = 1e-3;
         core::array::from_fn(|j| {
             let columns_times_lambda = |x: f64| {
@@ -172,7 +180,7 @@ mod tests {
         })
     }
 
-    fn sum<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+    fn sum_of_vectors<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
         core::array::from_fn(|k| a[k] + b[k])
     }
 
@@ -187,22 +195,44 @@ mod tests {
     #[test]
     fn rates_of_balls_curve_as_their_derivatives_change() {
         for (seed, size) in SIZES.into_iter().enumerate() {
-            let (dv, v, lambda): ([f64; 3], _, _) =
-                (figures(seed, size), figures(seed + 50, 1.0), figures(seed + 90, 1.0));
+            let (dv, v, lambda): ([f64; 3], _, _) = (
+                pseudorandom_numbers(seed, size),
+                pseudorandom_numbers(seed + 50, 1.0),
+                pseudorandom_numbers(seed + 90, 1.0),
+            );
             let (twice, mixed) = ball_tangent_rate_second_derivatives(dv, v, lambda);
-            assert_same(twice, slope(lambda, |e| ball_tangent_rate_derivatives(sum(dv, e), v).0), "twice");
-            assert_same(mixed, slope(lambda, |e| ball_tangent_rate_derivatives(dv, sum(v, e)).0), "mixed");
+            assert_same(
+                twice,
+                difference_columns(lambda, |e| ball_tangent_rate_derivatives(sum_of_vectors(dv, e), v).0),
+                "twice",
+            );
+            assert_same(
+                mixed,
+                difference_columns(lambda, |e| ball_tangent_rate_derivatives(dv, sum_of_vectors(v, e)).0),
+                "mixed",
+            );
         }
     }
 
     #[test]
     fn rates_of_free_bodies_curve_as_their_derivatives_change() {
         for (seed, size) in SIZES.into_iter().enumerate() {
-            let (dv, v, lambda): ([f64; 6], _, _) =
-                (figures(seed, size), figures(seed + 50, 1.0), figures(seed + 90, 1.0));
+            let (dv, v, lambda): ([f64; 6], _, _) = (
+                pseudorandom_numbers(seed, size),
+                pseudorandom_numbers(seed + 50, 1.0),
+                pseudorandom_numbers(seed + 90, 1.0),
+            );
             let (twice, mixed) = free_tangent_rate_second_derivatives(dv, v, lambda);
-            assert_same(twice, slope(lambda, |e| free_tangent_rate_derivatives(sum(dv, e), v).0), "twice");
-            assert_same(mixed, slope(lambda, |e| free_tangent_rate_derivatives(dv, sum(v, e)).0), "mixed");
+            assert_same(
+                twice,
+                difference_columns(lambda, |e| free_tangent_rate_derivatives(sum_of_vectors(dv, e), v).0),
+                "twice",
+            );
+            assert_same(
+                mixed,
+                difference_columns(lambda, |e| free_tangent_rate_derivatives(dv, sum_of_vectors(v, e)).0),
+                "mixed",
+            );
         }
     }
 

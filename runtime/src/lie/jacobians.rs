@@ -2,8 +2,9 @@
 //! of ball and free joints. Blocks are lists of columns; displacements are expressed in body axes.
 
 use super::{
-    add, ball_tangent_rate, bracket, choose, cross, dot, even_brackets, exponential, free_integrate,
-    free_tangent_rate, left_jacobian, plus, rotated, scale, second_bracket, series,
+    add, ball_tangent_rate, bernoulli_series, choose_by_limit, cross, dot, even_brackets, free_integrate,
+    free_tangent_rate, left_jacobian, lie_bracket, plus_scaled, quaternion_exponential, rotated_vector,
+    scaled_vector, second_bracket,
 };
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};
@@ -15,7 +16,7 @@ type Block<T, const N: usize> = [[T; N]; N];
 /// Returns the columns of a linear function. The standard library's `map` is not used, because it is not
 /// always inlined.
 #[inline(always)]
-fn columns<T: Real, const N: usize>(f: impl Fn([T; N]) -> [T; N]) -> Block<T, N> {
+fn columns_of_function<T: Real, const N: usize>(f: impl Fn([T; N]) -> [T; N]) -> Block<T, N> {
     let mut all = [[T::zero(); N]; N];
     for (j, column) in all.iter_mut().enumerate() {
         let mut unit = [T::zero(); N];
@@ -46,13 +47,13 @@ fn dual_columns<T: Real>(f: impl Fn([T; 6]) -> [T; 6]) -> Block<T, 6> {
 /// and to `dv`: `exp(−dv)` and the right Jacobian of SO(3) (Chirikjian, *Stochastic Models, Information
 /// Theory, and Lie Groups*, vol. 2, 2012, § 10.6).
 pub fn ball_integrate_derivatives<T: Real>(dv: [T; 3]) -> (Block<T, 3>, Block<T, 3>) {
-    let back = exponential(dv.map(|x| -x));
+    let back = quaternion_exponential(dv.map(|x| -x));
     let [a, b] = left_jacobian(dot(dv, dv));
     let right_jacobian_column = |e: [T; 3]| {
         let first = cross(dv, e);
-        add(add(e, scale(first, -a)), scale(cross(dv, first), b))
+        add(add(e, scaled_vector(first, -a)), scaled_vector(cross(dv, first), b))
     };
-    (columns(|e| rotated(back, e)), columns(right_jacobian_column))
+    (columns_of_function(|e| rotated_vector(back, e)), columns_of_function(right_jacobian_column))
 }
 
 /// Returns the derivatives of `tangent_rate(dv, v)` of a ball joint with respect to `dv` and to `v`.
@@ -67,16 +68,19 @@ pub fn ball_tangent_rate_derivatives<T: Real>(dv: [T; 3], v: [T; 3]) -> (Block<T
         let changed = cross(e, v);
         let brackets = add(cross(e, first), cross(dv, changed));
         let factor = constant::<T>(-2.0) * slope * dot(dv, e);
-        add(add(scale(changed, constant(0.5)), scale(brackets, second)), scale(twice, factor))
+        add(
+            add(scaled_vector(changed, constant(0.5)), scaled_vector(brackets, second)),
+            scaled_vector(twice, factor),
+        )
     };
-    (columns(rate_derivative_column), columns(|e| ball_tangent_rate(dv, e)))
+    (columns_of_function(rate_derivative_column), columns_of_function(|e| ball_tangent_rate(dv, e)))
 }
 
 /// Returns the factors of `ad`, `ad²`, `ad³` and `ad⁴` in the left Jacobian of SE(3), `Σ adᵏ / (k + 1)!`, as
 /// functions of `θ²`: `ad` has the minimal polynomial `ad (ad² + θ²)²` (Selig, *Geometric Fundamentals of
 /// Robotics*, § 4.6).
 fn jacobian_factors<T: Real>(square: T) -> [T; 4] {
-    choose(
+    choose_by_limit(
         square,
         constant(1.0),
         |square| {
@@ -123,18 +127,22 @@ pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (Block<T, 6>, Block<T,
     let turn = [rx, ry, rz];
     let (o, i) = (T::zero(), T::one());
     let [px, py, pz, ..] = free_integrate([o, o, o, o, o, o, i], dv);
-    let back = exponential(turn.map(|x| -x));
+    let back = quaternion_exponential(turn.map(|x| -x));
     let adjoint_column = |[x, y, z, a, b, c]: [T; 6]| {
-        let [x, y, z] = rotated(back, add([x, y, z], cross([a, b, c], [px, py, pz])));
-        let [a, b, c] = rotated(back, [a, b, c]);
+        let [x, y, z] = rotated_vector(back, add([x, y, z], cross([a, b, c], [px, py, pz])));
+        let [a, b, c] = rotated_vector(back, [a, b, c]);
         [x, y, z, a, b, c]
     };
     let [c1, c2, c3, c4] = jacobian_factors(dot(turn, turn));
     let right_jacobian_column = |e: [T; 6]| {
-        let first = bracket(dv, e);
-        let second = bracket(dv, first);
-        let third = bracket(dv, second);
-        plus(plus(plus(plus(e, -c1, first), c2, second), -c3, third), c4, bracket(dv, third))
+        let first = lie_bracket(dv, e);
+        let second = lie_bracket(dv, first);
+        let third = lie_bracket(dv, second);
+        plus_scaled(
+            plus_scaled(plus_scaled(plus_scaled(e, -c1, first), c2, second), -c3, third),
+            c4,
+            lie_bracket(dv, third),
+        )
     };
     (dual_columns(adjoint_column), dual_columns(right_jacobian_column))
 }
@@ -142,10 +150,15 @@ pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (Block<T, 6>, Block<T,
 /// Returns the derivatives with respect to `θ²` of the factors of `ad²` and `ad⁴` in the inverse Jacobian of
 /// SE(3).
 pub(super) fn even_slopes<T: Real>(square: T) -> [T; 2] {
-    choose(
+    choose_by_limit(
         square,
         constant(super::SERIES_ANGLE),
-        |square| [series(square, 2, |k| (2.0 - k) * (k - 1.0)), series(square, 3, |k| (1.0 - k) * (k - 2.0))],
+        |square| {
+            [
+                bernoulli_series(square, 2, |k| (2.0 - k) * (k - 1.0)),
+                bernoulli_series(square, 3, |k| (1.0 - k) * (k - 2.0)),
+            ]
+        },
         |square| {
             let half = square.sqrt() * constant(0.5);
             let (sin, cos) = Compiled::sin_cos(half);
@@ -171,21 +184,21 @@ pub fn free_tangent_rate_derivatives<T: Real>(dv: [T; 6], v: [T; 6]) -> (Block<T
     let square = dot(turn, turn);
     let [second, fourth] = even_brackets(square);
     let [second_slope, fourth_slope] = even_slopes(square);
-    let b1 = bracket(dv, v);
-    let b2 = bracket(dv, b1);
-    let b3 = bracket(dv, b2);
-    let b4 = bracket(dv, b3);
+    let b1 = lie_bracket(dv, v);
+    let b2 = lie_bracket(dv, b1);
+    let b3 = lie_bracket(dv, b2);
+    let b4 = lie_bracket(dv, b3);
     let rate_derivative_column = |e: [T; 6]| {
         let [_, _, _, x, y, z] = e;
         // Derivative of θ² along `e`.
         let along = constant::<T>(2.0) * dot(turn, [x, y, z]);
-        let c1 = bracket(e, v);
-        let c2 = plus(bracket(e, b1), T::one(), bracket(dv, c1));
-        let c3 = plus(bracket(e, b2), T::one(), bracket(dv, c2));
-        let c4 = plus(bracket(e, b3), T::one(), bracket(dv, c3));
+        let c1 = lie_bracket(e, v);
+        let c2 = plus_scaled(lie_bracket(e, b1), T::one(), lie_bracket(dv, c1));
+        let c3 = plus_scaled(lie_bracket(e, b2), T::one(), lie_bracket(dv, c2));
+        let c4 = plus_scaled(lie_bracket(e, b3), T::one(), lie_bracket(dv, c3));
         let zero = [T::zero(); 6];
-        let changed = plus(plus(plus(zero, constant(0.5), c1), second, c2), fourth, c4);
-        plus(plus(changed, second_slope * along, b2), fourth_slope * along, b4)
+        let changed = plus_scaled(plus_scaled(plus_scaled(zero, constant(0.5), c1), second, c2), fourth, c4);
+        plus_scaled(plus_scaled(changed, second_slope * along, b2), fourth_slope * along, b4)
     };
     (dual_columns(rate_derivative_column), dual_columns(|e| free_tangent_rate(dv, e)))
 }
@@ -196,12 +209,12 @@ mod tests {
     use crate::lie::{ball_difference, ball_integrate, free_difference};
 
     /// Returns reproducible pseudorandom numbers between `−size` and `size`.
-    fn figures<const N: usize>(seed: usize, size: f64) -> [f64; N] {
+    fn pseudorandom_numbers<const N: usize>(seed: usize, size: f64) -> [f64; N] {
         core::array::from_fn(|k| size * (12.9898 * (seed * N + k + 1) as f64).sin())
     }
 
     /// Returns central differences of fourth order, column by column.
-    fn slope<const N: usize, const M: usize>(f: impl Fn([f64; N]) -> [f64; M]) -> [[f64; M]; N] {
+    fn difference_columns<const N: usize, const M: usize>(f: impl Fn([f64; N]) -> [f64; M]) -> [[f64; M]; N] {
         let h = 1e-3;
         core::array::from_fn(|j| {
             let value_at_displacement = |x: f64| f(core::array::from_fn(|i| if i == j { x } else { 0.0 }));
@@ -215,7 +228,7 @@ mod tests {
         })
     }
 
-    fn sum<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+    fn sum_of_vectors<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
         core::array::from_fn(|k| a[k] + b[k])
     }
 
@@ -228,38 +241,64 @@ mod tests {
     #[test]
     fn balls_move_as_their_derivatives_say() {
         for (seed, size) in [0.0, 1e-9, 1e-3, 0.1, 0.49, 0.51, 1.0, 1.7].into_iter().enumerate() {
-            let (dv, v): ([f64; 3], [f64; 3]) = (figures(seed, size), figures(seed + 50, 1.0));
+            let (dv, v): ([f64; 3], [f64; 3]) =
+                (pseudorandom_numbers(seed, size), pseudorandom_numbers(seed + 50, 1.0));
             let q = [0.1, -0.5, 0.3, 0.8];
             let end = ball_integrate(q, dv);
             let (by_q, by_dv) = ball_integrate_derivatives(dv);
             assert_same(
                 by_q,
-                slope(|e| ball_difference(end, ball_integrate(ball_integrate(q, e), dv))),
+                difference_columns(|e| ball_difference(end, ball_integrate(ball_integrate(q, e), dv))),
                 "by q",
             );
-            assert_same(by_dv, slope(|e| ball_difference(end, ball_integrate(q, sum(dv, e)))), "by dv");
+            assert_same(
+                by_dv,
+                difference_columns(|e| ball_difference(end, ball_integrate(q, sum_of_vectors(dv, e)))),
+                "by dv",
+            );
             let (by_dv, by_v) = ball_tangent_rate_derivatives(dv, v);
-            assert_same(by_dv, slope(|e| ball_tangent_rate(sum(dv, e), v)), "rate by dv");
-            assert_same(by_v, slope(|e| ball_tangent_rate(dv, sum(v, e))), "rate by v");
+            assert_same(
+                by_dv,
+                difference_columns(|e| ball_tangent_rate(sum_of_vectors(dv, e), v)),
+                "rate by dv",
+            );
+            assert_same(
+                by_v,
+                difference_columns(|e| ball_tangent_rate(dv, sum_of_vectors(v, e))),
+                "rate by v",
+            );
         }
     }
 
     #[test]
     fn free_bodies_move_as_their_derivatives_say() {
         for (seed, size) in [0.0, 1e-9, 1e-3, 0.1, 0.3, 0.57, 0.6, 1.0, 1.7].into_iter().enumerate() {
-            let (dv, v): ([f64; 6], [f64; 6]) = (figures(seed, size), figures(seed + 50, 1.0));
+            let (dv, v): ([f64; 6], [f64; 6]) =
+                (pseudorandom_numbers(seed, size), pseudorandom_numbers(seed + 50, 1.0));
             let q = [0.3, 0.2, -0.7, 0.1, -0.5, 0.5, 0.7];
             let end = free_integrate(q, dv);
             let (by_q, by_dv) = free_integrate_derivatives(dv);
             assert_same(
                 by_q,
-                slope(|e| free_difference(end, free_integrate(free_integrate(q, e), dv))),
+                difference_columns(|e| free_difference(end, free_integrate(free_integrate(q, e), dv))),
                 "by q",
             );
-            assert_same(by_dv, slope(|e| free_difference(end, free_integrate(q, sum(dv, e)))), "by dv");
+            assert_same(
+                by_dv,
+                difference_columns(|e| free_difference(end, free_integrate(q, sum_of_vectors(dv, e)))),
+                "by dv",
+            );
             let (by_dv, by_v) = free_tangent_rate_derivatives(dv, v);
-            assert_same(by_dv, slope(|e| free_tangent_rate(sum(dv, e), v)), "rate by dv");
-            assert_same(by_v, slope(|e| free_tangent_rate(dv, sum(v, e))), "rate by v");
+            assert_same(
+                by_dv,
+                difference_columns(|e| free_tangent_rate(sum_of_vectors(dv, e), v)),
+                "rate by dv",
+            );
+            assert_same(
+                by_v,
+                difference_columns(|e| free_tangent_rate(dv, sum_of_vectors(v, e))),
+                "rate by v",
+            );
         }
     }
 

@@ -42,7 +42,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Col
     #[inline(always)]
     pub fn set(&mut self, k: usize, column: &[T]) {
         if let (Some(eights), Some(fours)) = (self.eights.get_mut(k), self.fours.get_mut(k)) {
-            read(column, eights, fours);
+            read_column(column, eights, fours);
         }
     }
 }
@@ -106,7 +106,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
     #[inline(always)]
     pub fn read(column: &[T]) -> Self {
         let mut all = Self::zero();
-        read(column, &mut all.eights, &mut all.fours);
+        read_column(column, &mut all.eights, &mut all.fours);
         all
     }
 
@@ -137,7 +137,7 @@ fn add_multiples<A: Arithmetic, T: Real, const W: usize, const MINUS: bool>(
 
 /// Loads a column from memory into registers of eight numbers and of four.
 #[inline(always)]
-fn read<A: Arithmetic, T: Real, const E: usize, const F: usize>(
+fn read_column<A: Arithmetic, T: Real, const E: usize, const F: usize>(
     column: &[T],
     eights: &mut [Vector<A, T, 8>; E],
     fours: &mut [Vector<A, T, 4>; F],
@@ -173,7 +173,7 @@ pub fn write_entries<A: Arithmetic, T: Real, const W: usize>(
     from: usize,
 ) {
     let rest = column.get_mut(from.min(column.len().saturating_sub(W))..).unwrap_or(&mut []);
-    let numbers = register.numbers();
+    let numbers = register.numbers_of_lanes();
     if let Some(all) = rest.first_chunk_mut() {
         *all = *numbers;
     } else {

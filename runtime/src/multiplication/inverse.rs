@@ -126,13 +126,13 @@ impl<
         if limbs.is_empty() {
             for (outer, inner) in outer.iter_mut().zip(&inner.0) {
                 for (x, k) in inner.iter().zip(trunk) {
-                    set(outer, k, *x);
+                    set_entry(outer, k, *x);
                 }
             }
         } else {
-            let mut rows_of_g = transposed(&g.0);
+            let mut rows_of_g = transposed_rows(&g.0);
             for (row, k) in rows_of_g.iter_mut().zip(trunk) {
-                set(row, k, T::one());
+                set_entry(row, k, T::one());
             }
             P::add_multiples::<A, L, L, false>(&mut outer, &rows_of_g, &inner.0, (0, K));
         }
@@ -154,7 +154,7 @@ impl<
                 }
                 Q::add_multiples::<A, N, N, true>(&mut rest, borders, &x, (0, N));
                 for (rest, k) in rest[0].iter().zip(trunk) {
-                    set(&mut left, k, *rest);
+                    set_entry(&mut left, k, *rest);
                 }
                 P::add_multiples::<A, N, N, false>(&mut x, &matrix.data.0, from_ref(&left), (0, N));
             }
@@ -165,7 +165,7 @@ impl<
 
 /// Returns the rows of a matrix as columns, in blocks of four by four, transposed in registers.
 #[inline(always)]
-fn transposed<T: Real, const L: usize, const N: usize>(columns: &[[T; L]; N]) -> [[T; N]; L] {
+fn transposed_rows<T: Real, const L: usize, const N: usize>(columns: &[[T; L]; N]) -> [[T; N]; L] {
     let mut rows = [[T::zero(); N]; L];
     let (blocks, rest) = columns.as_chunks::<4>();
     for (k, [a, b, c, d]) in blocks.iter().enumerate() {
@@ -177,14 +177,14 @@ fn transposed<T: Real, const L: usize, const N: usize>(columns: &[[T; L]; N]) ->
     }
     for (k, column) in rest.iter().enumerate() {
         for (x, row) in column.iter().zip(&mut rows) {
-            set(row, N / 4 * 4 + k, *x);
+            set_entry(row, N / 4 * 4 + k, *x);
         }
     }
     rows
 }
 
 #[inline(always)]
-fn set<T, const N: usize>(row: &mut [T; N], k: usize, x: T) {
+fn set_entry<T, const N: usize>(row: &mut [T; N], k: usize, x: T) {
     if let Some(place) = row.get_mut(k) {
         *place = x;
     }
@@ -194,7 +194,7 @@ fn set<T, const N: usize>(row: &mut [T; N], k: usize, x: T) {
 /// elimination without interchanges (Golub and Van Loan 2013, ch. 3.2). Rows are divided by their pivots at
 /// the end, so that all rows are treated equally during the elimination.
 #[inline(always)]
-pub(super) fn eliminate<
+pub(super) fn eliminate_leading_columns<
     A: Arithmetic,
     T: Real,
     const E: usize,
@@ -207,7 +207,7 @@ pub(super) fn eliminate<
     let columns = columns.split_at_mut(K.min(N)).0;
     // A one among zeros: reading from an earlier index yields a unit vector of a later row.
     let mut one = [[T::zero(); N]; 2];
-    set(&mut one[1], 0, T::one());
+    set_entry(&mut one[1], 0, T::one());
     let mut divisors = [T::zero(); N];
     for k in 0..columns.len() {
         let Some(unit) = one.as_flattened().get(N - k..) else { return };
@@ -245,7 +245,7 @@ mod tests {
     #[test]
     fn columns_are_completed() {
         const N: usize = 14;
-        fn completed<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
+        fn check_completed_inverse<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
             start: &SMatrix<f64, N, N>,
             factors: &[[f64; 3]; M],
             runs: &[Run],
@@ -268,11 +268,11 @@ mod tests {
                 expected.set_column(j, &(expected.column(j) + start.column(TRUNK[t]) * all[(t, j)]));
             }
         }
-        everywhere!(completed by N, (&start, &factors, &runs, &expected));
+        everywhere!(check_completed_inverse by N, (&start, &factors, &runs, &expected));
     }
 
     /// Returns the rows of a trunk in a mass matrix, by column.
-    fn borders<const N: usize, const K: usize, const L: usize>(
+    fn trunk_rows_by_column<const N: usize, const K: usize, const L: usize>(
         mass: &SMatrix<f64, N, N>,
         trunk: [usize; K],
     ) -> [[f64; L]; N] {
@@ -281,7 +281,7 @@ mod tests {
     }
 
     /// Returns a mass matrix of two limbs with a trunk.
-    fn branched<const N: usize>(trunk: [usize; 3], limbs: &[&[usize]]) -> SMatrix<f64, N, N> {
+    fn branched_mass_matrix<const N: usize>(trunk: [usize; 3], limbs: &[&[usize]]) -> SMatrix<f64, N, N> {
         let limb_of_index = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
         let a = numbers::<N, N>(6.0);
         SMatrix::from_fn(|i, j| match (limb_of_index(i), limb_of_index(j)) {
@@ -300,7 +300,7 @@ mod tests {
         const TRUNK: [usize; 3] = [9, 1, 7];
         // The second limb is not contiguous.
         const LIMBS: [&[usize]; 2] = [&[2, 3, 4, 5, 6], &[0, 8, 10, 11, 12, 13]];
-        fn inverted<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
+        fn check_branched_inverse<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
             mass: &SMatrix<f64, N, N>,
             right: &SMatrix<f64, N, M>,
         ) {
@@ -320,7 +320,7 @@ mod tests {
             invert::<A, f64, P, Inner, N, 3, 4, M>(
                 &mut found,
                 TRUNK,
-                &borders(mass, TRUNK),
+                &trunk_rows_by_column(mass, TRUNK),
                 &limbs,
                 &runs,
                 &mut solved,
@@ -330,13 +330,14 @@ mod tests {
             assert!((mass * solved - right).amax() < 1e-12);
         }
         type Inner = (rows_of!(4, true), rows_of!(4, false));
-        everywhere!(inverted by N, (&branched(TRUNK, &LIMBS), &numbers::<N, 2>(8.0)));
+        let mass = branched_mass_matrix(TRUNK, &LIMBS);
+        everywhere!(check_branched_inverse by N, (&mass, &numbers::<N, 2>(8.0)));
     }
 
     #[test]
     fn without_limbs_all_rows_are_swept() {
         const N: usize = 13;
-        fn inverted<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
+        fn check_scaled_inverse<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
             mass: &SMatrix<f64, N, N>,
             scale: &SMatrix<f64, N, M>,
         ) {
@@ -346,7 +347,7 @@ mod tests {
             invert::<A, f64, P, Inner, N, N, 16, 0>(
                 &mut found,
                 trunk,
-                &borders(&scaled, trunk),
+                &trunk_rows_by_column(&scaled, trunk),
                 &[],
                 &[],
                 &mut [],
@@ -359,13 +360,13 @@ mod tests {
         let mass = factor * factor.transpose() + SMatrix::identity();
         // Pivots whose magnitudes differ by orders of magnitude.
         let scale = SMatrix::<f64, N, 1>::from_fn(|k, _| 4.0_f64.powi(k as i32 - 6));
-        everywhere!(inverted by N, (&mass, &scale));
+        everywhere!(check_scaled_inverse by N, (&mass, &scale));
     }
 
     #[test]
     fn an_ill_conditioned_matrix_solves_its_equations() {
         const N: usize = 13;
-        fn solved<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
+        fn check_solved_columns<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
             mass: &SMatrix<f64, N, N>,
             right: &SMatrix<f64, N, M>,
         ) {
@@ -374,7 +375,7 @@ mod tests {
             invert::<A, f64, P, Inner, N, N, 16, M>(
                 &mut inverse,
                 trunk,
-                &borders(mass, trunk),
+                &trunk_rows_by_column(mass, trunk),
                 &[],
                 &[],
                 &mut solved,
@@ -387,6 +388,6 @@ mod tests {
         // Rank two, except for small numbers on the diagonal.
         let factor = numbers::<N, N>(9.0);
         let mass = factor * factor.transpose() + SMatrix::identity() * 1e-8;
-        everywhere!(solved by N, (&mass, &numbers::<N, 2>(10.0)));
+        everywhere!(check_solved_columns by N, (&mass, &numbers::<N, 2>(10.0)));
     }
 }

@@ -7,7 +7,7 @@ use crate::arithmetic::Arithmetic;
 use nalgebra::SMatrix;
 
 /// Returns the number of registers that store sums; the others store operands.
-const fn sums(wide: bool) -> usize {
+const fn sum_register_count(wide: bool) -> usize {
     if wide { 24 } else { 12 }
 }
 
@@ -28,7 +28,7 @@ pub fn multiply<
     columns: &'a mut [[T; N]],
     rows: &[usize],
 ) -> &'a mut [[T; N]] {
-    if C > 1 && C * (E + F) > sums(A::WIDE) {
+    if C > 1 && C * (E + F) > sum_register_count(A::WIDE) {
         return columns;
     }
     let (some, rest) = columns.as_chunks_mut::<C>();
@@ -156,7 +156,7 @@ pub fn add<
     factors: &'b [[T; V]],
     (first, end): Range,
 ) -> (&'a mut [[T; N]], &'b [[T; V]]) {
-    if C > 1 && C * (E + F) > sums(A::WIDE) {
+    if C > 1 && C * (E + F) > sum_register_count(A::WIDE) {
         return (columns, factors);
     }
     let (columns, columns_left) = columns.as_chunks_mut::<C>();

@@ -5,7 +5,7 @@ use super::*;
 use crate::arithmetic::Compiled;
 
 /// Compares minus the product of two matrices with nalgebra's.
-fn product<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
+fn check_negated_product<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
     a: &SMatrix<f64, N, N>,
     b: &SMatrix<f64, N, M>,
     groups: &[(Range, &[usize])],
@@ -22,7 +22,7 @@ fn the_product_is_nalgebras() {
     const N: usize = 19;
     let (a, b) = (numbers::<N, N>(0.0), numbers::<N, 10>(1.0));
     let rows: [usize; N] = core::array::from_fn(|k| k);
-    everywhere!(product by N, (&a, &b, &[((0, 3), &rows), ((3, 10), &rows)], &(a * b)));
+    everywhere!(check_negated_product by N, (&a, &b, &[((0, 3), &rows), ((3, 10), &rows)], &(a * b)));
 }
 
 #[test]
@@ -30,7 +30,7 @@ fn rows_are_taken_in_parts() {
     const N: usize = 29;
     let (a, b) = (numbers::<N, N>(0.0), numbers::<N, 7>(1.0));
     let rows: [usize; N] = core::array::from_fn(|k| k);
-    everywhere!(product by 12, (&a, &b, &[((0, 7), &rows)], &(a * b)));
+    everywhere!(check_negated_product by 12, (&a, &b, &[((0, 7), &rows)], &(a * b)));
     for n in 1..300 {
         for rows in [true, false].map(|wide| super::rows(n, wide)) {
             assert!(rows <= n && (rows == n || rows.is_multiple_of(4)), "{n}");
@@ -41,7 +41,7 @@ fn rows_are_taken_in_parts() {
 #[test]
 fn small_matrices_do_not_fill_a_register() {
     let (a, b) = (numbers::<3, 3>(0.0), numbers::<3, 7>(1.0));
-    everywhere!(product by 3, (&a, &b, &[((0, 7), &[0, 1, 2])], &(a * b)));
+    everywhere!(check_negated_product by 3, (&a, &b, &[((0, 7), &[0, 1, 2])], &(a * b)));
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn rows_that_are_not_named_are_skipped() {
     b.view_mut((2, 0), (2, 1)).fill(0.0);
     b.column_mut(1).fill(0.0);
     b.view_mut((0, 2), (6, 1)).fill(0.0);
-    everywhere!(product by 7, (&a, &given, &[((0, 1), &[0, 1, 4, 5, 6]), ((2, 3), &[6])], &(a * b)));
+    everywhere!(check_negated_product by 7, (&a, &given, &[((0, 1), &[0, 1, 4, 5, 6]), ((2, 3), &[6])], &(a * b)));
 }
 
 #[test]

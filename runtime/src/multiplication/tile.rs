@@ -97,7 +97,7 @@ impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Ti
 
     #[inline(always)]
     fn invert<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]) {
-        inverse::eliminate::<A, T, E, F, N, K>(columns);
+        inverse::eliminate_leading_columns::<A, T, E, F, N, K>(columns);
     }
 }
 

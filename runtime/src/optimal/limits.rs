@@ -81,7 +81,7 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
     }
 
     /// Returns true for inputs that may change against the gradient of the costs.
-    fn free(&self, change: &SVector<T, NU>, gradient: &SVector<T, NU>) -> [bool; NU] {
+    fn free_inputs(&self, change: &SVector<T, NU>, gradient: &SVector<T, NU>) -> [bool; NU] {
         let mut free = [true; NU];
         let ranges = self.lower.iter().zip(&self.upper);
         for ((free, x), ((lower, upper), slope)) in free.iter_mut().zip(change).zip(ranges.zip(gradient)) {
@@ -93,7 +93,7 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
 
     /// Returns the change within the limits that minimises `gradient · δu + ½ δu · hessian δu`, by a
     /// projected Newton method from a start, and the inputs that are not at a limit.
-    fn minimise(
+    fn minimise_within_limits(
         &self,
         (gradient, hessian): (&SVector<T, NU>, &SMatrix<T, NU, NU>),
         start: &SVector<T, NU>,
@@ -103,7 +103,7 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
         let quadratic_cost =
             |x: &SVector<T, NU>| gradient.dot(x) + x.dot(&product(hessian, x)) * constant(0.5);
         let mut slope = slope_at(&x);
-        let mut free = self.free(&x, &slope);
+        let mut free = self.free_inputs(&x, &slope);
         for _ in 0..ITERATIONS[0] * NU + ITERATIONS[1] {
             let reach = gradient.amax() + product(&hessian.abs(), &x.abs()).amax();
             let is_still =
@@ -111,7 +111,7 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
             if slope.iter().zip(&free).all(is_still) {
                 break;
             }
-            let mut step = masked(&slope, &free);
+            let mut step = masked_vector(&slope, &free);
             let (factor, pivots) =
                 factors(&masked_square(hessian, &free), T::zero()).map_err(|input| Indefinite { input })?;
             solve(&factor, &pivots, &mut step);
@@ -129,14 +129,14 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
             }
             x = next;
             slope = slope_at(&x);
-            free = self.free(&x, &slope);
+            free = self.free_inputs(&x, &slope);
         }
         Ok((x, free))
     }
 }
 
 /// Returns a vector with zeros where inputs are not free.
-fn masked<T: Real, const NU: usize>(vector: &SVector<T, NU>, free: &[bool; NU]) -> SVector<T, NU> {
+fn masked_vector<T: Real, const NU: usize>(vector: &SVector<T, NU>, free: &[bool; NU]) -> SVector<T, NU> {
     let mut masked = *vector;
     masked.iter_mut().zip(free).filter(|(_, free)| !**free).for_each(|(x, _)| *x = T::zero());
     masked
@@ -174,7 +174,7 @@ fn mask_columns<T: Real, const NV: usize, const NU: usize>(
 
 /// Computes the change of the inputs within limits that minimises the costs, and the resulting cost-to-go. An
 /// input at a limit stays there for states near the trajectory: its gains are zero.
-pub(super) fn minimised<T: Real, const NV: usize, const NU: usize>(
+pub(super) fn minimise_over_limited_inputs<T: Real, const NV: usize, const NU: usize>(
     before: &mut Quadratic<T, NV, NU>,
     regularisation: T,
     limits: &InputLimits<T, NU>,
@@ -187,21 +187,21 @@ pub(super) fn minimised<T: Real, const NV: usize, const NU: usize>(
     }
     // All costs must be convex, at a limit as well: whether an input is at one changes between iterations.
     factors(&hessian, T::zero()).map_err(|input| Indefinite { input })?;
-    let (change, free) = limits.minimise((&before.u, &hessian), &policy.change)?;
+    let (change, free) = limits.minimise_within_limits((&before.u, &hessian), &policy.change)?;
     let expected = [before.u.dot(&change), change.dot(&product(&before.uu, &change)) * constant(0.5)];
     // Inputs at their limits change the costs like a known disturbance.
-    let fixed = change - masked(&change, &free);
+    let fixed = change - masked_vector(&change, &free);
     let mut disturbance = zeros();
     add_product(&mut disturbance, &before.uu, &fixed);
     let disturbed = before.u + disturbance;
-    before.u = masked(&disturbed, &free);
+    before.u = masked_vector(&disturbed, &free);
     let Quadratic { q, v, qu, vu, uu, .. } = before;
     add_product(q, qu, &fixed);
     add_product(v, vu, &fixed);
     mask_columns(qu, &free);
     mask_columns(vu, &free);
     *uu = masked_square(uu, &free);
-    super::minimised(before, regularisation, policy, to_go)?;
+    super::minimise_over_inputs(before, regularisation, policy, to_go)?;
     (policy.change, policy.expected) = (change, expected);
     Ok(())
 }

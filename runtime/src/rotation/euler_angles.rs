@@ -1,7 +1,7 @@
 //! Conversions between Euler angles and rotations.
 
 use super::sequence::EulerSequence;
-use super::standard::{Standard, parallel};
+use super::standard::{Standard, parallel_axes_threshold};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::{ArrayStorage, Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
@@ -17,7 +17,7 @@ pub struct Angles<T> {
 }
 
 impl EulerSequence {
-    pub(super) fn standard(self) -> Standard {
+    pub(super) fn standard_sequence(self) -> Standard {
         Standard::new(self)
     }
 
@@ -26,8 +26,8 @@ impl EulerSequence {
     /// body-abc: `R_a(t₁) R_b(t₂) R_c(t₃)`; space-abc: `R_c(t₃) R_b(t₂) R_a(t₁)`. Columns are the body axes
     /// in space axes. Kane, Likins and Levinson, appendix I. Never singular.
     pub fn rotation<T: Real>(self, angles: [T; 3]) -> Rotation3<T> {
-        let standard = self.standard();
-        let [(sa, ca), (sb, cb), (sc, cc)] = standard.standardised(angles).map(|t| t.sin_cos());
+        let standard = self.standard_sequence();
+        let [(sa, ca), (sb, cb), (sc, cc)] = standard.to_standard_sequence(angles).map(|t| t.sin_cos());
         // Stored by columns.
         let own = if standard.symmetric {
             [
@@ -51,9 +51,9 @@ impl EulerSequence {
     ///
     /// Source: Shuster. Never singular.
     pub fn quaternion<T: Real>(self, angles: [T; 3]) -> UnitQuaternion<T> {
-        let standard = self.standard();
+        let standard = self.standard_sequence();
         let half = constant::<T>(0.5);
-        let [a, b, c] = standard.standardised(angles).map(|t| t * half);
+        let [a, b, c] = standard.to_standard_sequence(angles).map(|t| t * half);
         let (sb, cb) = b.sin_cos();
         let (own, w) = if standard.symmetric {
             let ((s_sum, c_sum), (s_difference, c_difference)) = ((a + c).sin_cos(), (a - c).sin_cos());
@@ -79,7 +79,7 @@ impl EulerSequence {
     ///   errors of the first and the third angle are ε / sin(angle between their axes), but they cancel: the
     ///   third angle is computed from the rotation with the first one removed.
     pub fn angles<T: Real>(self, rotation: &Rotation3<T>) -> Angles<T> {
-        let standard = self.standard();
+        let standard = self.standard_sequence();
         let axes = standard.own_axes::<T>();
         let own = axes.transpose() * rotation.matrix() * axes;
         let ArrayStorage([[r00, r10, r20], [_, r11, r21], [r02, r12, r22]]) = own.data;
@@ -87,7 +87,7 @@ impl EulerSequence {
         let (y, x) = if standard.symmetric { (r10, -r20) } else { (-r12, r22) };
         let distance = (y * y + x * x).sqrt();
         let middle = if standard.symmetric { distance.atan2(r00) } else { r02.atan2(distance) };
-        let singular = distance <= parallel();
+        let singular = distance <= parallel_axes_threshold();
         let [a, c] = if !singular {
             let first = y.atan2(x);
             let (s, c) = first.sin_cos();
@@ -100,7 +100,7 @@ impl EulerSequence {
         } else {
             [r21.atan2(r11), T::zero()]
         };
-        Angles { angles: standard.restored([a, middle, c]), singular }
+        Angles { angles: standard.reorder_from_standard([a, middle, c]), singular }
     }
 
     /// Returns the other Euler angles of the same rotation, rad: `[t₁ ± π, ±π − t₂, t₃ ± π]` (asymmetric) or

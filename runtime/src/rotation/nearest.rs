@@ -28,7 +28,7 @@ pub fn nearest_rotation<T: Real>(matrix: &Matrix3<T>) -> Option<Rotation3<T>> {
         [zx + xz, yz + zy, zz - xx - yy, yx - xy],
         [zy - yz, xz - zx, yx - xy, xx + yy + zz],
     ];
-    let ([x, y, z, w], gap) = dominant(form);
+    let ([x, y, z, w], gap) = dominant_eigenvector(form);
     let unit = UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z));
     // A gap of NaN fails the test.
     if gap > constant::<T>(32.0) * epsilon::<T>() { Some(unit.to_rotation_matrix()) } else { None }
@@ -39,16 +39,16 @@ const SWEEPS: usize = 16;
 
 /// Returns the eigenvector of the largest eigenvalue of a symmetric matrix, and the distance to the next
 /// eigenvalue.
-fn dominant<T: Real>(mut form: [[T; 4]; 4]) -> ([T; 4], T) {
+fn dominant_eigenvector<T: Real>(mut form: [[T; 4]; 4]) -> ([T; 4], T) {
     let (o, i) = (T::zero(), T::one());
     let mut vectors = [[i, o, o, o], [o, i, o, o], [o, o, i, o], [o, o, o, i]];
     for _ in 0..SWEEPS {
-        annihilate::<T, 0, 1>(&mut form, &mut vectors);
-        annihilate::<T, 2, 3>(&mut form, &mut vectors);
-        annihilate::<T, 0, 2>(&mut form, &mut vectors);
-        annihilate::<T, 1, 3>(&mut form, &mut vectors);
-        annihilate::<T, 0, 3>(&mut form, &mut vectors);
-        annihilate::<T, 1, 2>(&mut form, &mut vectors);
+        annihilate_off_diagonal::<T, 0, 1>(&mut form, &mut vectors);
+        annihilate_off_diagonal::<T, 2, 3>(&mut form, &mut vectors);
+        annihilate_off_diagonal::<T, 0, 2>(&mut form, &mut vectors);
+        annihilate_off_diagonal::<T, 1, 3>(&mut form, &mut vectors);
+        annihilate_off_diagonal::<T, 0, 3>(&mut form, &mut vectors);
+        annihilate_off_diagonal::<T, 1, 2>(&mut form, &mut vectors);
     }
     let [[a, ..], [_, b, ..], [_, _, c, _], [.., d]] = form;
     let [mut best, others @ ..] = [a, b, c, d];
@@ -69,7 +69,10 @@ fn dominant<T: Real>(mut form: [[T; 4]; 4]) -> ([T; 4], T) {
 /// are the rows of `vectors`.
 ///
 /// Golub and Van Loan, *Matrix Computations* (2013), §8.5.
-fn annihilate<T: Real, const P: usize, const Q: usize>(form: &mut [[T; 4]; 4], vectors: &mut [[T; 4]; 4]) {
+fn annihilate_off_diagonal<T: Real, const P: usize, const Q: usize>(
+    form: &mut [[T; 4]; 4],
+    vectors: &mut [[T; 4]; 4],
+) {
     let entry = form[P][Q];
     // Negligible in a matrix with eigenvalues of order one.
     if entry.abs() <= epsilon::<T>() * epsilon() {
@@ -85,11 +88,11 @@ fn annihilate<T: Real, const P: usize, const Q: usize>(form: &mut [[T; 4]; 4], v
     }
     for rows in [form, vectors] {
         let (p, q) = (rows[P], rows[Q]);
-        (rows[P], rows[Q]) = (combined(c, p, -s, q), combined(s, p, c, q));
+        (rows[P], rows[Q]) = (linear_combination(c, p, -s, q), linear_combination(s, p, c, q));
     }
 }
 
 /// Returns the linear combination `a p + b q` of two quaternions.
-fn combined<T: Real>(a: T, [p0, p1, p2, p3]: [T; 4], b: T, [q0, q1, q2, q3]: [T; 4]) -> [T; 4] {
+fn linear_combination<T: Real>(a: T, [p0, p1, p2, p3]: [T; 4], b: T, [q0, q1, q2, q3]: [T; 4]) -> [T; 4] {
     [a * p0 + b * q0, a * p1 + b * q1, a * p2 + b * q2, a * p3 + b * q3]
 }

@@ -2,9 +2,9 @@
 
 use super::euler_parameters::quaternion_of_rotation;
 use super::singular::Singular;
-use super::standard::parallel;
+use super::standard::parallel_axes_threshold;
 use crate::Real;
-use crate::lie::{ball_tangent_rate, exponential, left_jacobian, logarithm};
+use crate::lie::{ball_tangent_rate, left_jacobian, quaternion_exponential, quaternion_logarithm};
 use crate::private::constant;
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion, Vector3};
 
@@ -27,7 +27,7 @@ impl<T: Real> RotationVector<T> {
 
     /// Returns the Euler parameters `(n sin(θ/2), cos(θ/2))`, with `w < 0` for `θ` between π and 3π.
     pub fn quaternion(&self) -> UnitQuaternion<T> {
-        let [x, y, z, w] = exponential(self.0.into());
+        let [x, y, z, w] = quaternion_exponential(self.0.into());
         UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z))
     }
 
@@ -44,7 +44,7 @@ impl<T: Real> RotationVector<T> {
     /// vector, except for an angle of π.
     pub fn from_quaternion(q: &UnitQuaternion<T>) -> Self {
         let u = q.imag();
-        Self(logarithm([u.x, u.y, u.z, q.w]).into())
+        Self(quaternion_logarithm([u.x, u.y, u.z, q.w]).into())
     }
 
     /// Returns the magnitude `|φ|`, rad: the rotation angle.
@@ -81,7 +81,7 @@ impl<T: Real> RotationVector<T> {
     /// [`Singular::FullTurn`] if `|φ|` is a nonzero multiple of 2π, to rounding.
     pub fn rate_from_body(&self, omega: &Vector3<T>) -> Result<Vector3<T>, Singular> {
         let half = self.angle() * constant(0.5);
-        if half > T::one() && half.sin().abs() <= parallel::<T>() * half {
+        if half > T::one() && half.sin().abs() <= parallel_axes_threshold::<T>() * half {
             return Err(Singular::FullTurn);
         }
         Ok(ball_tangent_rate(self.0.into(), (*omega).into()).into())

@@ -27,7 +27,7 @@ impl Axis {
         })
     }
 
-    const fn is(self, other: Self) -> bool {
+    const fn is_equal_to(self, other: Self) -> bool {
         self as u8 == other as u8
     }
 }
@@ -103,7 +103,11 @@ impl EulerSequence {
     /// because such angles do not represent every rotation.
     pub const fn new(fixed_in: FixedIn, axes: [Axis; 3]) -> Option<Self> {
         let [first, second, third] = axes;
-        if first.is(second) || second.is(third) { None } else { Some(Self { fixed_in, axes }) }
+        if first.is_equal_to(second) || second.is_equal_to(third) {
+            None
+        } else {
+            Some(Self { fixed_in, axes })
+        }
     }
 
     /// Returns the frame in which the rotation axes are fixed.
@@ -120,7 +124,7 @@ impl EulerSequence {
     /// and π, others at ±π/2.
     pub const fn is_symmetric(self) -> bool {
         let [first, _, third] = self.axes;
-        first.is(third)
+        first.is_equal_to(third)
     }
 }
 

@@ -29,24 +29,24 @@ impl Standard {
     }
 
     /// Whether the cross product of the first and the second axis is a positive coordinate axis.
-    fn cyclic(self) -> bool {
+    fn is_cyclic(self) -> bool {
         matches!((self.first, self.second), (Axis::X, Axis::Y) | (Axis::Y, Axis::Z) | (Axis::Z, Axis::X))
     }
 
     /// Negates the third value if the third axis is opposite to the third own axis.
-    fn signed<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
-        if self.symmetric || self.cyclic() { [a, b, c] } else { [a, b, -c] }
+    fn with_sign_of_third_axis<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
+        if self.symmetric || self.is_cyclic() { [a, b, c] } else { [a, b, -c] }
     }
 
     /// Converts Euler angles or their rates from the given sequence to the standard sequence.
-    pub(super) fn standardised<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
-        self.signed(if self.reversed { [c, b, a] } else { [a, b, c] })
+    pub(super) fn to_standard_sequence<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
+        self.with_sign_of_third_axis(if self.reversed { [c, b, a] } else { [a, b, c] })
     }
 
     /// Converts Euler angles, their rates, or the columns that multiply rates, from the standard sequence to
     /// the given sequence.
-    pub(super) fn restored<V: Neg<Output = V>>(self, standard: [V; 3]) -> [V; 3] {
-        let [a, b, c] = self.signed(standard);
+    pub(super) fn reorder_from_standard<V: Neg<Output = V>>(self, standard: [V; 3]) -> [V; 3] {
+        let [a, b, c] = self.with_sign_of_third_axis(standard);
         if self.reversed { [c, b, a] } else { [a, b, c] }
     }
 
@@ -63,6 +63,6 @@ impl Standard {
 
 /// Returns the sine of the angle between first and third axis below which the axes count as parallel (gimbal
 /// lock): the rounding error of a zero in a rotation matrix.
-pub(super) fn parallel<T: Real>() -> T {
+pub(super) fn parallel_axes_threshold<T: Real>() -> T {
     constant::<T>(4.0) * epsilon::<T>()
 }

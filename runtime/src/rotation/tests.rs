@@ -14,37 +14,37 @@ struct Random(u64);
 
 impl Random {
     /// Returns a pseudorandom number uniform in [−1, 1).
-    fn number(&mut self) -> f64 {
+    fn random_number(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    fn numbers<const N: usize>(&mut self) -> [f64; N] {
-        core::array::from_fn(|_| self.number())
+    fn random_numbers<const N: usize>(&mut self) -> [f64; N] {
+        core::array::from_fn(|_| self.random_number())
     }
 
-    fn vector(&mut self) -> Vector3<f64> {
-        self.numbers().into()
+    fn random_vector(&mut self) -> Vector3<f64> {
+        self.random_numbers().into()
     }
 
     /// Returns a quaternion uniform over all rotations, with `w` of either sign.
-    fn quaternion(&mut self) -> UnitQuaternion<f64> {
+    fn random_quaternion(&mut self) -> UnitQuaternion<f64> {
         loop {
-            let q = Quaternion::from(self.numbers::<4>());
+            let q = Quaternion::from(self.random_numbers::<4>());
             if (0.01..1.0).contains(&q.norm()) {
                 return UnitQuaternion::new_normalize(q);
             }
         }
     }
 
-    fn rotation(&mut self) -> Rotation3<f64> {
-        self.quaternion().to_rotation_matrix()
+    fn random_rotation(&mut self) -> Rotation3<f64> {
+        self.random_quaternion().to_rotation_matrix()
     }
 
-    fn axis(&mut self) -> Vector3<f64> {
-        self.quaternion() * Vector3::x()
+    fn random_axis(&mut self) -> Vector3<f64> {
+        self.random_quaternion() * Vector3::x()
     }
 }
 
@@ -60,13 +60,15 @@ fn angle_difference(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 /// Returns the largest entry of `Rᵀ R − 1`.
-fn skewed(rotation: &Rotation3<f64>) -> f64 {
+fn orthogonality_error(rotation: &Rotation3<f64>) -> f64 {
     difference(&(rotation.matrix().transpose() * rotation.matrix()), &Matrix3::identity())
 }
 
 /// Returns the derivative of `f` at zero by central differences of order eight. The error is about 1e-13 if
 /// `f` and its derivatives are of order one.
-fn slope<const N: usize, const M: usize>(f: impl Fn(f64) -> SMatrix<f64, N, M>) -> SMatrix<f64, N, M> {
+fn derivative_at_zero<const N: usize, const M: usize>(
+    f: impl Fn(f64) -> SMatrix<f64, N, M>,
+) -> SMatrix<f64, N, M> {
     let h = 0.01;
     [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0]
         .iter()
@@ -82,6 +84,6 @@ fn assert_below(error: f64, bound: f64, place: impl core::fmt::Debug) {
 }
 
 /// Returns a constant of type `T`, for tests of `f32` and of generic code.
-fn narrow<T: Real>(x: f64) -> T {
+fn convert_number<T: Real>(x: f64) -> T {
     crate::private::constant(x)
 }

@@ -25,7 +25,7 @@ pub(super) struct Clock {
 
 /// Returns the quotient `a / b` as numerator and denominator, if it equals a ratio of small integers up to
 /// rounding; otherwise `None`.
-fn ratio(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
+fn integer_ratio(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
     let small_ratio = |x: f64| {
         (1..=MOST_PARTS).find_map(|parts| {
             let scaled = x * f64::from(parts);
@@ -45,35 +45,39 @@ impl Clock {
         let rounding = 8.0 * to_f64(epsilon::<T>());
         let [end, every, period] = [duration, every, period].map(|time| time.map(to_f64));
         let whole_step_count = |interval: Option<f64>| {
-            let [count, parts] = ratio(end?, interval?, rounding)?;
+            let [count, parts] = integer_ratio(end?, interval?, rounding)?;
             (parts == 1).then_some(count)
         };
         let last = [whole_step_count(every), whole_step_count(period)];
-        let ratio = every.zip(period).and_then(|(every, period)| ratio(period, every, rounding));
+        let ratio = every.zip(period).and_then(|(every, period)| integer_ratio(period, every, rounding));
         Self { end, every, period, last, ratio }
     }
 
     /// Returns the duration of the run, s; `None` if it is unlimited.
-    pub(super) fn end(&self) -> Option<f64> {
+    pub(super) fn end_time(&self) -> Option<f64> {
         self.end
     }
 
     /// Returns the instant of a sample, limited to the end; `None` if every step is a sample.
-    pub(super) fn sample(&self, count: u64) -> Option<f64> {
+    pub(super) fn sample_instant(&self, count: u64) -> Option<f64> {
         // Counts are exact up to 2⁵³.
         let due = self.every? * count as f64;
         Some(self.end.filter(|end| due > *end || self.last[0] == Some(count)).unwrap_or(due))
     }
 
     /// Returns a control instant. If it coincides with a sample or the end, both are exactly equal.
-    pub(super) fn control(&self, count: u64) -> Option<f64> {
+    pub(super) fn control_instant(&self, count: u64) -> Option<f64> {
         let plain = self.period? * count as f64;
         if self.last[1] == Some(count) {
             return self.end;
         }
         let on_sample = self.ratio.and_then(|[samples, periods]| {
             let parts = count.checked_mul(samples)?;
-            if parts.checked_rem(periods)? == 0 { self.sample(parts.checked_div(periods)?) } else { None }
+            if parts.checked_rem(periods)? == 0 {
+                self.sample_instant(parts.checked_div(periods)?)
+            } else {
+                None
+            }
         });
         Some(on_sample.unwrap_or(plain))
     }
@@ -95,11 +99,11 @@ mod tests {
         let mut last = -1.0;
         let mut count = 0;
         loop {
-            let t = clock.sample(count).expect("there are samples");
+            let t = clock.sample_instant(count).expect("there are samples");
             assert!(t > last, "{count}: {t}");
-            assert_eq!(clock.control(count), Some(t));
+            assert_eq!(clock.control_instant(count), Some(t));
             (last, count) = (t, count + 1);
-            if clock.end() == Some(t) {
+            if clock.end_time() == Some(t) {
                 break;
             }
         }
@@ -110,13 +114,16 @@ mod tests {
     fn instants_that_coincide_are_the_same() {
         let clock = Clock::new(Some(0.9), Some(0.1), Some(0.3));
         assert_eq!(
-            [clock.control(1), clock.control(2), clock.control(3)],
-            [clock.sample(3), clock.sample(6), Some(0.9)]
+            [clock.control_instant(1), clock.control_instant(2), clock.control_instant(3)],
+            [clock.sample_instant(3), clock.sample_instant(6), Some(0.9)]
         );
         let clock = Clock::new(Some(10.0), Some(0.05), Some(0.02));
-        assert_eq!((clock.control(5), clock.control(1)), (clock.sample(2), Some(0.02)));
+        assert_eq!(
+            (clock.control_instant(5), clock.control_instant(1)),
+            (clock.sample_instant(2), Some(0.02))
+        );
         // Periods without a rational ratio are not adjusted.
         let clock = Clock::new(None, Some(1.0), Some(core::f64::consts::SQRT_2));
-        assert_eq!(clock.control(3), Some(3.0 * core::f64::consts::SQRT_2));
+        assert_eq!(clock.control_instant(3), Some(3.0 * core::f64::consts::SQRT_2));
     }
 }

@@ -18,7 +18,7 @@ pub enum Crossing {
 }
 
 impl Crossing {
-    fn counts(self, before: Ordering, after: Ordering) -> bool {
+    fn matches_crossing(self, before: Ordering, after: Ordering) -> bool {
         match before {
             Ordering::Less => after != Ordering::Less && self != Self::Falling,
             Ordering::Greater => after != Ordering::Greater && self != Self::Rising,
@@ -157,7 +157,7 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
 }
 
 /// Returns the distance on a step below which events coincide up to rounding.
-pub(super) fn coincidence<T: Real>() -> T {
+pub(super) fn coincidence_threshold<T: Real>() -> T {
     epsilon::<T>() * constant(8.0)
 }
 
@@ -223,7 +223,7 @@ impl<T, G, A> Event<T, G, A> {
     }
 
     /// Returns the value of the event function at a state.
-    fn value<const NQ: usize, const NV: usize>(&mut self, state: &State<T, NQ, NV>) -> T
+    fn value_of_function<const NQ: usize, const NV: usize>(&mut self, state: &State<T, NQ, NV>) -> T
     where
         T: Real,
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
@@ -236,7 +236,7 @@ impl<T, G, A> Event<T, G, A> {
 const STOPPED: f64 = 1e-6;
 
 /// Returns the sign of a number; `Equal` for zero and NaN.
-fn side<T: Real>(value: T) -> Ordering {
+fn sign_of_value<T: Real>(value: T) -> Ordering {
     value.partial_cmp(&T::zero()).unwrap_or(Ordering::Equal)
 }
 
@@ -252,11 +252,11 @@ where
 
     fn begin(&mut self, state: &State<T, NQ, NV>) -> Result<(), Undefined> {
         self.0.begin(state)?;
-        let value = self.1.value(state);
+        let value = self.1.value_of_function(state);
         if value.partial_cmp(&value).is_none() {
             return Err(Undefined::Value(E::COUNT));
         }
-        self.1.side = side(value);
+        self.1.side = sign_of_value(value);
         Ok(())
     }
 
@@ -268,16 +268,17 @@ where
     ) -> Result<Option<Hit<T>>, Undefined> {
         let earlier = self.0.locate(path, from, to)?;
         // Slightly farther, so that coincident events are found in any order.
-        let to = earlier.map_or(to, |hit| (hit.theta + coincidence()).min(to));
+        let to = earlier.map_or(to, |hit| (hit.theta + coincidence_threshold()).min(to));
         let event = &mut self.1;
         event.found = None;
-        let end = event.value(&path(to));
+        let end = event.value_of_function(&path(to));
         if end.partial_cmp(&end).is_none() {
             return Err(Undefined::Value(E::COUNT));
         }
-        event.ahead = side(end);
+        event.ahead = sign_of_value(end);
         if event.side == Ordering::Equal {
-            (from, event.side) = leaving(&mut |theta| event.value(&path(theta)), [from, to]);
+            (from, event.side) =
+                side_after_zero(&mut |theta| event.value_of_function(&path(theta)), [from, to]);
             match event.side {
                 // Still on the surface.
                 Ordering::Equal => event.ahead = Ordering::Equal,
@@ -285,11 +286,12 @@ where
                 _ => event.closed = Ordering::Equal,
             }
         }
-        if !event.crossing.counts(event.side, event.ahead) {
+        if !event.crossing.matches_crossing(event.side, event.ahead) {
             return Ok(earlier);
         }
         let sign = if event.side == Ordering::Less { T::one() } else { -T::one() };
-        let theta = first_sign_change(|theta| event.value(&path(theta)) * sign, [from, to], end * sign);
+        let theta =
+            first_sign_change(|theta| event.value_of_function(&path(theta)) * sign, [from, to], end * sign);
         event.found = Some(theta);
         if earlier.is_some_and(|hit| hit.theta <= theta) {
             return Ok(earlier);
@@ -319,12 +321,12 @@ where
             return self.0.act(index, state, later);
         }
         let event = &mut self.1;
-        let before = event.value(&later(state)) - event.value(state);
+        let before = event.value_of_function(&later(state)) - event.value_of_function(state);
         let flow = event.action.act(state);
         let beyond = event.side.reverse();
         event.side = beyond;
         if flow == Flow::Jump {
-            let after = event.value(&later(state)) - event.value(state);
+            let after = event.value_of_function(&later(state)) - event.value_of_function(state);
             // Motion in the same direction passes the surface; any other motion has been stopped or reversed
             // by it.
             let passes = after * before > T::zero() && after.abs() > before.abs() * constant(STOPPED);
@@ -343,13 +345,13 @@ where
 
 /// Returns a position after `a`, towards `b`, at which `f` differs from zero by more than rounding, and the
 /// sign of `f` there. `f` is zero at `a` up to rounding, and may be zero again before `b`.
-fn leaving<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T; 2]) -> (T, Ordering) {
+fn side_after_zero<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T; 2]) -> (T, Ordering) {
     let rounding = f(a).abs() * constant(4.0);
     for part in [1.5e-8, 1e-6, 6e-5, 4e-3, 0.1, 1.0] {
         let x = a + (b - a) * constant(part);
         let value = f(x);
         if value.abs() > rounding {
-            return (x, side(value));
+            return (x, sign_of_value(value));
         }
     }
     (a, Ordering::Equal)
@@ -397,7 +399,7 @@ mod tests {
     use super::*;
 
     /// Returns the sign change of `f` between 0 and 1, and the number of evaluations.
-    fn found(f: impl Fn(f64) -> f64) -> (f64, usize) {
+    fn find_sign_change(f: impl Fn(f64) -> f64) -> (f64, usize) {
         let mut count = 0;
         let count_evaluation = |x| {
             count += 1;
@@ -409,21 +411,33 @@ mod tests {
 
     #[test]
     fn sign_changes_are_found_to_rounding() {
-        let (x, count) = found(|x| x * x - 0.5);
+        let (x, count) = find_sign_change(|x| x * x - 0.5);
         assert!((x - core::f64::consts::FRAC_1_SQRT_2).abs() < 5e-16 && count < 16, "{count}");
-        let (x, count) = found(|x| if x < 0.3 { -1e-3 } else { 1e3 });
+        let (x, count) = find_sign_change(|x| if x < 0.3 { -1e-3 } else { 1e3 });
         assert!((x - 0.3).abs() < 5e-16 && count < 60, "{count}");
-        let (x, count) = found(|x| (x - 0.7).powi(9));
+        let (x, count) = find_sign_change(|x| (x - 0.7).powi(9));
         assert!((x - 0.7).abs() < 5e-16 && count < 60, "{count}");
-        assert_eq!(found(|x| x).0, 0.0);
+        assert_eq!(find_sign_change(|x| x).0, 0.0);
     }
 
     #[test]
     fn crossings_count_by_direction() {
         use Ordering::{Equal, Greater, Less};
-        assert!(Crossing::Rising.counts(Less, Greater) && Crossing::Rising.counts(Less, Equal));
-        assert!(!Crossing::Rising.counts(Greater, Less) && !Crossing::Falling.counts(Less, Greater));
-        assert!(Crossing::Either.counts(Greater, Less) && Crossing::Either.counts(Less, Greater));
-        assert!(!Crossing::Either.counts(Equal, Greater) && !Crossing::Either.counts(Less, Less));
+        assert!(
+            Crossing::Rising.matches_crossing(Less, Greater)
+                && Crossing::Rising.matches_crossing(Less, Equal)
+        );
+        assert!(
+            !Crossing::Rising.matches_crossing(Greater, Less)
+                && !Crossing::Falling.matches_crossing(Less, Greater)
+        );
+        assert!(
+            Crossing::Either.matches_crossing(Greater, Less)
+                && Crossing::Either.matches_crossing(Less, Greater)
+        );
+        assert!(
+            !Crossing::Either.matches_crossing(Equal, Greater)
+                && !Crossing::Either.matches_crossing(Less, Less)
+        );
     }
 }

@@ -1,9 +1,11 @@
 //! Execution of a run: steps of the integrator, samples, control instants and events in the order of time.
 
 use super::clock::{Clock, time_after};
-use super::event::coincidence;
-use super::{Events, Flow, Hit, Overlaps, Sample, Samples, Simulation, Undefined, not_negative, positive};
-use crate::integrate::{Error, Inputs, Jump, Method, State, Step, settled};
+use super::event::coincidence_threshold;
+use super::{
+    Events, Flow, Hit, Overlaps, Sample, Samples, Simulation, Undefined, check_positive, not_negative,
+};
+use crate::integrate::{Error, Inputs, Jump, Method, State, Step, project_end_of_step};
 use crate::private::{constant, epsilon, to_f64};
 use crate::{Mechanism, Real};
 use nalgebra::SVector;
@@ -16,7 +18,7 @@ const SOON: f64 = 1e-6;
 
 /// Returns whether two numbers differ by more than printing with six digits explains. NaN differs from every
 /// number.
-fn differs<T: Real>(a: T, b: T) -> bool {
+fn has_significant_difference<T: Real>(a: T, b: T) -> bool {
     let tolerance = constant::<T>(1e-6).max(epsilon::<T>().sqrt());
     let near = (a - b).abs() <= tolerance * (T::one() + a.abs());
     !near
@@ -31,7 +33,8 @@ pub(super) fn check_quaternions<M, T: Real, const NQ: usize, const NV: usize, co
 where
     M: Mechanism<NQ, NV, NU, Scalar = T>,
 {
-    let differs_from_unit = |i: &usize| unit.get(*i).zip(q.get(*i)).is_some_and(|(a, b)| differs(*a, *b));
+    let differs_from_unit =
+        |i: &usize| unit.get(*i).zip(q.get(*i)).is_some_and(|(a, b)| has_significant_difference(*a, *b));
     // From the end: NaN in a quaternion may spread to the position before it.
     match (0..NQ).rev().find(differs_from_unit).and_then(|i| M::CONFIGURATION.get(i)) {
         Some(coordinate) => Err(Error::Quaternion { coordinate }),
@@ -40,13 +43,14 @@ where
 }
 
 /// Returns the name and the change of the entry that differs most between two vectors, if any difference is
-/// significant (see [`differs`]).
-fn farthest<T: Real, const N: usize>(
+/// significant (see [`has_significant_difference`]).
+fn farthest_entry<T: Real, const N: usize>(
     to: &SVector<T, N>,
     from: &SVector<T, N>,
     names: [&'static str; N],
 ) -> Option<(&'static str, f64)> {
-    let moves = to.iter().zip(from).zip(names).filter(|((to, from), _)| differs(**to, **from));
+    let moves =
+        to.iter().zip(from).zip(names).filter(|((to, from), _)| has_significant_difference(**to, **from));
     let moves = moves.map(|((to, from), name)| (name, to_f64(*to - *from)));
     moves.reduce(|most, other| if other.1.abs() > most.1.abs() { other } else { most })
 }
@@ -103,7 +107,7 @@ pub(super) struct Progress<T, Memory, const NQ: usize, const NV: usize> {
 }
 
 /// Returns the error for a failed search for events.
-fn failure(reason: Undefined, t: f64) -> Error {
+fn event_search_error(reason: Undefined, t: f64) -> Error {
     match reason {
         Undefined::Value(event) => Error::Event { t, event },
         Undefined::Through(event) => Error::Impacts { t, event },
@@ -126,15 +130,15 @@ where
 {
     /// Returns the progress with which a simulation continues: that of an interrupted run, otherwise the
     /// initial progress, after checks of all settings.
-    pub(super) fn begin(&mut self) -> Result<Progress<T, Memory<T, S, NV>, NQ, NV>, Error> {
+    pub(super) fn begin_run(&mut self) -> Result<Progress<T, Memory<T, S, NV>, NQ, NV>, Error> {
         if let Some(run) = self.progress.take() {
             return Ok(run);
         }
         self.method.check()?;
         self.duration.map_or(Ok(()), |duration| not_negative("the duration", duration))?;
         self.check_samples()?;
-        self.system.inputs.period().map_or(Ok(()), |period| positive("the control period", period))?;
-        let start = self.start.finite()?;
+        self.system.inputs.period().map_or(Ok(()), |period| check_positive("the control period", period))?;
+        let start = self.start.check_finite()?;
         // A zero displacement normalises quaternions.
         let unit = self.system.mechanism.integrate(&start.q, &SVector::zeros());
         // If declared generalized speeds determine no rates, the displacement is not finite.
@@ -142,17 +146,17 @@ where
             return Err(Error::NotFinite { t: to_f64(start.t) });
         }
         check_quaternions::<M, T, NQ, NV, NU>(&start.q, &unit)?;
-        let start = self.parted(start)?;
+        let start = self.separate_surfaces(start)?;
         let node = self.on_constraints(start)?;
         let t = to_f64(node.t);
-        if let Some((entry, by)) = farthest(&node.q, &start.q, M::CONFIGURATION)
-            .or_else(|| farthest(&node.v, &start.v, M::VELOCITIES))
+        if let Some((entry, by)) = farthest_entry(&node.q, &start.q, M::CONFIGURATION)
+            .or_else(|| farthest_entry(&node.v, &start.v, M::VELOCITIES))
         {
             return Err(Error::OffConstraints { t, entry, by });
         }
-        self.events.begin(&node).map_err(|reason| failure(reason, t))?;
+        self.events.begin(&node).map_err(|reason| event_search_error(reason, t))?;
         Ok(Progress {
-            clock: self.clock(),
+            clock: self.clock_of_run(),
             node,
             elapsed: 0.0,
             ahead: (0.0, node.t),
@@ -171,7 +175,7 @@ where
     }
 
     /// Returns the initial state with separated contact surfaces, unless overlaps are permitted.
-    fn parted(&self, start: State<T, NQ, NV>) -> Result<State<T, NQ, NV>, Error> {
+    fn separate_surfaces(&self, start: State<T, NQ, NV>) -> Result<State<T, NQ, NV>, Error> {
         if !M::CONTACTING || self.overlaps == Overlaps::Keep {
             return Ok(start);
         }
@@ -193,7 +197,7 @@ where
     ) -> Due<T, NQ, NV, NU> {
         loop {
             let sample = match (run.step, run.firing.is_some()) {
-                (Some(step), true) => self.fire(run, &step)?,
+                (Some(step), true) => self.fire_next_event(run, &step)?,
                 (Some(step), false) => self.advance_within(run, &step)?,
                 _ if self.at_end(run) && run.shown => return Ok(None),
                 _ => self.at_node(run)?,
@@ -205,25 +209,25 @@ where
     }
 
     fn at_end(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> bool {
-        run.stopped || run.clock.end().is_some_and(|end| run.elapsed >= end)
+        run.stopped || run.clock.end_time().is_some_and(|end| run.elapsed >= end)
     }
 
     fn check_samples(&self) -> Result<(), Error> {
         match self.samples {
             Samples::Steps => Ok(()),
-            Samples::Every(interval) => positive("the sampling interval", interval),
+            Samples::Every(interval) => check_positive("the sampling interval", interval),
             Samples::At(times) => {
                 let Some(first) = times.first() else {
                     return self.duration.map_or(Err(Error::Endless), |_| Ok(()));
                 };
                 not_negative("the time from the start to the first sample", *first - self.start.t)?;
                 let mut pairs = times.iter().zip(times.iter().skip(1));
-                pairs.try_for_each(|(a, b)| positive("the time between samples", *b - *a))
+                pairs.try_for_each(|(a, b)| check_positive("the time between samples", *b - *a))
             }
         }
     }
 
-    fn clock(&self) -> Clock {
+    fn clock_of_run(&self) -> Clock {
         let (every, last) = match self.samples {
             Samples::Steps => (None, None),
             Samples::Every(interval) => (Some(interval), None),
@@ -240,41 +244,41 @@ where
     /// Returns the instant of the next sample; `None` if every step is a sample. After the last requested
     /// time, the instant is the end of the run.
     fn next_due(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
-        let Samples::At(times) = self.samples else { return run.clock.sample(run.sample) };
-        let end = run.clock.end().unwrap_or(f64::INFINITY);
+        let Samples::At(times) = self.samples else { return run.clock.sample_instant(run.sample) };
+        let end = run.clock.end_time().unwrap_or(f64::INFINITY);
         let due = usize::try_from(run.sample).ok().and_then(|k| times.get(k));
         Some(due.map_or(end, |t| self.since_start(t).min(end)))
     }
 
     /// Returns the time of the run at an instant.
-    fn time(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>, elapsed: f64) -> T {
+    fn run_time_at(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>, elapsed: f64) -> T {
         if let Samples::At(times) = self.samples
             && let Some(asked) = usize::try_from(run.sample).ok().and_then(|k| times.get(k))
             && self.since_start(asked) == elapsed
         {
             return *asked;
         }
-        let end = self.duration.filter(|_| run.clock.end() == Some(elapsed));
+        let end = self.duration.filter(|_| run.clock.end_time() == Some(elapsed));
         end.map_or_else(|| time_after(self.start.t, elapsed), |duration| self.start.t + duration)
     }
 
     /// Returns the latest instant at which the next step must end.
     fn next_stop(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
         let sample = self.next_due(run).filter(|_| S::FIXED);
-        let stops = [run.clock.end(), run.clock.control(run.control), sample];
+        let stops = [run.clock.end_time(), run.clock.control_instant(run.control), sample];
         stops.into_iter().flatten().reduce(f64::min)
     }
 
     /// Continues at a node between two steps: updates the inputs, emits the node if it is a sample, otherwise
     /// takes a step.
     fn at_node(&mut self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>) -> Due<T, NQ, NV, NU> {
-        self.renew(run);
+        self.renew_control_period(run);
         let due = self.next_due(run).map_or(!run.shown, |sample| run.elapsed >= sample);
         if due {
             run.sample += 1;
             run.shown = true;
             if !run.quiet || self.at_end(run) {
-                return Ok(Some(self.sample(run, run.node, None)));
+                return Ok(Some(self.make_sample(run, run.node, None)));
             }
         }
         let stop = self.next_stop(run);
@@ -283,12 +287,18 @@ where
         let sample = self.next_due(run).filter(|_| !S::FIXED);
         let within = sample.is_some_and(|sample| stop.is_none_or(|stop| sample < stop));
         let dense = E::COUNT > 0;
-        let (origin, start) = (run.node.t, run.node.timed(T::zero()));
-        let step =
-            self.system.advance(&self.method, &mut run.memory, origin, &start, until, dense || within)?;
+        let (origin, start) = (run.node.t, run.node.state_with_time(T::zero()));
+        let step = self.system.advance_step(
+            &self.method,
+            &mut run.memory,
+            origin,
+            &start,
+            until,
+            dense || within,
+        )?;
         let arrived = stop.filter(|_| until == Some(step.end.t));
         let elapsed = arrived.unwrap_or_else(|| run.elapsed + to_f64(step.end.t));
-        run.ahead = (elapsed, self.time(run, elapsed));
+        run.ahead = (elapsed, self.run_time_at(run, elapsed));
         if dense || self.next_due(run).is_some_and(|sample| sample < elapsed) {
             (run.step, run.cursor, run.hit) = (Some(step), T::zero(), None);
         } else {
@@ -300,13 +310,13 @@ where
     /// Sets the progress of the run to the end of the step.
     fn go_ahead(&self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>, step: &Step<T, NQ, NV>) {
         let (elapsed, t) = run.ahead;
-        (run.node, run.elapsed, run.step, run.shown) = (step.end.timed(t), elapsed, None, false);
+        (run.node, run.elapsed, run.step, run.shown) = (step.end.state_with_time(t), elapsed, None, false);
     }
 
     /// Returns a state on a step, with the time of the run.
-    fn state(&self, origin: T, step: &Step<T, NQ, NV>, theta: T) -> State<T, NQ, NV> {
+    fn state_on_step(&self, origin: T, step: &Step<T, NQ, NV>, theta: T) -> State<T, NQ, NV> {
         let state = step.at(&self.system, theta);
-        state.timed(origin + state.t)
+        state.state_with_time(origin + state.t)
     }
 
     /// Continues within a step: emits the next sample or event, otherwise advances to the end of the step.
@@ -316,26 +326,26 @@ where
         step: &Step<T, NQ, NV>,
     ) -> Due<T, NQ, NV, NU> {
         if run.hit.is_none() {
-            self.search(run, step)?;
+            self.search_next_event(run, step)?;
         }
         let length = run.ahead.0 - run.elapsed;
         let event = run.hit.map(|hit| (hit, run.elapsed + to_f64(hit.theta * step.end.t)));
         let limit = event.map_or(run.ahead.0, |(_, elapsed)| elapsed);
         if let Some(due) = self.next_due(run).filter(|due| *due < limit) {
-            let t = self.time(run, due);
+            let t = self.run_time_at(run, due);
             run.sample += 1;
             if run.quiet {
                 return Ok(None);
             }
             let theta = constant((due - run.elapsed) / length);
-            let state = self.state(run.node.t, step, theta).timed(t);
+            let state = self.state_on_step(run.node.t, step, theta).state_with_time(t);
             let state = self.on_constraints(state)?;
-            return Ok(Some(self.sample(run, state, None)));
+            return Ok(Some(self.make_sample(run, state, None)));
         }
         match event {
             Some((hit, elapsed)) => {
-                let state = self.on_constraints(self.state(run.node.t, step, hit.theta))?;
-                let limit = hit.theta + coincidence();
+                let state = self.on_constraints(self.state_on_step(run.node.t, step, hit.theta))?;
+                let limit = hit.theta + coincidence_threshold();
                 let (jump, next, jumped, stopped) = (None, 0, false, false);
                 run.firing = Some(Firing { state, elapsed, limit, jump, next, jumped, stopped });
             }
@@ -346,11 +356,11 @@ where
 
     /// Projects a state onto the constraints, if there are any.
     fn on_constraints(&self, state: State<T, NQ, NV>) -> Result<State<T, NQ, NV>, Error> {
-        settled(&self.system, state, state.t)
+        project_end_of_step(&self.system, state, state.t)
     }
 
     /// Searches for the first event after the current position on the step.
-    fn search(
+    fn search_next_event(
         &mut self,
         run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
         step: &Step<T, NQ, NV>,
@@ -358,10 +368,10 @@ where
         if E::COUNT == 0 {
             return Ok(());
         }
-        let (system, origin, end) = (&self.system, run.node.t, step.end.timed(run.ahead.1));
+        let (system, origin, end) = (&self.system, run.node.t, step.end.state_with_time(run.ahead.1));
         let state_along_step = |theta: T| {
             let state = step.at(system, theta);
-            if theta < T::one() { state.timed(origin + state.t) } else { end }
+            if theta < T::one() { state.state_with_time(origin + state.t) } else { end }
         };
         for part in 1..=SEARCHES {
             let to = constant::<T>(f64::from(part) / f64::from(SEARCHES));
@@ -371,7 +381,7 @@ where
             run.hit = self
                 .events
                 .locate(&state_along_step, run.cursor, to)
-                .map_err(|reason| failure(reason, to_f64(origin)))?;
+                .map_err(|reason| event_search_error(reason, to_f64(origin)))?;
             if let Some(hit) = run.hit {
                 run.cursor = hit.theta;
                 return Ok(());
@@ -383,7 +393,7 @@ where
     }
 
     /// Applies the effect of the next event of an instant; after the last event, continues the run.
-    fn fire(
+    fn fire_next_event(
         &mut self,
         run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
         step: &Step<T, NQ, NV>,
@@ -391,7 +401,7 @@ where
         let Some(mut firing) = run.firing.take() else { return Ok(None) };
         run.hit = None;
         if let Some(index) = firing.jump.take() {
-            let sample = self.sample(run, firing.state, Some(index));
+            let sample = self.make_sample(run, firing.state, Some(index));
             run.firing = Some(firing);
             return Ok(Some(sample));
         }
@@ -428,10 +438,10 @@ where
             }
         }
         let sample = match firing.state.v == before.v {
-            true => self.sample(run, firing.state, Some(index)),
+            true => self.make_sample(run, firing.state, Some(index)),
             false => {
                 firing.jump = Some(index);
-                self.sample(run, before, None)
+                self.make_sample(run, before, None)
             }
         };
         firing.next = index + 1;
@@ -440,16 +450,16 @@ where
     }
 
     /// Starts a new control period of the inputs if one is due.
-    fn renew(&mut self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>) {
+    fn renew_control_period(&mut self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>) {
         let State { t, q, v } = run.node;
-        if run.clock.control(run.control).is_some_and(|control| run.elapsed >= control) {
+        if run.clock.control_instant(run.control).is_some_and(|control| run.elapsed >= control) {
             run.control += 1;
             self.system.inputs.renew(t, &q, &v);
             self.method.disturb(&mut run.memory, Jump::Inputs);
         }
     }
 
-    fn sample(
+    fn make_sample(
         &mut self,
         run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
         State { t, q, v }: State<T, NQ, NV>,

@@ -1,7 +1,7 @@
 use super::*;
 use crate::Mechanism;
 use crate::integrate::{ImplicitMidpoint, Rk4, SemiImplicitEuler};
-use crate::testing::{FreeBody, OneDof, falling, oscillator, pendulum, pendulum_period};
+use crate::testing::{FreeBody, OneDof, falling_ball, oscillator, pendulum, pendulum_period};
 use core::cell::Cell;
 use nalgebra::Vector3;
 use std::vec::Vec;
@@ -9,7 +9,7 @@ use std::vec::Vec;
 const TIGHT: fn() -> DormandPrince<f64> = || DormandPrince::new().tolerance(1e-13, 1e-13);
 
 /// Returns the times of the samples of a run of the oscillator.
-fn times<S: Method<f64>>(method: S, duration: f64, interval: f64) -> Vec<f64> {
+fn sample_times<S: Method<f64>>(method: S, duration: f64, interval: f64) -> Vec<f64> {
     let oscillator = oscillator::<f64>();
     let run = simulate(&oscillator).from([1.0], [0.0]).duration(duration).sample_every(interval);
     run.method(method).map(|sample| sample.unwrap().t).collect()
@@ -21,13 +21,13 @@ fn samples_are_on_time() {
     for (duration, interval, count) in [(10.0, 0.01, 1000), (1.0, 0.1, 10), (0.3, 0.1, 3), (0.7, 0.7, 1)] {
         let mut wanted: Vec<f64> = (0..count).map(expected_sample_time(interval)).collect();
         wanted.push(duration);
-        assert_eq!(times(DormandPrince::new(), duration, interval), wanted);
-        assert_eq!(times(Rk4::step(0.003), duration, interval), wanted);
-        assert_eq!(times(ImplicitMidpoint::step(0.04), duration, interval), wanted);
-        assert_eq!(times(SemiImplicitEuler::step(0.01), duration, interval), wanted);
+        assert_eq!(sample_times(DormandPrince::new(), duration, interval), wanted);
+        assert_eq!(sample_times(Rk4::step(0.003), duration, interval), wanted);
+        assert_eq!(sample_times(ImplicitMidpoint::step(0.04), duration, interval), wanted);
+        assert_eq!(sample_times(SemiImplicitEuler::step(0.01), duration, interval), wanted);
     }
-    assert_eq!(times(Rk4::step(0.1), 1.0, 0.4), [0.0, 0.4, 0.8, 1.0]);
-    assert_eq!(times(DormandPrince::new(), 1.0, 5.0), [0.0, 1.0]);
+    assert_eq!(sample_times(Rk4::step(0.1), 1.0, 0.4), [0.0, 0.4, 0.8, 1.0]);
+    assert_eq!(sample_times(DormandPrince::new(), 1.0, 5.0), [0.0, 1.0]);
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn a_run_can_start_later() {
 
 /// Simulates a free mass with forces of alternating sign for periods of 0.1 s. The closed-form solution is a
 /// sum.
-fn controlled<S: Method<f64>>(method: S) -> (f64, Vec<f64>) {
+fn simulate_controlled_mass<S: Method<f64>>(method: S) -> (f64, Vec<f64>) {
     let mass = OneDof { force: |_| 0.0, ..oscillator::<f64>() };
     let calls = Cell::new(0);
     let instants = core::cell::RefCell::new(Vec::new());
@@ -107,9 +107,9 @@ fn controlled<S: Method<f64>>(method: S) -> (f64, Vec<f64>) {
 fn digital_controllers_hold_their_output() {
     // Ten periods: up and down five times, and 0.01 m in each pair.
     for (q, instants) in [
-        controlled(DormandPrince::new()),
-        controlled(Rk4::step(0.02)),
-        controlled(ImplicitMidpoint::step(0.02)),
+        simulate_controlled_mass(DormandPrince::new()),
+        simulate_controlled_mass(Rk4::step(0.02)),
+        simulate_controlled_mass(ImplicitMidpoint::step(0.02)),
     ] {
         assert!((q - 0.05).abs() < 1e-13, "{q}");
         let wanted = (0..=10).map(f64::from).map(|k| k / 10.0);
@@ -166,7 +166,7 @@ fn pendulum_crossings_are_periodic() {
 #[test]
 fn a_run_ends_where_it_is_told() {
     // A stone thrown upwards from the ground lands after t = 2 v; the start is no event.
-    let stone = falling();
+    let stone = falling_ball();
     let run = simulate(&stone).from([0.0], [3.0]).until(|_, q, _| q[0]);
     let assert_stops_at_event = |end: Result<Sample<f64, 1, 1, 1>, Error>| {
         let end = end.unwrap();
@@ -207,7 +207,7 @@ fn several_events_come_in_order() {
 fn a_ball_bounces() {
     // From 0.5 m with unit gravity, the ball falls for 1 s. Each bounce halves the speed: impacts at 1, 2,
     // 2.5 and 2.75 s.
-    let ball = falling();
+    let ball = falling_ball();
     let run = simulate(&ball).from([0.5], [0.0]).duration(2.9);
     let run = run.impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| v * -0.5);
     let assert_bounce_times = |samples: &mut dyn Iterator<Item = Result<Sample<f64, 1, 1, 1>, Error>>| {
@@ -229,7 +229,7 @@ fn a_ball_bounces() {
 
 #[test]
 fn a_ball_bounces_for_ever() {
-    let ball = falling();
+    let ball = falling_ball();
     let run = simulate(&ball).from([0.5], [0.0]).impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| -v);
     // 500 flights of 2 s.
     let end = run.duration(1002.0).finish().unwrap();
@@ -242,7 +242,7 @@ fn a_ball_bounces_for_ever() {
 /// Bounces that each lose a fraction of the speed accumulate at a finite time.
 #[test]
 fn impacts_without_end_are_an_error() {
-    let ball = falling();
+    let ball = falling_ball();
     for part in [0.8, 0.5, 0.05] {
         let run = simulate(&ball).from([0.5], [0.0]);
         let run = run.impact(Crossing::Falling, |_, q, _| q[0], move |_, _, v| v * -part).duration(30.0);
@@ -258,7 +258,7 @@ fn impacts_without_end_are_an_error() {
 
 #[test]
 fn an_event_that_is_not_a_number_is_an_error() {
-    let ball = falling();
+    let ball = falling_ball();
     let end = simulate(&ball).duration(1.0).until(|t, _, _| if t < 0.5 { 1.0 } else { f64::NAN }).finish();
     assert!(matches!(end, Err(Error::Event { event: 0, .. })), "{end:?}");
     let run = simulate(&ball).event(Crossing::Rising, |_, q, _| q[0] - 1.0).duration(1.0);
@@ -268,7 +268,7 @@ fn an_event_that_is_not_a_number_is_an_error() {
 
 #[test]
 fn an_impact_on_a_control_instant_is_both() {
-    let ball = falling();
+    let ball = falling_ball();
     let run = simulate(&ball).from([0.5], [0.0]).control_every(1.0, |_, _, _| SVector::zeros());
     let run = run.impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| -v).duration(2.5);
     for end in [run.clone().finish(), run.sample_every(0.5).method(Rk4::step(0.1)).finish()] {
@@ -296,7 +296,7 @@ fn changing_a_setting_starts_over() {
 }
 
 /// Returns the gain of energy of a mechanism in one unit of time; the code is generic over mechanisms.
-fn gain<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
+fn energy_gain<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     q: SVector<M::Scalar, NQ>,
     v: SVector<M::Scalar, NV>,
@@ -309,18 +309,19 @@ fn gain<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const NU: us
 
 #[test]
 fn generic_code_can_simulate() {
-    assert!(gain(&pendulum(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-8);
-    assert!(gain(&oscillator::<f32>(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-4);
+    assert!(energy_gain(&pendulum(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-8);
+    assert!(energy_gain(&oscillator::<f32>(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-4);
     let body = FreeBody { mass: 1.0, inertia: Vector3::new(1.0, 2.0, 2.5), gravity: 1.0 };
     assert!(
-        gain(&body, Mechanism::neutral(&body), SVector::from([1.0, 0.0, 2.0, 0.3, 1.0, -0.5])).abs() < 1e-8
+        energy_gain(&body, Mechanism::neutral(&body), SVector::from([1.0, 0.0, 2.0, 0.3, 1.0, -0.5])).abs()
+            < 1e-8
     );
 }
 
 /// After a plastic impact, no contact force supports the ball: an error instead of a fall through the floor.
 #[test]
 fn a_plastic_impact_is_an_error() {
-    let ball = falling();
+    let ball = falling_ball();
     for part in [0.0, -1e-9, 1e-12, 1e-7, 1e-5, 1e-3] {
         let run = simulate(&ball).from([0.5], [0.0]).duration(30.0);
         let run = run.impact(Crossing::Falling, |_, q, _| q[0], move |_, _, v| v * -part);
@@ -357,7 +358,7 @@ fn a_plastic_impact_is_an_error() {
 /// Checks that all events of one instant take effect, in the order of their declaration.
 #[test]
 fn events_that_coincide_all_act() {
-    let ball = falling();
+    let ball = falling_ball();
     let run = simulate(&ball).from([0.5], [0.0]).duration(4.0);
     let first =
         run.clone().impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| -v).until(|_, q, _| q[0] * 3.0);

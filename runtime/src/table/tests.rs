@@ -7,15 +7,15 @@ static Y: [f64; 4] = [0.0, 1.0, 1.5, 4.0];
 static Z: [f64; 3] = [-2.0, -1.0, 1.0];
 
 /// Returns a function that is quadratic in each variable.
-fn f(x: f64, y: f64, z: f64) -> f64 {
+fn biquadratic_function(x: f64, y: f64, z: f64) -> f64 {
     (1.0 + 2.0 * x - 0.5 * x * x) * (0.3 - y + 0.2 * y * y) + x * z - 0.7 * z * z * y
 }
 
-fn cube() -> Table<3> {
+fn cubic_grid_table() -> Table<3> {
     let mut values = std::vec::Vec::new();
     for x in X {
         for y in Y {
-            values.extend(Z.map(|z| f(x, y, z)));
+            values.extend(Z.map(|z| biquadratic_function(x, y, z)));
         }
     }
     Table::new([&X, &Y, &Z], values.leak()).unwrap()
@@ -23,9 +23,9 @@ fn cube() -> Table<3> {
 
 #[test]
 fn a_linear_table_goes_through_its_values_and_between_them() {
-    let table = cube();
+    let table = cubic_grid_table();
     for (x, y, z) in [(0.0, 1.0, -1.0), (3.5, 4.0, 1.0), (-1.0, 0.0, -2.0)] {
-        assert!((table.value::<f64>([x, y, z]) - f(x, y, z)).abs() < 1e-14);
+        assert!((table.value::<f64>([x, y, z]) - biquadratic_function(x, y, z)).abs() < 1e-14);
     }
     let (a, b) = (table.value([0.5, 1.0, 1.0]), table.value([2.0, 1.0, 1.0]));
     assert!((table.value::<f64>([1.0, 1.0, 1.0]) - (a + (b - a) / 3.0)).abs() < 1e-14);
@@ -34,11 +34,11 @@ fn a_linear_table_goes_through_its_values_and_between_them() {
 
 #[test]
 fn a_smooth_table_is_exact_for_parabolas_with_all_its_slopes() {
-    let table = cube().smooth();
+    let table = cubic_grid_table().smooth();
     for k in 0..40 {
         let t = f64::from(k) / 39.0;
         let (x, y, z) = (-1.0 + 4.5 * t, 4.0 * (1.0 - t), -2.0 + 3.0 * t * t);
-        assert!((table.value::<f64>([x, y, z]) - f(x, y, z)).abs() < 1e-12, "{x} {y} {z}");
+        assert!((table.value::<f64>([x, y, z]) - biquadratic_function(x, y, z)).abs() < 1e-12, "{x} {y} {z}");
         let slope = (2.0 - x) * (0.3 - y + 0.2 * y * y) + z;
         assert!((table.slope::<f64>([x, y, z], 0) - slope).abs() < 1e-12);
         let mixed = (2.0 - x) * (-1.0 + 0.4 * y);
@@ -68,7 +68,7 @@ fn slopes_of_a_smooth_table_are_continuous() {
 
 #[test]
 fn beyond_the_grid_a_table_is_what_was_asked_for() {
-    for table in [cube(), cube().smooth()] {
+    for table in [cubic_grid_table(), cubic_grid_table().smooth()] {
         let edge = table.value([3.5, 1.0, 0.0]);
         assert_eq!(table.value([9.0, 1.0, 0.0]), edge);
         assert_eq!(table.slope([9.0, 1.0, 0.0], 0), 0.0);
@@ -85,7 +85,12 @@ fn beyond_the_grid_a_table_is_what_was_asked_for() {
 fn lanes_look_up_each_for_itself() {
     let x = [-3.0, 0.2, 0.5, 9.0];
     let (y, z) = ([0.1, 3.0, 1.0, 1.2], [0.0, -1.5, 1.0, 0.3]);
-    for table in [cube(), cube().smooth(), cube().extrapolated(), cube().smooth().extrapolated()] {
+    for table in [
+        cubic_grid_table(),
+        cubic_grid_table().smooth(),
+        cubic_grid_table().extrapolated(),
+        cubic_grid_table().smooth().extrapolated(),
+    ] {
         for orders in [[0, 0, 0], [1, 0, 0], [0, 1, 1], [2, 0, 0]] {
             let all: f64x4 = table.derivative([Lanes(x), Lanes(y), Lanes(z)], orders);
             for lane in 0..4 {
@@ -98,11 +103,11 @@ fn lanes_look_up_each_for_itself() {
 
 #[test]
 fn single_precision_looks_up_too() {
-    fn lookup<T: Real>(x: f64) -> f64 {
+    fn smooth_table_value<T: Real>(x: f64) -> f64 {
         let x = crate::private::constant::<T>(x);
-        crate::private::to_f64(cube().smooth().value([x, x, x]))
+        crate::private::to_f64(cubic_grid_table().smooth().value([x, x, x]))
     }
-    assert!((lookup::<f32>(0.7) - lookup::<f64>(0.7)).abs() < 1e-5);
+    assert!((smooth_table_value::<f32>(0.7) - smooth_table_value::<f64>(0.7)).abs() < 1e-5);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use super::*;
 use crate::arithmetic::Compiled as A;
 
 /// Checks sine and cosine of an angle with every set of instructions that the processor has.
-fn check(x: f64) {
+fn check_angle(x: f64) {
     check_with::<A>(x);
     #[cfg(all(
         feature = "std",
@@ -38,9 +38,9 @@ fn is_within_one_unit_in_the_last_place() {
     for _ in 0..200_000 {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let unit = (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
-        check(unit * 8.0);
-        check(unit * 2e4);
-        check(unit * 2e5);
+        check_angle(unit * 8.0);
+        check_angle(unit * 2e4);
+        check_angle(unit * 2e5);
     }
 }
 
@@ -48,12 +48,12 @@ fn is_within_one_unit_in_the_last_place() {
 fn is_so_near_multiples_of_a_quarter_turn_and_at_extremes() {
     for k in -60_000_i32..60_000 {
         let x = f64::from(k) * core::f64::consts::FRAC_PI_2;
-        check(x);
-        check(f64::from_bits(x.to_bits() + 1));
+        check_angle(x);
+        check_angle(f64::from_bits(x.to_bits() + 1));
     }
     for x in [1e-300, 5e-324, 1e5, 1.1e5, 1e22, f64::MAX] {
-        check(x);
-        check(-x);
+        check_angle(x);
+        check_angle(-x);
     }
     assert_eq!((A::sin_cos(0.0), A::sin_cos(-0.0)), ((0.0, 1.0), (0.0, 1.0)));
     assert!(A::sin_cos(f64::INFINITY).0.is_nan() && A::sin_cos(f64::NAN).1.is_nan());
@@ -65,7 +65,7 @@ fn arrays_and_single_precision() {
     let (s, c) = A::sin_cos_all(x);
     for k in 0..4 {
         assert_eq!((s[k], c[k]), A::sin_cos(x[k]));
-        check(x[k]);
+        check_angle(x[k]);
         let single = A::sin_cos(x[k] as f32);
         let exact = ComplexField::sin_cos(f64::from(x[k] as f32));
         assert_eq!(single, (exact.0 as f32, exact.1 as f32));

@@ -17,20 +17,20 @@ const MAX_DEPTH: usize = 64;
 const MOST_INSTANCES: usize = 100_000;
 
 /// Returns the corners of all triangles, three per triangle, m.
-pub(crate) fn corners(text: &str) -> Result<Vec<[f32; 3]>, String> {
+pub(crate) fn corners_of_triangles(text: &str) -> Result<Vec<[f32; 3]>, String> {
     let document = Document::parse(text).map_err(|error| format!("not XML: {error}"))?;
     let root = document.root_element();
     if root.tag_name().name() != "COLLADA" {
         return Err(format!("expected a `COLLADA` element, found `{}`", root.tag_name().name()));
     }
-    let unit = child(root, "asset").and_then(|asset| child(asset, "unit"));
+    let unit = child_element(root, "asset").and_then(|asset| child_element(asset, "unit"));
     let metres = match unit.and_then(|unit| unit.attribute("meter")) {
         Some(text) => text.trim().parse().ok().filter(|m: &f64| *m > 0.0 && m.is_finite()),
         None => Some(1.0),
     };
     let metres = metres.ok_or("the `meter` of the unit is not a length")?;
     let elements_by_id = |library: &'static str, of: &'static str| {
-        let libraries = children(root, library).flat_map(move |all| children(all, of));
+        let libraries = child_elements(root, library).flat_map(move |all| child_elements(all, of));
         libraries.filter_map(|node| Some((node.attribute("id")?, node))).collect::<HashMap<_, _>>()
     };
     let mut reader = Reader {
@@ -46,19 +46,21 @@ pub(crate) fn corners(text: &str) -> Result<Vec<[f32; 3]>, String> {
         corners: Vec::new(),
     };
     let scenes = elements_by_id("library_visual_scenes", "visual_scene");
-    let shown = child(root, "scene").and_then(|scene| child(scene, "instance_visual_scene"));
+    let shown = child_element(root, "scene").and_then(|scene| child_element(scene, "instance_visual_scene"));
     let to_metres = Matrix4::new_scaling(metres);
     match shown {
         Some(instance) => {
-            let scene = referred(instance, &scenes)?;
-            for node in children(scene, "node") {
-                reader.node(node, &to_metres, 0)?;
+            let scene = referenced_element(instance, &scenes)?;
+            for node in child_elements(scene, "node") {
+                reader.read_node(node, &to_metres, 0)?;
             }
         }
         // A file that has geometries but no scene.
         None => {
-            for geometry in children(root, "library_geometries").flat_map(|all| children(all, "geometry")) {
-                reader.geometry(geometry, &to_metres)?;
+            for geometry in
+                child_elements(root, "library_geometries").flat_map(|all| child_elements(all, "geometry"))
+            {
+                reader.read_geometry(geometry, &to_metres)?;
             }
         }
     }
@@ -77,7 +79,7 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn node(&mut self, node: Node<'a, 'a>, above: &Matrix4<f64>, depth: usize) -> Result<(), String> {
+    fn read_node(&mut self, node: Node<'a, 'a>, above: &Matrix4<f64>, depth: usize) -> Result<(), String> {
         self.instances += 1;
         if depth > MAX_DEPTH || self.instances > MOST_INSTANCES {
             return Err("endlessly nested nodes".to_string());
@@ -86,11 +88,15 @@ impl<'a> Reader<'a> {
         for part in node.children().filter(Node::is_element) {
             match part.tag_name().name() {
                 "matrix" | "translate" | "rotate" | "scale" | "skew" | "lookat" => {
-                    place *= transform(part)?;
+                    place *= transform_of_element(part)?;
                 }
-                "node" => self.node(part, &place, depth + 1)?,
-                "instance_node" => self.node(referred(part, &self.nodes)?, &place, depth + 1)?,
-                "instance_geometry" => self.geometry(referred(part, &self.geometries)?, &place)?,
+                "node" => self.read_node(part, &place, depth + 1)?,
+                "instance_node" => {
+                    self.read_node(referenced_element(part, &self.nodes)?, &place, depth + 1)?
+                }
+                "instance_geometry" => {
+                    self.read_geometry(referenced_element(part, &self.geometries)?, &place)?
+                }
                 "instance_controller" => return Err("meshes with skins are not read".to_string()),
                 _ => {}
             }
@@ -98,10 +104,10 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn geometry(&mut self, geometry: Node<'a, 'a>, place: &Matrix4<f64>) -> Result<(), String> {
+    fn read_geometry(&mut self, geometry: Node<'a, 'a>, place: &Matrix4<f64>) -> Result<(), String> {
         let mesh = match self.meshes.entry(geometry.id()) {
             Entry::Occupied(found) => found.into_mut(),
-            Entry::Vacant(free) => free.insert(triangles(geometry)?),
+            Entry::Vacant(free) => free.insert(triangles_of_geometry(geometry)?),
         };
         within_bounds(self.corners.len() + mesh.len())?;
         self.corners.extend(mesh.iter().map(|corner| {
@@ -120,15 +126,15 @@ fn within_bounds(corners: usize) -> Result<(), String> {
 }
 
 /// Returns the corners of a geometry, three per triangle, in its own axes.
-fn triangles(geometry: Node<'_, '_>) -> Result<Vec<Point3<f64>>, String> {
-    let Some(mesh) = child(geometry, "mesh") else {
+fn triangles_of_geometry(geometry: Node<'_, '_>) -> Result<Vec<Point3<f64>>, String> {
+    let Some(mesh) = child_element(geometry, "mesh") else {
         let name = geometry.attribute("id").unwrap_or("a geometry without name");
         return Err(format!("`{name}` is not a mesh of polygons"));
     };
     let mut corners = Vec::new();
     for list in mesh.children().filter(Node::is_element) {
         if ["triangles", "polylist", "polygons", "tristrips", "trifans"].contains(&list.tag_name().name()) {
-            for face in faces(mesh, list)? {
+            for face in corners_of_faces(mesh, list)? {
                 match list.tag_name().name() {
                     "tristrips" => corners.extend(face.windows(3).flatten()),
                     _ => {
@@ -144,28 +150,32 @@ fn triangles(geometry: Node<'_, '_>) -> Result<Vec<Point3<f64>>, String> {
 }
 
 /// Returns the corners of the faces, strips or fans of a list.
-fn faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Point3<f64>>>, String> {
+fn corners_of_faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Point3<f64>>>, String> {
     let kind = list.tag_name().name();
-    if child(list, "ph").is_some() {
+    if child_element(list, "ph").is_some() {
         return Err("polygons with holes are not read".to_string());
     }
     let (mut vertices, mut stride) = (None, 1_usize);
-    for input in children(list, "input") {
+    for input in child_elements(list, "input") {
         let offset: Option<usize> = input.attribute("offset").unwrap_or("0").trim().parse().ok();
         let offset = offset.ok_or("an `offset` of an input is not a count")?;
         stride = stride.max(offset.saturating_add(1));
         vertices = vertices.or((input.attribute("semantic") == Some("VERTEX")).then_some((offset, input)));
     }
     let (offset, input) = vertices.ok_or_else(|| format!("a `{kind}` has no input for its vertices"))?;
-    let points = positions(mesh, input)?;
+    let points = vertex_positions(mesh, input)?;
     let corner_of_face = |index: &[usize]| {
         let found = index.get(offset).and_then(|k| points.get(*k)).copied();
         found.ok_or_else(|| format!("a `{kind}` refers to a vertex that does not exist"))
     };
-    let mut counts = child(list, "vcount").map(numbers::<usize>).transpose()?.unwrap_or_default().into_iter();
+    let mut counts = child_element(list, "vcount")
+        .map(parse_number_list::<usize>)
+        .transpose()?
+        .unwrap_or_default()
+        .into_iter();
     let mut faces = Vec::new();
-    for indices in children(list, "p") {
-        let indices: Vec<usize> = numbers(indices)?;
+    for indices in child_elements(list, "p") {
+        let indices: Vec<usize> = parse_number_list(indices)?;
         let corners: Vec<Point3<f64>> =
             indices.chunks(stride).map(corner_of_face).collect::<Result<_, _>>()?;
         let mut rest = &corners[..];
@@ -186,7 +196,7 @@ fn faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Point3<f64>>>
 }
 
 /// Returns the positions of vertices from the source that their `POSITION` input refers to.
-fn positions(mesh: Node<'_, '_>, vertices: Node<'_, '_>) -> Result<Vec<Point3<f64>>, String> {
+fn vertex_positions(mesh: Node<'_, '_>, vertices: Node<'_, '_>) -> Result<Vec<Point3<f64>>, String> {
     let find_child = |of: &str, name: &str| {
         mesh.children().find(|node| node.tag_name().name() == of && node.attribute("id") == Some(name))
     };
@@ -194,11 +204,14 @@ fn positions(mesh: Node<'_, '_>, vertices: Node<'_, '_>) -> Result<Vec<Point3<f6
     let missing_positions_error = || format!("no source of positions at `{name}`");
     let vertices =
         find_child("vertices", name.trim_start_matches('#')).ok_or_else(missing_positions_error)?;
-    let input = children(vertices, "input").find(|input| input.attribute("semantic") == Some("POSITION"));
+    let input =
+        child_elements(vertices, "input").find(|input| input.attribute("semantic") == Some("POSITION"));
     let source = input.and_then(|input| input.attribute("source")).unwrap_or_default();
     let source = find_child("source", source.trim_start_matches('#')).ok_or_else(missing_positions_error)?;
-    let list: Vec<f64> = numbers(child(source, "float_array").ok_or_else(missing_positions_error)?)?;
-    let accessor = child(source, "technique_common").and_then(|common| child(common, "accessor"));
+    let list: Vec<f64> =
+        parse_number_list(child_element(source, "float_array").ok_or_else(missing_positions_error)?)?;
+    let accessor =
+        child_element(source, "technique_common").and_then(|common| child_element(common, "accessor"));
     let read_accessor_count = |name: &str, otherwise: usize| match accessor.and_then(|a| a.attribute(name)) {
         Some(text) => text.trim().parse().map_err(|_| format!("the `{name}` of an accessor is not a count")),
         None => Ok(otherwise),
@@ -212,8 +225,8 @@ fn positions(mesh: Node<'_, '_>, vertices: Node<'_, '_>) -> Result<Vec<Point3<f6
 }
 
 /// Returns the homogeneous transform of a transformation element of a node.
-fn transform(part: Node<'_, '_>) -> Result<Matrix4<f64>, String> {
-    let (kind, n) = (part.tag_name().name(), numbers::<f64>(part)?);
+fn transform_of_element(part: Node<'_, '_>) -> Result<Matrix4<f64>, String> {
+    let (kind, n) = (part.tag_name().name(), parse_number_list::<f64>(part)?);
     Ok(match (kind, n.as_slice()) {
         ("matrix", n) if n.len() == 16 && n[12..] == [0.0, 0.0, 0.0, 1.0] => Matrix4::from_row_slice(n),
         ("translate", [x, y, z]) => Matrix4::new_translation(&Vector3::new(*x, *y, *z)),
@@ -229,23 +242,26 @@ fn transform(part: Node<'_, '_>) -> Result<Matrix4<f64>, String> {
     })
 }
 
-fn child<'a>(node: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> {
+fn child_element<'a>(node: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> {
     node.children().find(|child| child.tag_name().name() == name)
 }
 
-fn children<'a>(node: Node<'a, 'a>, name: &'static str) -> impl Iterator<Item = Node<'a, 'a>> {
+fn child_elements<'a>(node: Node<'a, 'a>, name: &'static str) -> impl Iterator<Item = Node<'a, 'a>> {
     node.children().filter(move |child| child.tag_name().name() == name)
 }
 
 /// Returns the element that an instance refers to.
-fn referred<'a>(instance: Node<'_, '_>, known: &HashMap<&str, Node<'a, 'a>>) -> Result<Node<'a, 'a>, String> {
+fn referenced_element<'a>(
+    instance: Node<'_, '_>,
+    known: &HashMap<&str, Node<'a, 'a>>,
+) -> Result<Node<'a, 'a>, String> {
     let url = instance.attribute("url").unwrap_or_default();
     let found = url.strip_prefix('#').and_then(|name| known.get(name)).copied();
     found.ok_or_else(|| format!("`{}` refers to `{url}`, which does not exist", instance.tag_name().name()))
 }
 
 /// Parses the text of an element as a list of numbers.
-fn numbers<T: std::str::FromStr>(node: Node<'_, '_>) -> Result<Vec<T>, String> {
+fn parse_number_list<T: std::str::FromStr>(node: Node<'_, '_>) -> Result<Vec<T>, String> {
     let read_number = |word: &str| {
         let shown: String = word.chars().take(60).collect();
         word.parse().map_err(|_| format!("`{shown}` in a `{}` is not a number", node.tag_name().name()))
@@ -258,7 +274,7 @@ mod tests {
     use super::*;
 
     /// Returns a file with a mesh of four corners: a square in the plane z = 0 with edges of length 2.
-    fn file(unit: &str, faces: &str, scene: &str) -> String {
+    fn collada_file(unit: &str, faces: &str, scene: &str) -> String {
         format!(
             "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' \
              version='1.4.1'>
@@ -272,7 +288,7 @@ mod tests {
         )
     }
 
-    fn scene(nodes: &str) -> String {
+    fn scene_of_nodes(nodes: &str) -> String {
         format!(
             "<library_visual_scenes><visual_scene id='s'>{nodes}</visual_scene></library_visual_scenes>
              <scene><instance_visual_scene url='#s'/></scene>"
@@ -287,7 +303,7 @@ mod tests {
     /// divides the square along the other diagonal.
     #[test]
     fn lists_of_faces_agree() {
-        let square = corners(&file("", TWO, "")).unwrap();
+        let square = corners_of_triangles(&collada_file("", TWO, "")).unwrap();
         let [a, b, c, d] = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0_f32]];
         assert_eq!(square, [a, b, c, a, c, d]);
         let vertex = "<input semantic='VERTEX' source='#v' offset='0'/>";
@@ -297,10 +313,10 @@ mod tests {
             format!("<polygons count='1'>{vertex}<p>0 1 2 3</p></polygons>"),
             format!("<trifans count='1'>{vertex}<p>0 1 2 3</p></trifans>"),
         ] {
-            assert_eq!(corners(&file("", &list, "")).as_ref(), Ok(&square), "{list}");
+            assert_eq!(corners_of_triangles(&collada_file("", &list, "")).as_ref(), Ok(&square), "{list}");
         }
         let strip = format!("<tristrips count='1'>{vertex}<p>0 1 3 2</p></tristrips>");
-        assert_eq!(corners(&file("", &strip, "")), Ok(vec![a, b, d, b, d, c]));
+        assert_eq!(corners_of_triangles(&collada_file("", &strip, "")), Ok(vec![a, b, d, b, d, c]));
     }
 
     /// Checks the length unit of the file and the order of nested transforms: inner transforms are applied
@@ -311,14 +327,21 @@ mod tests {
             "<node><translate>100 0 0</translate><node><rotate>0 0 1 90</rotate>\
              <scale>1 3 1</scale>{SHOWN}</node></node>"
         );
-        let found = corners(&file("<unit meter='0.01' name='cm'/>", TWO, &scene(&nodes))).unwrap();
+        let found = corners_of_triangles(&collada_file(
+            "<unit meter='0.01' name='cm'/>",
+            TWO,
+            &scene_of_nodes(&nodes),
+        ))
+        .unwrap();
         // (2, 2, 0) is scaled to (2, 6, 0), rotated to (−6, 2, 0) and translated to (94, 2, 0), in
         // centimetres.
         for (x, y) in found[2].into_iter().zip([0.94, 0.02, 0.0]) {
             assert!((x - y).abs() < 1e-6, "{:?}", found[2]);
         }
         let matrix = format!("<node><matrix>0 -3 0 100 1 0 0 0 0 0 1 0 0 0 0 1</matrix>{SHOWN}</node>");
-        let by_matrix = corners(&file("<unit meter='0.01'/>", TWO, &scene(&matrix))).unwrap();
+        let by_matrix =
+            corners_of_triangles(&collada_file("<unit meter='0.01'/>", TWO, &scene_of_nodes(&matrix)))
+                .unwrap();
         for (a, b) in found.iter().flatten().zip(by_matrix.iter().flatten()) {
             assert!((a - b).abs() < 1e-6);
         }
@@ -326,15 +349,17 @@ mod tests {
             "<library_nodes><node id='part'><instance_geometry url='#square'/></node></library_nodes>";
         let twice = "<node><instance_node url='#part'/><translate>0 0 1</translate>\
                      <instance_node url='#part'/></node>";
-        let both = corners(&file("", TWO, &[library, &scene(twice)].concat())).unwrap();
+        let both = corners_of_triangles(&collada_file("", TWO, &[library, &scene_of_nodes(twice)].concat()))
+            .unwrap();
         assert_eq!((both.len(), both[0], both[6]), (12, [0.0; 3], [0.0, 0.0, 1.0]));
     }
 
     #[test]
     fn broken_files_are_told() {
         let vertex = "<input semantic='VERTEX' source='#v'/>";
-        let corners_of_faces = |list: &str| corners(&file("", list, ""));
-        let corners_of_scene = |nodes: &str| corners(&file("", TWO, &scene(nodes)));
+        let corners_of_faces = |list: &str| corners_of_triangles(&collada_file("", list, ""));
+        let corners_of_scene =
+            |nodes: &str| corners_of_triangles(&collada_file("", TWO, &scene_of_nodes(nodes)));
         let bomb = (0..40).map(|k| {
             let next = format!("<instance_node url='#n{}'/>", k + 1);
             format!("<node id='n{k}'>{next}{next}</node>")
@@ -342,9 +367,9 @@ mod tests {
         let bomb: String = bomb.chain([format!("<node id='n40'>{SHOWN}</node>")]).collect();
         let deep = ["<node>".repeat(30_000), "</node>".repeat(30_000)].concat();
         for (what, found) in [
-            ("not XML", corners("solid")),
-            ("expected a `COLLADA` element, found `robot`", corners("<robot/>")),
-            ("`meter`", corners(&file("<unit meter='0'/>", TWO, ""))),
+            ("not XML", corners_of_triangles("solid")),
+            ("expected a `COLLADA` element, found `robot`", corners_of_triangles("<robot/>")),
+            ("`meter`", corners_of_triangles(&collada_file("<unit meter='0'/>", TWO, ""))),
             ("is not a number", corners_of_faces(&format!("<triangles>{vertex}<p>0 1 x</p></triangles>"))),
             (
                 "a vertex that does not exist",
@@ -367,7 +392,13 @@ mod tests {
             ("endlessly nested", corners_of_scene("<node id='a'><instance_node url='#a'/></node>")),
             ("endlessly nested", corners_of_scene(&bomb)),
             ("endlessly nested", corners_of_scene(&deep)),
-            ("not XML", corners(&format!("<!DOCTYPE x [<!ENTITY e 'lol'>]>{}", file("", TWO, "")))),
+            (
+                "not XML",
+                corners_of_triangles(&format!(
+                    "<!DOCTYPE x [<!ENTITY e 'lol'>]>{}",
+                    collada_file("", TWO, "")
+                )),
+            ),
         ] {
             let message = found.unwrap_err();
             assert!(message.contains(what), "{what}: {message}");

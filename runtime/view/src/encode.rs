@@ -18,15 +18,15 @@ impl Stream {
     pub fn channel(&mut self, values: impl Iterator<Item = f64>, quantum: f64) {
         let steps: Vec<i64> = values.map(|x| step(x / quantum)).collect();
         let Some(first) = steps.first() else { return };
-        self.integer(*first);
+        self.write_integer(*first);
         let moves = steps.iter().any(|step| step != first);
-        self.integer(i64::from(moves));
+        self.write_integer(i64::from(moves));
         if moves {
-            steps.windows(2).for_each(|pair| self.integer(pair[1] - pair[0]));
+            steps.windows(2).for_each(|pair| self.write_integer(pair[1] - pair[0]));
         }
     }
 
-    fn integer(&mut self, n: i64) {
+    fn write_integer(&mut self, n: i64) {
         let mut rest = ((n << 1) ^ (n >> 63)).cast_unsigned();
         while rest >= 0x80 {
             self.bytes.push((rest & 0x7f) as u8 | 0x80);
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn integers_take_seven_bits_a_byte() {
         let mut stream = Stream::default();
-        [0, -1, 1, 63, -64, 64, 300].into_iter().for_each(|n| stream.integer(n));
+        [0, -1, 1, 63, -64, 64, 300].into_iter().for_each(|n| stream.write_integer(n));
         assert_eq!(stream.bytes, [0, 1, 2, 126, 127, 128, 1, 216, 4]);
     }
 

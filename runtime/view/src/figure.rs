@@ -37,7 +37,7 @@ pub(crate) struct Shape {
 }
 
 /// Converts a number of any scalar type to `f64`.
-pub(crate) fn plain<T: Real>(x: T) -> f64 {
+pub(crate) fn to_double<T: Real>(x: T) -> f64 {
     x.to_subset().unwrap_or(f64::NAN)
 }
 
@@ -48,7 +48,7 @@ impl Figure {
         M: Drawn<NQ, NV>,
     {
         let numbers = mechanism.drawing_numbers();
-        let numbers: Vec<f64> = numbers.as_ref().iter().map(|x| plain(*x)).collect();
+        let numbers: Vec<f64> = numbers.as_ref().iter().map(|x| to_double(*x)).collect();
         Figure::from_pieces(M::FRAMES.iter().map(ToString::to_string).collect(), M::DRAWING, &numbers)
     }
 
@@ -60,11 +60,11 @@ impl Figure {
             let end = piece.first.saturating_add(piece.kind.count());
             let Some(numbers) = numbers.get(piece.first..end) else { continue };
             let before = figure.shapes.len();
-            figure.push(piece.name, piece.role, piece.kind, piece.frames, numbers);
+            figure.push_shape(piece.name, piece.role, piece.kind, piece.frames, numbers);
             figure.shapes[before..].iter_mut().for_each(|shape| shape.first = Some(piece.first));
         }
         figure.shapes.iter_mut().for_each(|shape| shape.declared = true);
-        figure.fit();
+        figure.limit_ellipsoids();
         figure
     }
 
@@ -85,8 +85,8 @@ impl Figure {
             let what = format!("the numbers of `{name}`");
             return Err(Error::Count { what, expected: kind.count(), found: numbers.len() });
         }
-        let frame = frame.map(|frame| self.frame(frame)).transpose()?;
-        self.push(name, Role::Visual, kind, [frame; 2], numbers);
+        let frame = frame.map(|frame| self.frame_index(frame)).transpose()?;
+        self.push_shape(name, Role::Visual, kind, [frame; 2], numbers);
         Ok(self)
     }
 
@@ -109,13 +109,13 @@ impl Figure {
         w: [f64; 2],
         place: impl Fn(f64, f64) -> [f64; 3],
     ) -> Result<Figure, Error> {
-        let frame = frame.map(|frame| self.frame(frame)).transpose()?;
-        let mesh =
-            Mesh::surface(u, w, place).map_err(|what| Error::Surface { name: name.to_string(), what })?;
+        let frame = frame.map(|frame| self.frame_index(frame)).transpose()?;
+        let mesh = Mesh::triangulate_surface(u, w, place)
+            .map_err(|what| Error::Surface { name: name.to_string(), what })?;
         let mut numbers = vec![0.0; Kind::Mesh("").count()];
         numbers[3..12].copy_from_slice(Matrix3::identity().as_slice());
         numbers[12..].fill(1.0);
-        self.push(name, Role::Surface, Kind::Mesh(""), [frame; 2], &numbers);
+        self.push_shape(name, Role::Surface, Kind::Mesh(""), [frame; 2], &numbers);
         if let Some(shape) = self.shapes.last_mut() {
             shape.mesh = Some(mesh);
         }
@@ -137,9 +137,9 @@ impl Figure {
         std::fs::read_dir(folder.as_ref()).map_err(file_error)?;
         for shape in &mut self.shapes {
             if let (Kind::Mesh(path), Role::Visual) = (shape.kind, shape.role)
-                && let Some(found) = mesh::find(folder.as_ref(), path)
+                && let Some(found) = mesh::find_mesh_file(folder.as_ref(), path)
             {
-                shape.mesh = Some(mesh::read(&found)?);
+                shape.mesh = Some(mesh::read_mesh(&found)?);
             }
         }
         Ok(self)
@@ -160,7 +160,7 @@ impl Figure {
 
     /// Iterates over the shapes that are drawn. Shapes of mass properties are omitted if all meshes of their
     /// body were read.
-    pub(crate) fn shown(&self) -> impl Iterator<Item = &Shape> {
+    pub(crate) fn drawn_shapes(&self) -> impl Iterator<Item = &Shape> {
         self.shapes.iter().filter(|shape| shape.is_visible() && !self.has_meshes(shape))
     }
 
@@ -182,19 +182,26 @@ impl Figure {
     }
 
     /// Returns the index of a frame by its name, or [`Error::Frame`] if the drawing has no such frame.
-    pub(crate) fn frame(&self, name: &str) -> Result<usize, Error> {
+    pub(crate) fn frame_index(&self, name: &str) -> Result<usize, Error> {
         let found = self.frames.iter().position(|known| known == name);
         found.ok_or_else(|| Error::Frame { name: name.to_string(), known: self.frames.clone() })
     }
 
-    fn push(&mut self, name: &str, role: Role, kind: Kind, frames: [Option<usize>; 2], numbers: &[f64]) {
+    fn push_shape(
+        &mut self,
+        name: &str,
+        role: Role,
+        kind: Kind,
+        frames: [Option<usize>; 2],
+        numbers: &[f64],
+    ) {
         let known = frames.iter().flatten().all(|frame| *frame < self.frames.len());
         if !known || numbers.iter().any(|x| !x.is_finite()) {
             return;
         }
         let fitted = kind == Kind::Inertia;
         let (kind, numbers) = match kind {
-            Kind::Inertia => equivalent(numbers),
+            Kind::Inertia => equivalent_ellipsoid(numbers),
             Kind::Gravity => {
                 self.gravity.copy_from_slice(&numbers[3..]);
                 return;
@@ -208,7 +215,7 @@ impl Figure {
 
     /// Limits the equivalent ellipsoids to the length of the links, because many robot files have fictitious
     /// inertias.
-    fn fit(&mut self) {
+    fn limit_ellipsoids(&mut self) {
         let length =
             |s: &Shape| (0..3).map(|k| (s.numbers[3 + k] - s.numbers[k]).powi(2)).sum::<f64>().sqrt();
         let bars: Vec<(Option<usize>, f64)> =
@@ -225,13 +232,13 @@ impl Figure {
     }
 
     /// Returns the indices of the frames in which pieces are fixed.
-    pub(crate) fn used(&self) -> Vec<usize> {
+    pub(crate) fn used_frames(&self) -> Vec<usize> {
         (0..self.frames.len()).filter(|k| self.shapes.iter().any(|s| s.frames.contains(&Some(*k)))).collect()
     }
 
     /// Returns the common direction of all revolute axes of the drawing if they are parallel: the normal of a
     /// planar motion.
-    pub(crate) fn normal(
+    pub(crate) fn common_axis_direction(
         &self,
         turn: impl Fn(Option<usize>, Vector3<f64>) -> Vector3<f64>,
     ) -> Option<Vector3<f64>> {
@@ -246,14 +253,14 @@ impl Figure {
 impl Shape {
     /// Returns the index of the first number of the shape among the numbers of the declared pieces, and the
     /// count of these numbers. An equivalent ellipsoid takes only its position from them.
-    pub(crate) fn source(&self) -> Option<[usize; 2]> {
+    pub(crate) fn source_range(&self) -> Option<[usize; 2]> {
         let count = if self.fitted { 3 } else { self.numbers.len() };
         self.first.map(|first| [first, count])
     }
 
     /// Returns the reference points of the shape, each with its frame and the distance that the shape extends
     /// beyond it.
-    pub(crate) fn reach(&self) -> Vec<(Option<usize>, Vector3<f64>, f64)> {
+    pub(crate) fn reference_points(&self) -> Vec<(Option<usize>, Vector3<f64>, f64)> {
         let n = &self.numbers;
         let vector_from_numbers = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
         let [a, b] = self.frames;
@@ -285,7 +292,7 @@ impl Shape {
                     vec![(
                         a,
                         vector_from_numbers(0),
-                        mesh.radius() * n[12].abs().max(n[13].abs()).max(n[14].abs()),
+                        mesh.radius_of_mesh() * n[12].abs().max(n[13].abs()).max(n[14].abs()),
                     )]
                 }
                 None => Vec::new(),
@@ -305,12 +312,14 @@ impl Shape {
     }
 
     /// Serialises the shape as JSON. `renumber` converts frame indices of the drawing to those of the page.
-    pub(crate) fn json(&self, renumber: impl Fn(usize) -> usize) -> String {
+    pub(crate) fn shape_json(&self, renumber: impl Fn(usize) -> usize) -> String {
         let frame_number_text = |k: Option<usize>| k.map_or("-1".to_string(), |k| renumber(k).to_string());
         let (kind, more) = match self.kind {
             Kind::Force(k) => ("Force".to_string(), k.to_string()),
             Kind::Torque(k) => ("Torque".to_string(), k.to_string()),
-            Kind::Mesh(_) => ("Mesh".to_string(), self.mesh.as_ref().map_or("null".to_string(), Mesh::json)),
+            Kind::Mesh(_) => {
+                ("Mesh".to_string(), self.mesh.as_ref().map_or("null".to_string(), Mesh::mesh_json))
+            }
             kind => (format!("{kind:?}"), "null".to_string()),
         };
         text::list([
@@ -328,7 +337,7 @@ impl Shape {
 /// Returns the homogeneous ellipsoid of a given mass and inertia: with principal moments `I₁ …`, the
 /// semi-axes satisfy `a₁² = 5 (I₂ + I₃ − I₁) / (2 m)`. Impossible moments, such as those of planar
 /// mechanisms, yield flat ellipsoids.
-fn equivalent(numbers: &[f64]) -> (Kind, Vec<f64>) {
+fn equivalent_ellipsoid(numbers: &[f64]) -> (Kind, Vec<f64>) {
     let [x, y, z, mass, xx, yy, zz, xy, xz, yz] = *numbers else { return (Kind::Point, vec![0.0; 3]) };
     if mass <= 0.0 {
         return (Kind::Point, vec![x, y, z]);
@@ -368,7 +377,7 @@ mod tests {
             0.0,
             0.0,
         ];
-        let (kind, n) = equivalent(&numbers);
+        let (kind, n) = equivalent_ellipsoid(&numbers);
         assert_eq!((kind, &n[..3]), (Kind::Ellipsoid, &[1.0, 2.0, 3.0][..]));
         // Each column of the axes is a coordinate axis, with the corresponding semi-axis.
         for (k, half) in [a, b, c].into_iter().enumerate() {

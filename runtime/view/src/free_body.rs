@@ -1,7 +1,7 @@
 //! Free-body diagrams as SVG: the body, the points of application, and forces and torques as arrows, with a
 //! list of their values.
 
-use crate::figure::plain;
+use crate::figure::to_double;
 use crate::text::html as escaped;
 use linkwork::Real;
 use linkwork::free_body::{Action, Diagram, Origin};
@@ -41,7 +41,7 @@ pub enum Side {
 
 impl Side {
     /// Returns the unit vectors to the right, upward and towards the viewer.
-    fn axes(self) -> [[f64; 3]; 3] {
+    fn view_axes(self) -> [[f64; 3]; 3] {
         let third = 1.0 / 3.0_f64.sqrt();
         let (a, b, c) = (0.5_f64.sqrt(), 1.0 / 6.0_f64.sqrt(), (2.0 / 3.0_f64).sqrt());
         match self {
@@ -53,8 +53,8 @@ impl Side {
     }
 
     /// Returns the components of a vector to the right, upward and towards the viewer.
-    fn seen(self, v: [f64; 3]) -> [f64; 3] {
-        self.axes().map(|axis| axis.iter().zip(v).map(|(a, b)| a * b).sum())
+    fn view_components(self, v: [f64; 3]) -> [f64; 3] {
+        self.view_axes().map(|axis| axis.iter().zip(v).map(|(a, b)| a * b).sum())
     }
 }
 
@@ -114,8 +114,8 @@ struct Shown {
 
 impl Shown {
     fn new<T: Real>(action: &Action<T>, side: Side) -> Shown {
-        let figures = [action.point, action.force, action.torque].map(numbers);
-        let [point, force, torque] = figures.map(|v| side.seen(v));
+        let figures = [action.point, action.force, action.torque].map(numbers_of_vector);
+        let [point, force, torque] = figures.map(|v| side.view_components(v));
         let colour = match action.origin {
             Origin::Gravity => "#5a5a5a",
             Origin::Element => "#008c64",
@@ -132,8 +132,8 @@ impl Shown {
     }
 }
 
-fn numbers<T: Real>(v: SVector<T, 3>) -> [f64; 3] {
-    [v[0], v[1], v[2]].map(plain)
+fn numbers_of_vector<T: Real>(v: SVector<T, 3>) -> [f64; 3] {
+    [v[0], v[1], v[2]].map(to_double)
 }
 
 fn length(x: f64, y: f64) -> f64 {
@@ -141,17 +141,17 @@ fn length(x: f64, y: f64) -> f64 {
 }
 
 /// Returns the factor that scales the maximum of `sizes` to `to`.
-fn scale(sizes: impl Iterator<Item = f64>, to: f64) -> f64 {
+fn scale_to_maximum(sizes: impl Iterator<Item = f64>, to: f64) -> f64 {
     let largest = sizes.fold(0.0_f64, f64::max);
     if largest > 0.0 { to / largest } else { 0.0 }
 }
 
 fn write_drawing(out: &mut String, all: &[Shown], side: Side) {
     let all: Vec<&Shown> = all.iter().filter(|shown| shown.is_finite()).collect();
-    let places = scale(all.iter().map(|s| length(s.point[0], s.point[1])), REACH);
+    let places = scale_to_maximum(all.iter().map(|s| length(s.point[0], s.point[1])), REACH);
     let vector_norm = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let forces = scale(all.iter().map(|s| vector_norm(s.force)), LONGEST);
-    let torques = scale(all.iter().map(|s| vector_norm(s.torque)), LONGEST / 2.0);
+    let forces = scale_to_maximum(all.iter().map(|s| vector_norm(s.force)), LONGEST);
+    let torques = scale_to_maximum(all.iter().map(|s| vector_norm(s.torque)), LONGEST / 2.0);
     let largest = all.iter().map(|s| vector_norm(s.torque)).fold(0.0, f64::max);
     let project_to_page = |v: [f64; 3]| (DRAWING / 2.0 + places * v[0], HEIGHT / 2.0 - places * v[1]);
     let center = project_to_page([0.0; 3]);
@@ -174,7 +174,7 @@ fn write_drawing(out: &mut String, all: &[Shown], side: Side) {
     for shown in all {
         let (x, y) = project_to_page(shown.point);
         let [right, up, _] = shown.force.map(|c| c * forces);
-        arrow(out, (x, y), (right, -up), shown.colour, 1);
+        draw_arrow(out, (x, y), (right, -up), shown.colour, 1);
         let away = if up < 0.0 { 16.0 } else { -8.0 };
         let drawn = length(right, up) > SHORTEST;
         // Outside the arc of a torque.
@@ -192,9 +192,9 @@ fn write_drawing(out: &mut String, all: &[Shown], side: Side) {
         }
         let [right, up, across] = shown.torque;
         if across.abs() > 1e-6 * vector_norm(shown.torque) {
-            arc(out, (x, y), across > 0.0, shown.colour);
+            draw_arc(out, (x, y), across > 0.0, shown.colour);
         }
-        arrow(out, (x, y), (right * torques, -up * torques), shown.colour, 2);
+        draw_arrow(out, (x, y), (right * torques, -up * torques), shown.colour, 2);
     }
 }
 
@@ -204,11 +204,11 @@ fn write_axes(out: &mut String, side: Side) {
     for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
         let mut axis = [0.0; 3];
         axis[k] = 30.0;
-        let [right, up, _] = side.seen(axis);
+        let [right, up, _] = side.view_components(axis);
         if length(right, up) < SHORTEST {
             continue;
         }
-        arrow(out, origin, (right, -up), "#999", 1);
+        draw_arrow(out, origin, (right, -up), "#999", 1);
         let _ = writeln!(
             out,
             "<text x=\"{:.1}\" y=\"{:.1}\" fill=\"#999\" text-anchor=\"middle\">{name}</text>",
@@ -219,7 +219,7 @@ fn write_axes(out: &mut String, side: Side) {
 }
 
 /// Draws an arrow with this number of heads, unless it is too short.
-fn arrow(out: &mut String, (x, y): (f64, f64), (dx, dy): (f64, f64), colour: &str, heads: usize) {
+fn draw_arrow(out: &mut String, (x, y): (f64, f64), (dx, dy): (f64, f64), colour: &str, heads: usize) {
     let long = length(dx, dy);
     if long <= SHORTEST {
         return;
@@ -250,7 +250,7 @@ fn arrow(out: &mut String, (x, y): (f64, f64), (dx, dy): (f64, f64), colour: &st
 }
 
 /// Draws three quarters of a circle about a point, with an arrow.
-fn arc(out: &mut String, (x, y): (f64, f64), counterclockwise: bool, colour: &str) {
+fn draw_arc(out: &mut String, (x, y): (f64, f64), counterclockwise: bool, colour: &str) {
     // Counterclockwise from the right through the top; otherwise the mirror image.
     let sign = if counterclockwise { 1.0 } else { -1.0 };
     let sweep = u8::from(!counterclockwise);
@@ -286,19 +286,19 @@ fn write_list<T: Real, const N: usize>(out: &mut String, diagram: &Diagram<T, N>
     say(out, "#000", "bold", &format!("{}: points from the centre of mass", diagram.body));
     for shown in all {
         let [point, force, torque] = shown.figures;
-        say(out, shown.colour, "bold", &format!("{} at {} m", shown.name, written(point)));
-        say(out, shown.colour, "normal", &format!("force {} N", written(force)));
-        say(out, shown.colour, "normal", &format!("torque {} N·m", written(torque)));
+        say(out, shown.colour, "bold", &format!("{} at {} m", shown.name, format_components(point)));
+        say(out, shown.colour, "normal", &format!("force {} N", format_components(force)));
+        say(out, shown.colour, "normal", &format!("torque {} N·m", format_components(torque)));
     }
-    let (force, torque) = (numbers(diagram.force()), numbers(diagram.torque()));
+    let (force, torque) = (numbers_of_vector(diagram.force()), numbers_of_vector(diagram.torque()));
     say(out, "#000", "bold", "sum, m a and the rate of the angular momentum");
-    say(out, "#000", "normal", &format!("force {} N", written(force)));
-    say(out, "#000", "normal", &format!("torque {} N·m", written(torque)));
+    say(out, "#000", "normal", &format!("force {} N", format_components(force)));
+    say(out, "#000", "normal", &format!("torque {} N·m", format_components(torque)));
 }
 
 /// Formats the three components of a vector with as many decimals as give the largest one four significant
 /// digits.
-fn written(v: [f64; 3]) -> String {
+fn format_components(v: [f64; 3]) -> String {
     let largest = v.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
     let decimals = if largest > 0.0 && largest.is_finite() {
         (3.0 - largest.log10().floor()).clamp(0.0, 9.0) as usize

@@ -1,16 +1,16 @@
 //! HTML index of several pages with still pictures.
 
-use crate::page::head;
+use crate::page::page_head;
 use crate::{Page, text};
 
 /// Returns an index of pages with their still pictures. Each entry is the address of a page and the page.
 #[doc(hidden)]
 pub fn gallery(title: &str, pages: &[(String, Page)]) -> String {
     let title = text::html(title);
-    let cards: String = pages.iter().map(|(address, page)| page.card(address)).collect();
+    let cards: String = pages.iter().map(|(address, page)| page.link_card(address)).collect();
     format!(
         "{}<body class=\"linkwork-page\">\n<header><h1>{title}</h1></header>\n\
          <main class=\"linkwork-view cards\">\n{cards}</main>\n</body>\n</html>\n",
-        head(&title)
+        page_head(&title)
     )
 }

@@ -1,6 +1,6 @@
 //! Live views of a control loop in a browser.
 
-use crate::figure::plain;
+use crate::figure::to_double;
 use crate::motion::as_plain;
 use crate::server::Server;
 use crate::{Error, Figure, Motion, Page};
@@ -82,16 +82,16 @@ where
             event: None,
             violation: zero,
         };
-        let motion = Motion::of("", mechanism, &[neutral])?.figure(figure)?.live();
-        let frames = motion.used();
-        let [plotted, _] = motion.curves();
-        let server = Server::open(port, Page::new(name).motion(motion).html())?;
+        let motion = Motion::of("", mechanism, &[neutral])?.figure(figure)?.mark_as_live();
+        let frames = motion.used_frames();
+        let [plotted, _] = motion.curve_counts();
+        let server = Server::open_server(port, Page::new(name).motion(motion).html())?;
         Ok(Live { mechanism, frames, plotted, server, message: Vec::new(), samples: 0 })
     }
 
     /// Returns the address of the page, to be opened in a browser.
     pub fn url(&self) -> String {
-        format!("http://{}/", self.server.address())
+        format!("http://{}/", self.server.server_address())
     }
 
     /// Shows a sample. The call computes and copies the placements of the frames and never blocks. Samples
@@ -107,7 +107,7 @@ where
         sample: &Sample<<M as Mechanism<NQ, NV, NU>>::Scalar, NQ, NV, NU>,
     ) -> Result<(), Error> {
         self.message.clear();
-        self.message.extend(plain(sample.t).to_le_bytes());
+        self.message.extend(to_double(sample.t).to_le_bytes());
         let number = self.samples as usize;
         self.samples += 1;
         let not_finite_error = |frame: &str| Error::NotFinite {
@@ -130,14 +130,14 @@ where
             let numbers = placement.translation.vector.iter().chain(turn.coords.iter());
             self.message.extend(numbers.flat_map(|x| (*x as f32).to_le_bytes()));
         }
-        let state = sample.q.iter().take(self.plotted).chain(&sample.u).map(|x| plain(*x));
-        for x in state.clone().chain([plain(sample.t)]) {
+        let state = sample.q.iter().take(self.plotted).chain(&sample.u).map(|x| to_double(*x));
+        for x in state.clone().chain([to_double(sample.t)]) {
             if !x.is_finite() {
                 return Err(not_finite_error("state"));
             }
         }
         self.message.extend(state.flat_map(|x| (x as f32).to_le_bytes()));
-        self.server.publish(&self.message);
+        self.server.publish_message(&self.message);
         Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! Logs of motions as comma-separated values (RFC 4180).
 
 use crate::Error;
-use crate::figure::plain;
+use crate::figure::to_double;
 use crate::motion::check_times;
 use linkwork::simulate::Sample;
 use linkwork::{Mechanism, Real};
@@ -43,9 +43,10 @@ where
     T: Real + Display,
     M: Mechanism<NQ, NV, NU, Scalar = T>,
 {
-    check_times("csv", samples.iter().map(|sample| plain(sample.t)))?;
-    let names =
-        |list: &[&str], of: &str| list.iter().map(|name| field(&format!("{of}.{name}"))).collect::<Vec<_>>();
+    check_times("csv", samples.iter().map(|sample| to_double(sample.t)))?;
+    let names = |list: &[&str], of: &str| {
+        list.iter().map(|name| quoted_field(&format!("{of}.{name}"))).collect::<Vec<_>>()
+    };
     let head = [names(&M::CONFIGURATION, "q"), names(&M::VELOCITIES, "v"), names(&M::INPUTS, "u")].concat();
     let mut out = "t".to_string();
     head.iter().for_each(|name| out.extend([",", name]));
@@ -61,7 +62,7 @@ where
 }
 
 /// Returns a field of a CSV file, in quotes if it contains commas, quotes or line breaks.
-fn field(text: &str) -> String {
+fn quoted_field(text: &str) -> String {
     match text.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
         false => text.to_string(),
@@ -70,11 +71,11 @@ fn field(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::field;
+    use super::quoted_field;
 
     #[test]
     fn names_that_would_be_several_fields_are_quoted() {
-        assert_eq!(field("q.hinge"), "q.hinge");
-        assert_eq!(field("a,\"b\"\n"), "\"a,\"\"b\"\"\n\"");
+        assert_eq!(quoted_field("q.hinge"), "q.hinge");
+        assert_eq!(quoted_field("a,\"b\"\n"), "\"a,\"\"b\"\"\n\"");
     }
 }

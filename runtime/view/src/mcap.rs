@@ -4,7 +4,7 @@
 //! content. Numbers are little-endian; strings are preceded by their length in four bytes. Messages are JSON
 //! and are written one after the other, without chunks and without compression.
 
-use crate::figure::plain;
+use crate::figure::to_double;
 use crate::motion::as_plain;
 use crate::{Error, text};
 use linkwork::nalgebra::{IsometryMatrix3, UnitQuaternion};
@@ -77,7 +77,7 @@ pub fn mcap<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Mechanism<NQ, NV, NU> + Frames<NQ, NV, Scalar = <M as Mechanism<NQ, NV, NU>>::Scalar>,
 {
-    let plain_list = |list: &[_]| list.iter().map(|x| plain(*x)).collect();
+    let plain_list = |list: &[_]| list.iter().map(|x| to_double(*x)).collect();
     let names = Names {
         frames: M::FRAMES,
         configuration: &M::CONFIGURATION,
@@ -87,7 +87,7 @@ where
     let instant_of_sample = |sample: &Sample<<M as Mechanism<NQ, NV, NU>>::Scalar, NQ, NV, NU>| {
         let frames = 0..M::FRAMES.len();
         Instant {
-            t: plain(sample.t),
+            t: to_double(sample.t),
             q: plain_list(sample.q.as_slice()),
             v: plain_list(sample.v.as_slice()),
             u: plain_list(sample.u.as_slice()),
@@ -139,7 +139,7 @@ pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) ->
     let mut file = File::new();
     let mut last = 0.0;
     for (k, sample) in samples.into_iter().enumerate() {
-        check(names, k, &sample, last)?;
+        check_representable(names, k, &sample, last)?;
         last = sample.t;
         let nanoseconds = (sample.t * 1e9).round() as u64;
         let stamp =
@@ -186,15 +186,15 @@ pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) ->
             ),
         ];
         for (channel, message) in (1..).zip(&messages) {
-            file.message(channel, nanoseconds, message);
+            file.write_message(channel, nanoseconds, message);
         }
     }
-    Ok(file.finish())
+    Ok(file.finish_file())
 }
 
 /// Reports values that the format cannot represent: times outside 64 bits of nanoseconds, and values that are
 /// not finite.
-fn check(names: &Names<'_>, k: usize, sample: &Instant, last: f64) -> Result<(), Error> {
+fn check_representable(names: &Names<'_>, k: usize, sample: &Instant, last: f64) -> Result<(), Error> {
     let motion_title = || "mcap".to_string();
     let not_finite =
         |frame: &str| Err(Error::NotFinite { motion: motion_title(), sample: k, frame: frame.to_string() });
@@ -237,46 +237,56 @@ struct File {
 struct Content(Vec<u8>);
 
 impl Content {
-    fn bytes(mut self, bytes: &[u8]) -> Content {
+    fn append_bytes(mut self, bytes: &[u8]) -> Content {
         self.0.extend_from_slice(bytes);
         self
     }
 
-    fn string(self, text: &str) -> Content {
-        self.bytes(&(text.len() as u32).to_le_bytes()).bytes(text.as_bytes())
+    fn append_string(self, text: &str) -> Content {
+        self.append_bytes(&(text.len() as u32).to_le_bytes()).append_bytes(text.as_bytes())
     }
 }
 
 impl File {
     fn new() -> File {
         let mut file = File { bytes: MAGIC.to_vec(), count: 0, first: 0, last: 0 };
-        file.record(
+        file.write_record(
             HEADER,
-            Content::default().string("").string(concat!("linkwork ", env!("CARGO_PKG_VERSION"))),
+            Content::default()
+                .append_string("")
+                .append_string(concat!("linkwork ", env!("CARGO_PKG_VERSION"))),
         );
-        file.describe();
+        file.write_schemas_and_channels();
         file
     }
 
-    fn record(&mut self, kind: u8, content: Content) {
+    fn write_record(&mut self, kind: u8, content: Content) {
         self.bytes.push(kind);
         self.bytes.extend((content.0.len() as u64).to_le_bytes());
         self.bytes.extend(content.0);
     }
 
     /// Writes the schema and the channel of each topic.
-    fn describe(&mut self) {
+    fn write_schemas_and_channels(&mut self) {
         for (id, (topic, name, schema)) in (1_u16..).zip(TOPICS) {
             let id = id.to_le_bytes();
-            let content = Content::default().bytes(&id).string(name).string("jsonschema").string(schema);
-            self.record(SCHEMA, content);
-            let content = Content::default().bytes(&id).bytes(&id).string(topic).string("json");
+            let content = Content::default()
+                .append_bytes(&id)
+                .append_string(name)
+                .append_string("jsonschema")
+                .append_string(schema);
+            self.write_record(SCHEMA, content);
+            let content = Content::default()
+                .append_bytes(&id)
+                .append_bytes(&id)
+                .append_string(topic)
+                .append_string("json");
             // No metadata.
-            self.record(CHANNEL, content.bytes(&0_u32.to_le_bytes()));
+            self.write_record(CHANNEL, content.append_bytes(&0_u32.to_le_bytes()));
         }
     }
 
-    fn message(&mut self, channel: u16, nanoseconds: u64, message: &str) {
+    fn write_message(&mut self, channel: u16, nanoseconds: u64, message: &str) {
         if self.count == 0 {
             self.first = nanoseconds;
         }
@@ -284,33 +294,37 @@ impl File {
         let time = nanoseconds.to_le_bytes();
         let sequence = (self.count / TOPICS.len() as u32).to_le_bytes();
         self.count += 1;
-        let head = Content::default().bytes(&channel.to_le_bytes()).bytes(&sequence);
-        self.record(MESSAGE, head.bytes(&time).bytes(&time).bytes(message.as_bytes()));
+        let head = Content::default().append_bytes(&channel.to_le_bytes()).append_bytes(&sequence);
+        self.write_record(
+            MESSAGE,
+            head.append_bytes(&time).append_bytes(&time).append_bytes(message.as_bytes()),
+        );
     }
 
     /// Completes the file with a summary: schemas, channels and the number of messages.
-    fn finish(mut self) -> Vec<u8> {
+    fn finish_file(mut self) -> Vec<u8> {
         // A checksum of zero means that none is provided.
         let none = 0_u32.to_le_bytes();
-        self.record(DATA_END, Content::default().bytes(&none));
+        self.write_record(DATA_END, Content::default().append_bytes(&none));
         let summary = self.bytes.len() as u64;
-        self.describe();
+        self.write_schemas_and_channels();
         let channels = TOPICS.len() as u16;
         let statistics = Content::default()
-            .bytes(&u64::from(self.count).to_le_bytes())
-            .bytes(&channels.to_le_bytes())
-            .bytes(&u32::from(channels).to_le_bytes())
+            .append_bytes(&u64::from(self.count).to_le_bytes())
+            .append_bytes(&channels.to_le_bytes())
+            .append_bytes(&u32::from(channels).to_le_bytes())
             // Number of attachments, metadata records and chunks.
-            .bytes(&[0; 12])
-            .bytes(&self.first.to_le_bytes())
-            .bytes(&self.last.to_le_bytes())
-            .bytes(&(10 * u32::from(channels)).to_le_bytes());
+            .append_bytes(&[0; 12])
+            .append_bytes(&self.first.to_le_bytes())
+            .append_bytes(&self.last.to_le_bytes())
+            .append_bytes(&(10 * u32::from(channels)).to_le_bytes());
         let each = u64::from(self.count / u32::from(channels)).to_le_bytes();
-        let statistics =
-            (1..=channels).fold(statistics, |all, channel| all.bytes(&channel.to_le_bytes()).bytes(&each));
-        self.record(STATISTICS, statistics);
-        let footer = Content::default().bytes(&summary.to_le_bytes()).bytes(&0_u64.to_le_bytes());
-        self.record(FOOTER, footer.bytes(&none));
+        let statistics = (1..=channels)
+            .fold(statistics, |all, channel| all.append_bytes(&channel.to_le_bytes()).append_bytes(&each));
+        self.write_record(STATISTICS, statistics);
+        let footer =
+            Content::default().append_bytes(&summary.to_le_bytes()).append_bytes(&0_u64.to_le_bytes());
+        self.write_record(FOOTER, footer.append_bytes(&none));
         self.bytes.extend_from_slice(MAGIC);
         self.bytes
     }

@@ -19,7 +19,7 @@ const CELLS: u32 = 80;
 
 impl Mesh {
     /// Triangulates a surface between bounds of its two parameters, with two triangles per cell.
-    pub(crate) fn surface(
+    pub(crate) fn triangulate_surface(
         u: [f64; 2],
         w: [f64; 2],
         place: impl Fn(f64, f64) -> [f64; 3],
@@ -51,7 +51,7 @@ impl Mesh {
     }
 
     /// Returns the distance of the farthest corner from the origin.
-    pub(crate) fn radius(&self) -> f64 {
+    pub(crate) fn radius_of_mesh(&self) -> f64 {
         let corner_norm = |c: &[f32; 3]| c.iter().map(|x| f64::from(*x) * f64::from(*x)).sum::<f64>().sqrt();
         self.corners.iter().map(corner_norm).fold(0.0, f64::max)
     }
@@ -64,7 +64,7 @@ impl Mesh {
 
     /// Serialises the mesh as JSON, with 16 bits per coordinate and coinciding corners merged: lowest corner,
     /// step sizes, positions, indices.
-    pub(crate) fn json(&self) -> String {
+    pub(crate) fn mesh_json(&self) -> String {
         let bounds_of_corners = |f: fn(f32, f32) -> f32, from: f32| {
             [0, 1, 2].map(|k| self.corners.iter().map(|c| c[k]).fold(from, f))
         };
@@ -93,7 +93,7 @@ impl Mesh {
 }
 
 /// Returns the file in a folder that a path of a robot's file refers to.
-pub(crate) fn find(folder: &Path, path: &str) -> Option<PathBuf> {
+pub(crate) fn find_mesh_file(folder: &Path, path: &str) -> Option<PathBuf> {
     let path = path.split_once("://").map_or(path, |(_, path)| path);
     // `..` is dropped, so that no file outside the folder is read.
     let names: Vec<&std::ffi::OsStr> = Path::new(path)
@@ -109,13 +109,15 @@ pub(crate) fn find(folder: &Path, path: &str) -> Option<PathBuf> {
 }
 
 /// Reads a triangle mesh in the format that the extension of the file determines.
-pub(crate) fn read(path: &Path) -> Result<Mesh, Error> {
+pub(crate) fn read_mesh(path: &Path) -> Result<Mesh, Error> {
     let bytes = std::fs::read(path).map_err(|cause| Error::File { path: path.to_path_buf(), cause })?;
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let mesh = match ending.as_deref() {
-        Some("stl") => stl(&bytes),
-        Some("obj") => obj(&String::from_utf8_lossy(&bytes)),
-        Some("dae") => collada::corners(&String::from_utf8_lossy(&bytes)).map(|corners| Mesh { corners }),
+        Some("stl") => read_stl(&bytes),
+        Some("obj") => read_obj(&String::from_utf8_lossy(&bytes)),
+        Some("dae") => {
+            collada::corners_of_triangles(&String::from_utf8_lossy(&bytes)).map(|corners| Mesh { corners })
+        }
         _ => Err("expected an STL, OBJ or COLLADA (.dae) file".to_string()),
     };
     let mesh = mesh.and_then(|mesh| match mesh.corners.len() / 3 {
@@ -133,7 +135,7 @@ pub(crate) fn read(path: &Path) -> Result<Mesh, Error> {
 
 /// Reads an STL file. A binary file has a header of 80 bytes, the number of triangles, and 50 bytes per
 /// triangle. It is distinguished from ASCII by its length, since its header may also begin with `solid`.
-fn stl(bytes: &[u8]) -> Result<Mesh, String> {
+fn read_stl(bytes: &[u8]) -> Result<Mesh, String> {
     let count = bytes.get(80..84).and_then(|n| n.try_into().ok()).map(u32::from_le_bytes);
     if let Some(count) = count.filter(|n| bytes.len() as u64 == 84 + 50 * u64::from(*n)) {
         let read_float = |b: &[u8]| b.try_into().map_or(f32::NAN, f32::from_le_bytes);
@@ -152,8 +154,9 @@ fn stl(bytes: &[u8]) -> Result<Mesh, String> {
     for line in text.lines() {
         let mut words = line.split_whitespace();
         if words.next() == Some("vertex") {
-            mesh.corners
-                .push(three(words).ok_or_else(|| format!("expected three numbers: `{}`", line.trim()))?);
+            mesh.corners.push(
+                three_numbers(words).ok_or_else(|| format!("expected three numbers: `{}`", line.trim()))?,
+            );
         }
     }
     match mesh.corners.len() % 3 {
@@ -163,13 +166,13 @@ fn stl(bytes: &[u8]) -> Result<Mesh, String> {
 }
 
 /// Reads the corners and faces of an OBJ file; faces with more than three corners are triangulated as fans.
-fn obj(text: &str) -> Result<Mesh, String> {
+fn read_obj(text: &str) -> Result<Mesh, String> {
     let (mut corners, mut mesh): (Vec<[f32; 3]>, Mesh) = (Vec::new(), Mesh::default());
     for line in text.lines() {
         let unreadable_line_error = || format!("cannot be read: `{}`", line.trim());
         let mut words = line.split_whitespace();
         match words.next() {
-            Some("v") => corners.push(three(words).ok_or_else(unreadable_line_error)?),
+            Some("v") => corners.push(three_numbers(words).ok_or_else(unreadable_line_error)?),
             Some("f") => {
                 let corner_of_face = |word: &str| {
                     let n: i64 = word.split('/').next()?.parse().ok()?;
@@ -188,7 +191,7 @@ fn obj(text: &str) -> Result<Mesh, String> {
     Ok(mesh)
 }
 
-fn three<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<[f32; 3]> {
+fn three_numbers<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<[f32; 3]> {
     let mut next = || words.next()?.parse().ok();
     Some([next()?, next()?, next()?])
 }
@@ -209,33 +212,36 @@ mod tests {
         let ascii = "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 2 0\n\
                      endloop\nendfacet\nendsolid";
         let object = "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1/1/1 2/2/2 -1\n";
-        for mesh in [stl(&binary), stl(ascii.as_bytes()), obj(object)] {
+        for mesh in [read_stl(&binary), read_stl(ascii.as_bytes()), read_obj(object)] {
             assert_eq!(mesh, Ok(Mesh { corners: TRIANGLE.to_vec() }));
         }
-        assert_eq!(Mesh { corners: TRIANGLE.to_vec() }.radius(), 2.0);
+        assert_eq!(Mesh { corners: TRIANGLE.to_vec() }.radius_of_mesh(), 2.0);
     }
 
     #[test]
     fn broken_files_are_told() {
         for (what, found) in [
-            ("neither", stl(&[0xff; 90])),
-            ("three numbers", stl(b"solid\nvertex 0 zero 0")),
-            ("three corners", stl(b"solid\nvertex 0 0 0")),
-            ("cannot be read", obj("v 0 0 0\nf 1 2 3")),
-            ("cannot be read", obj("v 0 0")),
+            ("neither", read_stl(&[0xff; 90])),
+            ("three numbers", read_stl(b"solid\nvertex 0 zero 0")),
+            ("three corners", read_stl(b"solid\nvertex 0 0 0")),
+            ("cannot be read", read_obj("v 0 0 0\nf 1 2 3")),
+            ("cannot be read", read_obj("v 0 0")),
         ] {
             assert!(found.unwrap_err().contains(what), "{what}");
         }
         // The file is shorter than its number of triangles requires.
         let mut short = vec![0; 80];
         short.extend(u32::MAX.to_le_bytes());
-        assert!(stl(&short).is_err());
+        assert!(read_stl(&short).is_err());
     }
 
     #[test]
     fn paths_do_not_leave_the_folder() {
-        assert_eq!(find(Path::new("/nowhere"), "package://robot/../../etc/hosts"), None);
+        assert_eq!(find_mesh_file(Path::new("/nowhere"), "package://robot/../../etc/hosts"), None);
         let source = Path::new(env!("CARGO_MANIFEST_DIR"));
-        assert_eq!(find(source, "package://any/deep/src/mesh.rs"), Some(source.join("src/mesh.rs")));
+        assert_eq!(
+            find_mesh_file(source, "package://any/deep/src/mesh.rs"),
+            Some(source.join("src/mesh.rs"))
+        );
     }
 }

@@ -1,7 +1,7 @@
 //! Motions: placements of the frames of a drawing at each instant, with plots.
 
 use crate::encode::{Stream, base64};
-use crate::figure::{Figure, Shape, plain};
+use crate::figure::{Figure, Shape, to_double};
 use crate::scene::Scene;
 use crate::{Error, text};
 use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, UnitQuaternion, Vector3};
@@ -90,12 +90,12 @@ impl Motion {
             let frames = 0..M::FRAMES.len();
             frames.filter_map(|k| Some(as_plain(&mechanism.placement_of(k, s.t, &s.q)?))).collect()
         });
-        let times = samples.iter().map(|s| plain(s.t)).collect();
+        let times = samples.iter().map(|s| to_double(s.t)).collect();
         let mut motion = Motion::from_placements(title, Figure::of(mechanism), times, placements.collect())?;
-        motion.inputs = samples.iter().map(|s| s.u.iter().map(|u| plain(*u)).collect()).collect();
+        motion.inputs = samples.iter().map(|s| s.u.iter().map(|u| to_double(*u)).collect()).collect();
         if NQ > 0 && NQ <= PLOTTED {
-            let units = units(&M::CONFIGURATION, if M::SPEEDS { &[] } else { &M::VELOCITY_UNITS });
-            let coordinate_values = |k: usize| samples.iter().map(|s| plain(s.q[k])).collect();
+            let units = coordinate_units(&M::CONFIGURATION, if M::SPEEDS { &[] } else { &M::VELOCITY_UNITS });
+            let coordinate_values = |k: usize| samples.iter().map(|s| to_double(s.q[k])).collect();
             motion = motion.plots(
                 "Coordinates",
                 (0..NQ).map(|k| (units[k], M::CONFIGURATION[k], coordinate_values(k))),
@@ -104,7 +104,7 @@ impl Motion {
         Ok(motion.terrain(|number, place| {
             let place = place.map(linkwork::nalgebra::convert);
             let heights = mechanism.drawing_heights(&place);
-            heights.as_ref().get(number).map(|height| plain(*height))
+            heights.as_ref().get(number).map(|height| to_double(*height))
         }))
     }
 
@@ -122,9 +122,9 @@ impl Motion {
     ) -> Result<Motion, Error> {
         let motion_title = || title.to_string();
         check_times(title, times.iter().copied())?;
-        check(&format!("the placements of `{title}`"), times.len(), placements.len())?;
+        check_count(&format!("the placements of `{title}`"), times.len(), placements.len())?;
         for (sample, list) in placements.iter().enumerate() {
-            check(
+            check_count(
                 &format!("the placements of sample {sample} of `{title}`"),
                 figure.frames.len(),
                 list.len(),
@@ -163,7 +163,11 @@ impl Motion {
     ///
     /// [`Error::Count`] if the number of frames differs.
     pub fn figure(mut self, figure: Figure) -> Result<Motion, Error> {
-        check(&format!("the frames of `{}`", self.title), self.figure.frames.len(), figure.frames.len())?;
+        check_count(
+            &format!("the frames of `{}`", self.title),
+            self.figure.frames.len(),
+            figure.frames.len(),
+        )?;
         self.figure = figure;
         Ok(self)
     }
@@ -178,8 +182,8 @@ impl Motion {
     /// terrain with this index at a position along its first two axes. Terrains whose height is not finite
     /// everywhere in the region are omitted.
     pub fn terrain(mut self, height: impl Fn(usize, [f64; 2]) -> Option<f64>) -> Motion {
-        let size = Scene::new(&self.figure, &self.placements, &self.shown()).size;
-        self.figure.raise(&self.placements, size, height);
+        let size = Scene::new(&self.figure, &self.placements, &self.shown_samples()).size;
+        self.figure.raise_terrains(&self.placements, size, height);
         self
     }
 
@@ -198,7 +202,7 @@ impl Motion {
         let curves: Vec<(String, Vec<f64>)> =
             curves.into_iter().map(|(n, values)| (n.into(), values)).collect();
         for (name, values) in &curves {
-            check(&format!("the curve `{name}` of `{title}`"), self.times.len(), values.len())?;
+            check_count(&format!("the curve `{name}` of `{title}`"), self.times.len(), values.len())?;
         }
         self.plots.push(Plot { title: title.to_string(), unit: unit.to_string(), curves });
         Ok(self)
@@ -240,7 +244,7 @@ impl Motion {
     ///
     /// [`Error::Frame`] for an unknown frame.
     pub fn trail(mut self, frame: &str, point: [f64; 3], seconds: f64) -> Result<Motion, Error> {
-        let frame = self.figure.frame(frame)?;
+        let frame = self.figure.frame_index(frame)?;
         self.trails.push((frame, point, seconds));
         Ok(self)
     }
@@ -279,7 +283,7 @@ impl Motion {
     /// [`Error::Frame`] for an unknown frame, [`Error::Count`] if the number of vectors differs from the
     /// number of samples.
     pub fn force(self, frame: Option<&str>, point: [f64; 3], values: Vec<[f64; 3]>) -> Result<Motion, Error> {
-        self.arrow("Force", frame, point, values)
+        self.add_arrow("Force", frame, point, values)
     }
 
     /// Draws a torque as a circular arrow, with arguments as for a [`force`](Self::force).
@@ -294,18 +298,18 @@ impl Motion {
         point: [f64; 3],
         values: Vec<[f64; 3]>,
     ) -> Result<Motion, Error> {
-        self.arrow("Torque", frame, point, values)
+        self.add_arrow("Torque", frame, point, values)
     }
 
-    fn arrow(
+    fn add_arrow(
         mut self,
         kind: &'static str,
         frame: Option<&str>,
         point: [f64; 3],
         values: Vec<[f64; 3]>,
     ) -> Result<Motion, Error> {
-        let frame = frame.map(|frame| self.figure.frame(frame)).transpose()?;
-        check(&format!("the arrows of a {}", kind.to_lowercase()), self.times.len(), values.len())?;
+        let frame = frame.map(|frame| self.figure.frame_index(frame)).transpose()?;
+        check_count(&format!("the arrows of a {}", kind.to_lowercase()), self.times.len(), values.len())?;
         self.arrows.push(Arrow { kind, frame, point, values });
         Ok(self)
     }
@@ -318,7 +322,7 @@ impl Motion {
 
     /// Returns the indices of the samples that are shown. Samples that follow each other faster than the
     /// screen refreshes are omitted.
-    fn shown(&self) -> Vec<usize> {
+    fn shown_samples(&self) -> Vec<usize> {
         let last = self.times.len() - 1;
         let apart = (1.0 / RATE).min((self.times[last] - self.times[0]) / SHOWN);
         let mut shown = vec![0];
@@ -338,8 +342,8 @@ impl Motion {
     }
 
     /// Returns the indices of the frames that pieces, trails or arrows are fixed in.
-    pub(crate) fn used(&self) -> Vec<usize> {
-        let mut used = self.figure.used();
+    pub(crate) fn used_frames(&self) -> Vec<usize> {
+        let mut used = self.figure.used_frames();
         used.extend(self.trails.iter().map(|(frame, ..)| *frame));
         used.extend(self.arrows.iter().filter_map(|arrow| arrow.frame));
         used.sort_unstable();
@@ -348,13 +352,13 @@ impl Motion {
     }
 
     /// Returns the numbers of plotted curves and of inputs.
-    pub(crate) fn curves(&self) -> [usize; 2] {
+    pub(crate) fn curve_counts(&self) -> [usize; 2] {
         let inputs = self.inputs.first().map_or(0, Vec::len);
         [self.plots.iter().map(|plot| plot.curves.len()).sum(), inputs]
     }
 
     /// Marks the motion as live: its samples arrive from a control loop while it is shown.
-    pub(crate) fn live(mut self) -> Motion {
+    pub(crate) fn mark_as_live(mut self) -> Motion {
         self.live = true;
         self
     }
@@ -365,7 +369,7 @@ impl Motion {
     #[doc(hidden)]
     pub fn simulated(mut self, data: String, module: Vec<u8>) -> Motion {
         self.simulated = Some(Simulated { data, module });
-        self.live()
+        self.mark_as_live()
     }
 
     /// Returns whether the page simulates the mechanism in the browser.
@@ -374,16 +378,16 @@ impl Motion {
     }
 
     /// Returns a still picture of the first sample as SVG.
-    pub(crate) fn picture(&self) -> String {
+    pub(crate) fn still_picture(&self) -> String {
         let scene = Scene::new(&self.figure, &self.placements, &[0]);
-        crate::picture::svg(&self.figure, &self.placements[0], &scene)
+        crate::picture::figure_svg(&self.figure, &self.placements[0], &scene)
     }
 
     /// Serialises the motion as the JSON data of a page.
-    pub(crate) fn json(&self) -> String {
-        let used = self.used();
+    pub(crate) fn motion_json(&self) -> String {
+        let used = self.used_frames();
         let index_of_used_frame = |k: usize| used.iter().position(|known| *known == k).unwrap_or(0);
-        let shown = self.shown();
+        let shown = self.shown_samples();
         let scene = Scene::new(&self.figure, &self.placements, &shown);
         let quantum = scene.size / PARTS;
         let mut stream = Stream::default();
@@ -395,17 +399,18 @@ impl Motion {
             for axis in 0..3 {
                 stream.channel(placements.iter().map(|p| p.translation.vector[axis]), quantum);
             }
-            let turns = continuous(&placements);
+            let turns = sign_continuous_quaternions(&placements);
             for entry in 0..4 {
                 stream.channel(turns.iter().map(|q| q[entry]), TURN);
             }
         }
-        let plots: Vec<String> = self.plots.iter().map(|plot| plot.json(&shown, &mut stream)).collect();
+        let plots: Vec<String> = self.plots.iter().map(|plot| plot.plot_json(&shown, &mut stream)).collect();
         let count = self.inputs.iter().map(Vec::len).min().unwrap_or(0);
         let inputs =
             (0..count).map(|k| curve_json("", shown.iter().map(|s| self.inputs[*s][k]), &mut stream));
         let inputs: Vec<String> = inputs.collect();
-        let arrows = self.arrows.iter().map(|arrow| arrow.json(&shown, index_of_used_frame, &mut stream));
+        let arrows =
+            self.arrows.iter().map(|arrow| arrow.arrow_json(&shown, index_of_used_frame, &mut stream));
         let arrows: Vec<String> = arrows.collect();
         let trails = self.trails.iter().map(|(frame, point, seconds)| {
             text::list([
@@ -416,17 +421,17 @@ impl Motion {
         });
         let captions =
             self.captions.iter().map(|(t, words)| text::list([text::number(t - start), text::json(words)]));
-        let shapes = self.figure.shown();
+        let shapes = self.figure.drawn_shapes();
         let fields = [
             ("title", text::json(&self.title)),
             ("frames", text::list(used.iter().map(|k| text::json(&self.figure.frames[*k])))),
-            ("pieces", text::list(shapes.map(|shape| shape.json(index_of_used_frame)))),
+            ("pieces", text::list(shapes.map(|shape| shape.shape_json(index_of_used_frame)))),
             ("count", shown.len().to_string()),
             ("start", text::number(start)),
             ("tick", text::number(TICK)),
             ("quantum", text::number(quantum)),
             ("turn", text::number(TURN)),
-            ("scene", scene.json()),
+            ("scene", scene.scene_json()),
             ("plots", text::list(plots)),
             ("inputs", text::list(inputs)),
             ("arrows", text::list(arrows)),
@@ -435,7 +440,7 @@ impl Motion {
             ("live", self.live.to_string()),
             ("data", text::json(&stream.text())),
         ];
-        let source_range_json = |shape: &Shape| match shape.source() {
+        let source_range_json = |shape: &Shape| match shape.source_range() {
             Some([first, count]) => format!("[{first},{count}]"),
             None => "null".to_string(),
         };
@@ -444,7 +449,7 @@ impl Motion {
                 ("simulated", data.clone()),
                 ("module", text::json(&base64(module))),
                 ("used", text::list(used.iter().map(ToString::to_string))),
-                ("sources", text::list(self.figure.shown().map(source_range_json))),
+                ("sources", text::list(self.figure.drawn_shapes().map(source_range_json))),
             ]
         });
         let fields: Vec<String> = fields
@@ -457,7 +462,7 @@ impl Motion {
 }
 
 impl Arrow {
-    fn json(&self, shown: &[usize], renumber: impl Fn(usize) -> usize, stream: &mut Stream) -> String {
+    fn arrow_json(&self, shown: &[usize], renumber: impl Fn(usize) -> usize, stream: &mut Stream) -> String {
         let frame = self.frame.map_or("-1".to_string(), |frame| renumber(frame).to_string());
         let curves: Vec<String> =
             (0..3).map(|k| curve_json("", shown.iter().map(|s| self.values[*s][k]), stream)).collect();
@@ -466,7 +471,7 @@ impl Arrow {
 }
 
 impl Plot {
-    fn json(&self, shown: &[usize], stream: &mut Stream) -> String {
+    fn plot_json(&self, shown: &[usize], stream: &mut Stream) -> String {
         let curves = self
             .curves
             .iter()
@@ -486,17 +491,17 @@ fn curve_json(name: &str, values: impl Iterator<Item = f64> + Clone, stream: &mu
     let step = ((high - low) / LEVELS).max(f64::MIN_POSITIVE);
     let step = if high > low && step.is_finite() { step } else { 1.0 };
     stream.channel(values.map(|x| if x.is_finite() { (x - low) / step } else { -1.0 }), 1.0);
-    text::list([text::json(name), exact(low), exact(step)])
+    text::list([text::json(name), format_exact(low), format_exact(step)])
 }
 
 /// Formats a number with full precision in scientific notation.
-fn exact(x: f64) -> String {
+fn format_exact(x: f64) -> String {
     format!("{x:e}")
 }
 
 /// Returns the units of the configuration entries, derived from the units of the velocities. The four entries
 /// of a quaternion are dimensionless and correspond to three velocities.
-fn units(names: &[&str], of_rates: &[&'static str]) -> Vec<&'static str> {
+fn coordinate_units(names: &[&str], of_rates: &[&'static str]) -> Vec<&'static str> {
     let (mut units, mut rates) = (Vec::new(), of_rates.iter());
     for name in names {
         let is_turn = [".qx", ".qy", ".qz", ".qw"].iter().any(|end| name.ends_with(end));
@@ -518,7 +523,7 @@ pub(crate) fn check_times(motion: &str, times: impl Iterator<Item = f64>) -> Res
     last.map(|_| ()).ok_or(Error::Empty { motion: motion.to_string() })
 }
 
-fn check(what: &str, expected: usize, found: usize) -> Result<(), Error> {
+fn check_count(what: &str, expected: usize, found: usize) -> Result<(), Error> {
     match found == expected {
         true => Ok(()),
         false => Err(Error::Count { what: what.to_string(), expected, found }),
@@ -526,14 +531,14 @@ fn check(what: &str, expected: usize, found: usize) -> Result<(), Error> {
 }
 
 pub(crate) fn as_plain<T: linkwork::Real>(p: &IsometryMatrix3<T>) -> IsometryMatrix3<f64> {
-    let matrix = Matrix3::from_fn(|i, j| plain(p.rotation.matrix()[(i, j)]));
-    let at = Vector3::from_fn(|i, _| plain(p.translation.vector[i]));
+    let matrix = Matrix3::from_fn(|i, j| to_double(p.rotation.matrix()[(i, j)]));
+    let at = Vector3::from_fn(|i, _| to_double(p.translation.vector[i]));
     IsometryMatrix3::from_parts(at.into(), Rotation3::from_matrix_unchecked(matrix))
 }
 
 /// Returns the orientations as quaternions x y z w. The sign of each is chosen so that it is nearer to the
 /// previous quaternion.
-fn continuous(placements: &[&IsometryMatrix3<f64>]) -> Vec<[f64; 4]> {
+fn sign_continuous_quaternions(placements: &[&IsometryMatrix3<f64>]) -> Vec<[f64; 4]> {
     let mut before = [0.0, 0.0, 0.0, 1.0];
     let sign_continuous_quaternion = |p: &&IsometryMatrix3<f64>| {
         let q = UnitQuaternion::from_rotation_matrix(&p.rotation).into_inner().coords;

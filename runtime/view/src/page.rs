@@ -74,16 +74,16 @@ impl Page {
         format!(
             "{}<body class=\"linkwork-page\">\n<header><h1>{title}</h1>\n{about}</header>\n{}\n\
              {equations}<script>\n{simulation}{}</script>\n</body>\n</html>\n",
-            head(&title),
+            page_head(&title),
             self.fragment(),
             Page::script(),
-            simulation = if self.simulates() { Page::simulation() } else { "" },
+            simulation = if self.has_simulation() { Page::simulation() } else { "" },
         )
     }
 
     /// Returns a link to the page with its title, the first paragraph of its text, and still pictures.
-    pub(crate) fn card(&self, address: &str) -> String {
-        let pictures: String = self.motions.iter().map(Motion::picture).collect();
+    pub(crate) fn link_card(&self, address: &str) -> String {
+        let pictures: String = self.motions.iter().map(Motion::still_picture).collect();
         let about = text::blocks(&self.text).into_iter().next().unwrap_or_default();
         let (address, title) = (text::html(address), text::html(&self.title));
         format!("<article>{pictures}<h2><a href=\"{address}\">{title}</a></h2>{about}</article>\n")
@@ -92,8 +92,8 @@ impl Page {
     /// Returns the motions as an element for another page. That page needs [`style`](Self::style) in its
     /// head, and [`script`](Self::script) once after all fragments.
     pub fn fragment(&self) -> String {
-        let motions = text::list(self.motions.iter().map(Motion::json));
-        let pictures: String = self.motions.iter().map(Motion::picture).collect();
+        let motions = text::list(self.motions.iter().map(Motion::motion_json));
+        let pictures: String = self.motions.iter().map(Motion::still_picture).collect();
         format!(
             "<div class=\"linkwork-view\" role=\"group\" aria-label=\"{}\">\
              <script type=\"application/json\">{motions}</script>\
@@ -123,7 +123,7 @@ impl Page {
     /// crate (`#![doc = include_str!("pendulum.html")]`): a style sheet, an element, and a script. A document
     /// may embed several such pages.
     pub fn embedded(&self) -> String {
-        let simulation = if self.simulates() { Page::simulation() } else { "" };
+        let simulation = if self.has_simulation() { Page::simulation() } else { "" };
         format!(
             "<style>\n{}</style>\n{}\n<script>\n{{\n{simulation}{}}}\n</script>\n",
             Page::style(),
@@ -132,7 +132,7 @@ impl Page {
         )
     }
 
-    fn simulates(&self) -> bool {
+    fn has_simulation(&self) -> bool {
         self.motions.iter().any(Motion::is_simulated)
     }
 
@@ -151,7 +151,7 @@ impl Page {
 }
 
 /// Returns the beginning of a page, up to its body. The title is escaped.
-pub(crate) fn head(title: &str) -> String {
+pub(crate) fn page_head(title: &str) -> String {
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\

@@ -30,30 +30,30 @@ struct Outline {
 }
 
 /// Returns a picture of the drawing with its frames at these placements.
-pub(crate) fn svg(figure: &Figure, placements: &[IsometryMatrix3<f64>], scene: &Scene) -> String {
-    let [right, up, back] = scene.axes();
+pub(crate) fn figure_svg(figure: &Figure, placements: &[IsometryMatrix3<f64>], scene: &Scene) -> String {
+    let [right, up, back] = scene.view_axes();
     let mut bodies: Vec<String> = Vec::new();
     let mut outlines: Vec<Outline> = Vec::new();
-    for shape in figure.shown() {
+    for shape in figure.drawn_shapes() {
         let place_in_world = |frame: Option<usize>, p: Vector3<f64>| {
             frame.map_or(p, |k| (placements[k] * Point3::from(p)).coords)
         };
-        let (points, line) = samples(shape, scene.size);
+        let (points, line) = shape_outline_points(shape, scene.size);
         let seen: Vec<Vector3<f64>> = points.into_iter().map(|(frame, p)| place_in_world(frame, p)).collect();
         let flat: Vec<[f64; 2]> = seen.iter().map(|p| [p.dot(&right), p.dot(&up)]).collect();
-        let points = if line > 0.0 { flat } else { hull(flat) };
+        let points = if line > 0.0 { flat } else { convex_hull(flat) };
         if points.len() < 2 {
             continue;
         }
         let depth = seen.iter().map(|p| p.dot(&back)).sum::<f64>() / seen.len() as f64;
-        outlines.push(Outline { points, depth, colour: colour(shape, &mut bodies), line });
+        outlines.push(Outline { points, depth, colour: colour_of_shape(shape, &mut bodies), line });
     }
     outlines.sort_by(|a, b| a.depth.total_cmp(&b.depth));
-    drawn(&outlines)
+    draw_outlines(&outlines)
 }
 
 /// Returns the colour in which a shape is drawn. All shapes of one body have the same colour.
-fn colour(shape: &Shape, bodies: &mut Vec<String>) -> &'static str {
+fn colour_of_shape(shape: &Shape, bodies: &mut Vec<String>) -> &'static str {
     match shape.role {
         Role::Link => "#8f99a8",
         Role::Joint => "#454d59",
@@ -76,7 +76,7 @@ fn colour(shape: &Shape, bodies: &mut Vec<String>) -> &'static str {
 }
 
 /// Returns the outlines as an SVG picture; later outlines cover earlier ones.
-fn drawn(outlines: &[Outline]) -> String {
+fn draw_outlines(outlines: &[Outline]) -> String {
     let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for point in outlines.iter().flat_map(|outline| &outline.points) {
         for k in 0..2 {
@@ -118,14 +118,14 @@ type FramePoint = (Option<usize>, Vector3<f64>);
 
 /// Returns points whose convex hull is the shape, each with its frame, or the ends of a line and its width.
 /// `size` is the size of the mechanism.
-fn samples(shape: &Shape, size: f64) -> (Vec<FramePoint>, f64) {
+fn shape_outline_points(shape: &Shape, size: f64) -> (Vec<FramePoint>, f64) {
     let n = &shape.numbers;
     let vector_from_numbers = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
     let [a, b] = shape.frames;
     let in_frame = |points: Vec<Vector3<f64>>| points.into_iter().map(|p| (a, p)).collect::<Vec<_>>();
     let points_of_round_solid = |half: f64, radius: f64| {
         let (axis, at) = (vector_from_numbers(3), vector_from_numbers(0));
-        in_frame([-half, half].iter().flat_map(|h| circle(at + axis * *h, axis, radius)).collect())
+        in_frame([-half, half].iter().flat_map(|h| points_on_circle(at + axis * *h, axis, radius)).collect())
     };
     let points_of_scaled_corners = |corners: &[[f64; 3]]| {
         let axes = Matrix3::from_row_slice(&n[3..12]);
@@ -139,7 +139,9 @@ fn samples(shape: &Shape, size: f64) -> (Vec<FramePoint>, f64) {
         )
     };
     let ball = |radius: f64| {
-        in_frame(sphere().iter().map(|c| vector_from_numbers(0) + Vector3::from(*c) * radius).collect())
+        in_frame(
+            points_on_sphere().iter().map(|c| vector_from_numbers(0) + Vector3::from(*c) * radius).collect(),
+        )
     };
     let areas = match shape.kind {
         Kind::Bar => return (vec![(a, vector_from_numbers(0)), (b, vector_from_numbers(3))], 0.018 * size),
@@ -153,7 +155,7 @@ fn samples(shape: &Shape, size: f64) -> (Vec<FramePoint>, f64) {
         Kind::Capsule => points_of_round_solid(n[7] / 2.0 + n[6] / 2.0, n[6]),
         Kind::Tube => points_of_round_solid(n[8] / 2.0, n[7]),
         Kind::Cone => {
-            let mut points = in_frame(circle(
+            let mut points = in_frame(points_on_circle(
                 vector_from_numbers(0) - vector_from_numbers(3) * (n[7] / 4.0),
                 vector_from_numbers(3),
                 n[6],
@@ -162,8 +164,8 @@ fn samples(shape: &Shape, size: f64) -> (Vec<FramePoint>, f64) {
             points
         }
         Kind::Sphere => ball(n[3]),
-        Kind::Cuboid => points_of_scaled_corners(&cube()),
-        Kind::Ellipsoid => points_of_scaled_corners(&sphere()),
+        Kind::Cuboid => points_of_scaled_corners(&corners_of_cube()),
+        Kind::Ellipsoid => points_of_scaled_corners(&points_on_sphere()),
         Kind::Mesh(_) => {
             let corners = shape.mesh.as_ref().map(|mesh| mesh.some_corners(CORNERS)).unwrap_or_default();
             points_of_scaled_corners(&corners)
@@ -177,7 +179,7 @@ fn samples(shape: &Shape, size: f64) -> (Vec<FramePoint>, f64) {
 }
 
 /// Returns points on a circle about an axis.
-fn circle(at: Vector3<f64>, axis: Vector3<f64>, radius: f64) -> Vec<Vector3<f64>> {
+fn points_on_circle(at: Vector3<f64>, axis: Vector3<f64>, radius: f64) -> Vec<Vector3<f64>> {
     let helper = if axis.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
     let x = helper.cross(&axis).normalize();
     let y = axis.cross(&x);
@@ -189,21 +191,21 @@ fn circle(at: Vector3<f64>, axis: Vector3<f64>, radius: f64) -> Vec<Vector3<f64>
 }
 
 /// Returns points on the unit sphere, from which its outline is computed.
-fn sphere() -> Vec<[f64; 3]> {
+fn points_on_sphere() -> Vec<[f64; 3]> {
     let ring_of_sphere = |j: usize| {
         let (height, radius) = (std::f64::consts::PI * (j as f64 / 8.0 - 0.5)).sin_cos();
-        circle(Vector3::z() * height, Vector3::z(), radius)
+        points_on_circle(Vector3::z() * height, Vector3::z(), radius)
     };
     (0..=8).flat_map(ring_of_sphere).map(Into::into).collect()
 }
 
 /// Returns the corners of the unit cube about the origin.
-fn cube() -> Vec<[f64; 3]> {
+fn corners_of_cube() -> Vec<[f64; 3]> {
     (0..8).map(|k| [0, 1, 2].map(|i| if k >> i & 1 == 0 { -0.5 } else { 0.5 })).collect()
 }
 
 /// Returns the convex hull of points in the plane, counter-clockwise (Andrew's monotone chain).
-fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+fn convex_hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let mut out: Vec<[f64; 2]> = Vec::new();
     let rising: Vec<[f64; 2]> = points.clone();
@@ -226,14 +228,14 @@ fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 
 #[cfg(test)]
 mod tests {
-    use super::hull;
+    use super::convex_hull;
 
     #[test]
     fn the_hull_of_a_square_has_its_corners() {
         let mut square = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let inner = [[0.5, 0.5], [0.5, 0.0], [0.2, 0.9]];
-        assert_eq!(hull([&square[..], &inner].concat()), square);
+        assert_eq!(convex_hull([&square[..], &inner].concat()), square);
         square.truncate(2);
-        assert_eq!(hull(square.clone()), square);
+        assert_eq!(convex_hull(square.clone()), square);
     }
 }

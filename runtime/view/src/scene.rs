@@ -31,15 +31,16 @@ impl Scene {
         let first = &placements[0];
         let gravity = Vector3::from(figure.gravity);
         let up = gravity.try_normalize(0.0).map_or(Vector3::z(), |g| -g);
-        let pieces: Vec<&Shape> = figure.shown().collect();
+        let pieces: Vec<&Shape> = figure.drawn_shapes().collect();
         let place_in_world = |k: usize, frame: Option<usize>, point: Vector3<f64>| {
             frame.map_or(point, |f| (placements[k][f] * Point3::from(point)).coords)
         };
         let (mut start, mut whole, mut lowest) = (Extent::default(), Extent::default(), f64::INFINITY);
-        for (frame, point, beyond) in pieces.iter().filter(|s| s.is_body()).flat_map(|s| s.reach()) {
+        for (frame, point, beyond) in pieces.iter().filter(|s| s.is_body()).flat_map(|s| s.reference_points())
+        {
             start.add(&place_in_world(0, frame, point), beyond);
         }
-        let reaches: Vec<_> = pieces.iter().flat_map(|s| s.reach()).collect();
+        let reaches: Vec<_> = pieces.iter().flat_map(|s| s.reference_points()).collect();
         for k in shown {
             for (frame, point, beyond) in &reaches {
                 let at = place_in_world(*k, *frame, *point);
@@ -48,10 +49,11 @@ impl Scene {
             }
         }
         let is_valid_size = |size: &f64| *size > 0.0 && size.is_finite();
-        let size = [start.size(), whole.size()].into_iter().find(is_valid_size).unwrap_or(1.0);
+        let size =
+            [start.size_of_bounds(), whole.size_of_bounds()].into_iter().find(is_valid_size).unwrap_or(1.0);
         let rotate_to_world =
             |frame: Option<usize>, v: Vector3<f64>| frame.map_or(v, |f| first[f].rotation * v);
-        let normal = figure.normal(rotate_to_world).filter(|n| n.dot(&up).abs() < 1e-6);
+        let normal = figure.common_axis_direction(rotate_to_world).filter(|n| n.dot(&up).abs() < 1e-6);
         let is_fixed_terrain =
             |s: &&Shape| s.role == Role::Surface && s.mesh.is_some() && s.frames[0].is_none();
         let hills = pieces.iter().any(is_fixed_terrain);
@@ -59,17 +61,17 @@ impl Scene {
         let plane = figure.ground_along(&up);
         Scene {
             size,
-            centre: whole.middle(),
-            radius: (whole.size() / 2.0).max(size / 2.0),
+            centre: whole.middle_of_bounds(),
+            radius: (whole.size_of_bounds() / 2.0).max(size / 2.0),
             up,
-            eye: normal.map_or_else(|| sideways(&up), |n| facing(&up, n)),
+            eye: normal.map_or_else(|| direction_to_side_view(&up), |n| direction_to_viewer(&up, n)),
             plane: normal.is_some(),
             floor: plane.or_else(|| (floor && lowest.is_finite()).then_some(lowest - 0.02 * size)),
         }
     }
 
     /// Returns the unit vectors to the right, upward and towards the viewer of the initial view.
-    pub(crate) fn axes(&self) -> [Vector3<f64>; 3] {
+    pub(crate) fn view_axes(&self) -> [Vector3<f64>; 3] {
         let (yaw, pitch): (f64, f64) = if self.plane { (0.25, 0.2) } else { (0.7, 0.38) };
         let side = self.eye * yaw.cos() + self.up.cross(&self.eye) * yaw.sin();
         let back = side * pitch.cos() + self.up * pitch.sin();
@@ -77,7 +79,7 @@ impl Scene {
         [right, back.cross(&right), back]
     }
 
-    pub(crate) fn json(&self) -> String {
+    pub(crate) fn scene_json(&self) -> String {
         text::list([
             text::number(self.size),
             text::numbers(self.centre.as_slice()),
@@ -134,23 +136,23 @@ impl Extent {
         self.low.x > self.high.x
     }
 
-    fn size(&self) -> f64 {
+    fn size_of_bounds(&self) -> f64 {
         if self.is_empty() { 0.0 } else { (self.high - self.low).norm() }
     }
 
-    fn middle(&self) -> Vector3<f64> {
+    fn middle_of_bounds(&self) -> Vector3<f64> {
         if self.is_empty() { Vector3::zeros() } else { (self.low + self.high) / 2.0 }
     }
 }
 
 /// Returns the direction towards an eye that sees the ground's first horizontal axis to the right.
-fn sideways(up: &Vector3<f64>) -> Vector3<f64> {
+fn direction_to_side_view(up: &Vector3<f64>) -> Vector3<f64> {
     let right = if up.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
     (right - up * right.dot(up)).cross(up).normalize()
 }
 
 /// Returns the direction, along a normal, towards an eye that sees larger coordinates further to the right.
-fn facing(up: &Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
+fn direction_to_viewer(up: &Vector3<f64>, normal: Vector3<f64>) -> Vector3<f64> {
     let right = up.cross(&normal);
     if right[right.iamax()] < 0.0 { -normal } else { normal }
 }

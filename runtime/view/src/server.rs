@@ -54,7 +54,7 @@ struct Newest {
 
 impl Server {
     /// Serves a page at a port of this machine, or at any free port for port 0.
-    pub(crate) fn open(port: u16, page: String) -> Result<Server, Error> {
+    pub(crate) fn open_server(port: u16, page: String) -> Result<Server, Error> {
         let port_error = |cause| Error::Port { port, cause };
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(port_error)?;
         let address = listener.local_addr().map_err(port_error)?;
@@ -67,16 +67,16 @@ impl Server {
         });
         let guests = shared.clone();
         let thread = thread::Builder::new().name("linkwork-view".to_string());
-        let thread = thread.spawn(move || accept(&listener, &guests)).map_err(port_error)?;
+        let thread = thread.spawn(move || accept_connections(&listener, &guests)).map_err(port_error)?;
         Ok(Server { address, shared, thread: Some(thread) })
     }
 
-    pub(crate) fn address(&self) -> SocketAddr {
+    pub(crate) fn server_address(&self) -> SocketAddr {
         self.address
     }
 
     /// Sends a message to all browsers, unless the newest message is being read at this moment.
-    pub(crate) fn publish(&self, message: &[u8]) {
+    pub(crate) fn publish_message(&self, message: &[u8]) {
         if let Ok(mut newest) = self.shared.newest.try_lock() {
             newest.number += 1;
             newest.message.clear();
@@ -89,7 +89,7 @@ impl Server {
 
 impl Drop for Server {
     fn drop(&mut self) {
-        self.shared.newest().closed = true;
+        self.shared.lock_newest().closed = true;
         self.shared.news.notify_all();
         // Wakes the thread, which waits for a connection.
         if TcpStream::connect_timeout(&self.address, PATIENCE).is_ok()
@@ -103,7 +103,7 @@ impl Drop for Server {
 impl Shared {
     /// Locks the newest message for the browsers. A lock that a thread poisoned by a panic is still usable,
     /// because the message is unchanged.
-    fn newest(&self) -> MutexGuard<'_, Newest> {
+    fn lock_newest(&self) -> MutexGuard<'_, Newest> {
         self.newest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -117,9 +117,9 @@ impl Drop for Guest {
     }
 }
 
-fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
+fn accept_connections(listener: &TcpListener, shared: &Arc<Shared>) {
     for stream in listener.incoming() {
-        if shared.newest().closed {
+        if shared.lock_newest().closed {
             return;
         }
         let Ok(stream) = stream else {
@@ -132,18 +132,18 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
         if before < MAX_CONNECTIONS {
             // A browser that disconnects is not an error.
             let _ = thread::Builder::new().spawn(move || {
-                let _ = serve(stream, &guest.0);
+                let _ = serve_request(stream, &guest.0);
             });
         }
     }
 }
 
 /// Answers one HTTP request: sends the page, or opens a web socket and sends the messages of the live view.
-fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
+fn serve_request(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(PATIENCE))?;
     stream.set_nodelay(true)?;
-    let head = head(&mut stream)?;
+    let head = read_request_head(&mut stream)?;
     let mut words = head.split(' ');
     let (method, path) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
     let header_field = |name: &str| {
@@ -152,9 +152,9 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     };
     // Rejects pages of other origins, including those that reach this machine by a host name of their own.
     let host = header_field("host").filter(|host| shared.hosts.iter().any(|known| known == host));
-    let Some(host) = host else { return answer(&mut stream, "403 Forbidden", "") };
+    let Some(host) = host else { return write_response(&mut stream, "403 Forbidden", "") };
     if header_field("origin").is_some_and(|origin| origin.strip_prefix("http://") != Some(host)) {
-        return answer(&mut stream, "403 Forbidden", "");
+        return write_response(&mut stream, "403 Forbidden", "");
     }
     match (method, path, header_field("sec-websocket-key")) {
         ("GET", "/socket", Some(key)) => {
@@ -166,13 +166,13 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
             )?;
             send_news(stream, shared)
         }
-        ("GET", "/", _) => answer(&mut stream, "200 OK", &shared.page),
-        _ => answer(&mut stream, "404 Not Found", ""),
+        ("GET", "/", _) => write_response(&mut stream, "200 OK", &shared.page),
+        _ => write_response(&mut stream, "404 Not Found", ""),
     }
 }
 
 /// Reads the head of a request, up to its first empty line.
-fn head(stream: &mut TcpStream) -> io::Result<String> {
+fn read_request_head(stream: &mut TcpStream) -> io::Result<String> {
     let (mut head, mut part) = (Vec::new(), [0; 1024]);
     let start = Instant::now();
     while !head.windows(4).any(|end| end == b"\r\n\r\n") {
@@ -185,7 +185,7 @@ fn head(stream: &mut TcpStream) -> io::Result<String> {
     String::from_utf8(head).map_err(|_| io::ErrorKind::InvalidData.into())
 }
 
-fn answer(stream: &mut TcpStream, status: &str, page: &str) -> io::Result<()> {
+fn write_response(stream: &mut TcpStream, status: &str, page: &str) -> io::Result<()> {
     let length = page.len();
     write!(
         stream,
@@ -198,20 +198,20 @@ fn answer(stream: &mut TcpStream, status: &str, page: &str) -> io::Result<()> {
 fn send_news(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
     let (mut seen, mut message) = (0, Vec::new());
     loop {
-        let newest = shared.newest();
+        let newest = shared.lock_newest();
         let is_waiting_for_news = |newest: &mut Newest| newest.number == seen && !newest.closed;
         let waited = shared.news.wait_timeout_while(newest, SILENCE, is_waiting_for_news);
         let (newest, silence) = waited.unwrap_or_else(PoisonError::into_inner);
         if newest.closed {
             drop(newest);
-            return send(&mut stream, CLOSE, &1001_u16.to_be_bytes());
+            return send_frame(&mut stream, CLOSE, &1001_u16.to_be_bytes());
         }
         seen = newest.number;
         message.clone_from(&newest.message);
         drop(newest);
         match silence.timed_out() {
-            true => send(&mut stream, PING, &[])?,
-            false => send(&mut stream, BINARY, &message)?,
+            true => send_frame(&mut stream, PING, &[])?,
+            false => send_frame(&mut stream, BINARY, &message)?,
         }
         forget_answers(&mut stream)?;
         thread::sleep(SCREEN);
@@ -219,7 +219,7 @@ fn send_news(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
 }
 
 /// Sends a web-socket frame: a byte for its kind, its length, and its content.
-fn send(stream: &mut TcpStream, kind: u8, content: &[u8]) -> io::Result<()> {
+fn send_frame(stream: &mut TcpStream, kind: u8, content: &[u8]) -> io::Result<()> {
     let mut frame = vec![kind];
     match content.len() {
         length @ 0..126 => frame.push(length as u8),

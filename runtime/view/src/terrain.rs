@@ -7,13 +7,13 @@ use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Vector3};
 
 impl Figure {
     /// Replaces every terrain by a surface over the region of the frames' positions, extended by `beyond`, m.
-    pub(crate) fn raise(
+    pub(crate) fn raise_terrains(
         &mut self,
         placements: &[Vec<IsometryMatrix3<f64>>],
         beyond: f64,
         height: impl Fn(usize, [f64; 2]) -> Option<f64>,
     ) {
-        let moving = self.used();
+        let moving = self.used_frames();
         for shape in &mut self.shapes {
             let Kind::Terrain(number) = shape.kind else { continue };
             let own = Rotation3::from_matrix_unchecked(Matrix3::from_row_slice(&shape.numbers[3..12]));
@@ -34,7 +34,7 @@ impl Figure {
                 false => [-beyond, beyond],
             });
             let point_on_terrain = |u: f64, w: f64| [u, w, height(number, [u, w]).unwrap_or(f64::NAN)];
-            if let Ok(mesh) = Mesh::surface(u, w, point_on_terrain) {
+            if let Ok(mesh) = Mesh::triangulate_surface(u, w, point_on_terrain) {
                 (shape.kind, shape.mesh) = (Kind::Mesh(""), Some(mesh));
                 // Unit scales along the axes.
                 shape.numbers.extend([1.0; 3]);

@@ -23,10 +23,10 @@ pub fn html(text: &str) -> String {
 pub fn blocks(text: &str) -> Vec<String> {
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
     let blocks = lines.split(|line| line.is_empty()).filter(|block| !block.is_empty());
-    blocks.map(block).collect()
+    blocks.map(block_html).collect()
 }
 
-fn block(lines: &[&str]) -> String {
+fn block_html(lines: &[&str]) -> String {
     let first = lines.iter().position(|line| line.starts_with("- ")).unwrap_or(lines.len());
     let (before, list) = lines.split_at(first);
     let mut items: Vec<String> = Vec::new();
@@ -42,35 +42,35 @@ fn block(lines: &[&str]) -> String {
     let heading = before.trim_start_matches('#');
     let mut out = match before.as_str() {
         "" => String::new(),
-        text if text == heading => format!("<p>{}</p>", inline(text)),
-        _ => format!("<p><b>{}</b></p>", inline(heading.trim())),
+        text if text == heading => format!("<p>{}</p>", inline_html(text)),
+        _ => format!("<p><b>{}</b></p>", inline_html(heading.trim())),
     };
     if !items.is_empty() {
-        let items: String = items.iter().map(|item| format!("<li>{}</li>", inline(item))).collect();
+        let items: String = items.iter().map(|item| format!("<li>{}</li>", inline_html(item))).collect();
         let _ = write!(out, "<ul>{items}</ul>");
     }
     out
 }
 
 /// Converts code and emphasis; unpaired backticks and asterisks are printed literally.
-fn inline(text: &str) -> String {
+fn inline_html(text: &str) -> String {
     let text = html(text);
     let parts: Vec<&str> = text.split('`').collect();
     let mut out = String::new();
     for (k, part) in parts.iter().enumerate() {
         if k % 2 == 0 {
-            out.push_str(&emphasised(part));
+            out.push_str(&emphasised_html(part));
         } else if k + 1 < parts.len() {
             let _ = write!(out, "<code>{part}</code>");
         } else {
-            let _ = write!(out, "`{}", emphasised(part));
+            let _ = write!(out, "`{}", emphasised_html(part));
         }
     }
     out
 }
 
 /// Converts text between asterisks to emphasis; asterisks of products are printed literally.
-fn emphasised(text: &str) -> String {
+fn emphasised_html(text: &str) -> String {
     let parts: Vec<&str> = text.split('*').collect();
     let mut out = String::new();
     let mut is_open = false;

@@ -29,13 +29,13 @@ struct Arm {
 }
 
 /// Returns the first Chromium browser on the path.
-fn browser() -> Option<PathBuf> {
+fn find_browser() -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     let names = ["chromium", "chromium-browser", "google-chrome", "chrome"];
     std::env::split_paths(&path).flat_map(|folder| names.map(|name| folder.join(name))).find(|p| p.is_file())
 }
 
-fn sample(start: f64, k: u32) -> Sample<f64, 2, 2, 1> {
+fn sample_of_arm(start: f64, k: u32) -> Sample<f64, 2, 2, 1> {
     let t = f64::from(k) / 60.0;
     Sample {
         t: start + t,
@@ -49,8 +49,8 @@ fn sample(start: f64, k: u32) -> Sample<f64, 2, 2, 1> {
 
 /// Returns the document of a page after 1.5 s, and asserts that the console has no messages. `meanwhile` is
 /// called repeatedly until then. `None` if no browser starts.
-fn look(name: &str, address: &str, mut meanwhile: impl FnMut()) -> Option<String> {
-    let Some(browser) = browser() else {
+fn document_in_browser(name: &str, address: &str, mut meanwhile: impl FnMut()) -> Option<String> {
+    let Some(browser) = find_browser() else {
         println!("skipped: no Chromium on the path");
         return None;
     };
@@ -88,7 +88,7 @@ fn look(name: &str, address: &str, mut meanwhile: impl FnMut()) -> Option<String
 
 #[test]
 fn a_browser_plays_the_page() {
-    let samples: Vec<_> = (0..120).map(|k| sample(0.0, k)).collect();
+    let samples: Vec<_> = (0..120).map(|k| sample_of_arm(0.0, k)).collect();
     let motion_of_arm = || Motion::of("<i>arm</i>", &Arm {}, &samples).unwrap();
     let pull = samples.iter().map(|s| [0.0, s.t, 0.0]).collect::<Vec<_>>();
     let first = motion_of_arm().trail("lower", [1.0, 0.0, 0.0], 0.5).unwrap().force(
@@ -102,7 +102,9 @@ fn a_browser_plays_the_page() {
     let page = Page::new("Two arms").motion(first.unwrap()).motion(motion_of_arm().figure(second).unwrap());
     let file = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("browser.html");
     page.write(&file).unwrap();
-    let Some(dom) = look("browser", &format!("file://{}", file.display()), || ()) else { return };
+    let Some(dom) = document_in_browser("browser", &format!("file://{}", file.display()), || ()) else {
+        return;
+    };
     assert_eq!(
         dom.matches("&lt;i&gt;arm&lt;/i&gt;").count(),
         6,
@@ -116,11 +118,11 @@ fn a_browser_looks_on() {
     let mut live = Live::open(&Arm {}, 0).unwrap();
     let (url, mut k) = (live.url(), 0);
     let show_next_sample = || {
-        live.show(&sample(1000.0, k)).unwrap();
+        live.show(&sample_of_arm(1000.0, k)).unwrap();
         k += 1;
     };
-    let Some(dom) = look("live", &url, show_next_sample) else { return };
+    let Some(dom) = document_in_browser("live", &url, show_next_sample) else { return };
     let (_, clock) = dom.split_once("<output>").unwrap();
     let time: f64 = clock.split_once(" s<").unwrap().0.parse().unwrap();
-    assert!((1000.0..=sample(1000.0, k).t).contains(&time), "{time}");
+    assert!((1000.0..=sample_of_arm(1000.0, k).t).contains(&time), "{time}");
 }

@@ -17,7 +17,7 @@ struct Rod {
 }
 
 /// Returns the endpoint displacements of the straight lines of a colour, to the right and upward.
-fn arrows(svg: &str, colour: &str) -> Vec<[f64; 2]> {
+fn arrow_vectors(svg: &str, colour: &str) -> Vec<[f64; 2]> {
     let number_of_attribute = |line: &str, name: &str| -> f64 {
         let rest = line.split(&format!("{name}=\"")).nth(1).expect("an attribute");
         rest.split('"').next().and_then(|text| text.parse().ok()).expect("a number")
@@ -37,7 +37,7 @@ fn arrows_are_forces_and_arcs_torques() {
     assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
     // The weight acts downward, the hinge force upward: the motor balances the moment, and the hinge carries
     // the weight.
-    let [weight, hinge] = ["#5a5a5a", "#005aa0"].map(|colour| arrows(&svg, colour));
+    let [weight, hinge] = ["#5a5a5a", "#005aa0"].map(|colour| arrow_vectors(&svg, colour));
     assert!(weight.len() == 1 && hinge.len() == 1, "{svg}");
     assert!(weight[0][0] == 0.0 && weight[0][1] < -90.0 && hinge[0][1] > 90.0);
     // A torque towards the viewer is a counterclockwise arc, whose sweep flag is 0.
@@ -53,7 +53,7 @@ fn arrows_are_forces_and_arcs_torques() {
     }
     // Seen along y, the torque lies in the picture: an arrow with two heads, and no arc.
     let aside = free_body(&rod.loads(&q, &v, &[9.81].into()), Side::Xz);
-    assert!(!aside.contains(" A ") && arrows(&aside, "#d55e00").len() == 1);
+    assert!(!aside.contains(" A ") && arrow_vectors(&aside, "#d55e00").len() == 1);
     assert_eq!(svg.matches("<line").count() - 3, aside.matches("<line").count() - 2);
 }
 

@@ -21,7 +21,7 @@ struct Arm {
     motor: Torque,
 }
 
-fn sample(t: f64) -> Sample<f64, 2, 2, 1> {
+fn sample_at_time(t: f64) -> Sample<f64, 2, 2, 1> {
     Sample {
         t,
         q: [0.5 + t, -1.0].into(),
@@ -33,7 +33,7 @@ fn sample(t: f64) -> Sample<f64, 2, 2, 1> {
 }
 
 /// Opens a connection and sends a request; `fields` has further header lines.
-fn ask(url: &str, path: &str, fields: &str) -> TcpStream {
+fn send_request(url: &str, path: &str, fields: &str) -> TcpStream {
     let host = url.trim_start_matches("http://").trim_end_matches('/');
     let mut stream = TcpStream::connect(host).unwrap();
     stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
@@ -45,24 +45,24 @@ fn ask(url: &str, path: &str, fields: &str) -> TcpStream {
 const UPGRADE: &str = "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n\
                        Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
 
-fn text(mut stream: TcpStream) -> String {
+fn response_text(mut stream: TcpStream) -> String {
     let mut text = String::new();
     stream.read_to_string(&mut text).unwrap();
     text
 }
 
-fn take<const N: usize>(stream: &mut TcpStream) -> [u8; N] {
+fn read_bytes<const N: usize>(stream: &mut TcpStream) -> [u8; N] {
     let mut bytes = [0; N];
     stream.read_exact(&mut bytes).unwrap();
     bytes
 }
 
 /// Opens a web socket to the server of a live view and checks the answer to the handshake.
-fn socket(url: &str) -> TcpStream {
-    let mut stream = ask(url, "/socket", UPGRADE);
+fn open_web_socket(url: &str) -> TcpStream {
+    let mut stream = send_request(url, "/socket", UPGRADE);
     let mut head = Vec::new();
     while !head.ends_with(b"\r\n\r\n") {
-        head.extend(take::<1>(&mut stream));
+        head.extend(read_bytes::<1>(&mut stream));
     }
     let head = String::from_utf8(head).unwrap();
     assert!(
@@ -73,11 +73,11 @@ fn socket(url: &str) -> TcpStream {
 }
 
 /// Returns the kind and content of the next frame that is not a ping.
-fn frame(stream: &mut TcpStream) -> (u8, Vec<u8>) {
+fn read_frame(stream: &mut TcpStream) -> (u8, Vec<u8>) {
     loop {
-        let [kind, length] = take(stream);
+        let [kind, length] = read_bytes(stream);
         let length = match length {
-            126 => usize::from(u16::from_be_bytes(take(stream))),
+            126 => usize::from(u16::from_be_bytes(read_bytes(stream))),
             length => usize::from(length),
         };
         let mut content = vec![0; length];
@@ -91,18 +91,18 @@ fn frame(stream: &mut TcpStream) -> (u8, Vec<u8>) {
 #[test]
 fn a_browser_gets_the_page_and_then_samples() {
     let mut live = Live::open(&Arm {}, 0).unwrap();
-    let page = text(ask(&live.url(), "/", ""));
+    let page = response_text(send_request(&live.url(), "/", ""));
     assert!(page.starts_with("HTTP/1.1 200 OK\r\n") && page.contains("<title>Arm</title>"));
     let (_, data) = page.split_once("<script type=\"application/json\">").unwrap();
     let motions: serde_json::Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
     let motion = &motions[0];
     assert_eq!(motion["live"], true);
     // A client that connects before the first sample, and a later one, receive the same message.
-    let mut early = socket(&live.url());
-    let sample = sample(0.25);
+    let mut early = open_web_socket(&live.url());
+    let sample = sample_at_time(0.25);
     live.show(&sample).unwrap();
-    let (kind, message) = frame(&mut early);
-    assert_eq!((kind, frame(&mut socket(&live.url()))), (0x82, (0x82, message.clone())));
+    let (kind, message) = read_frame(&mut early);
+    assert_eq!((kind, read_frame(&mut open_web_socket(&live.url()))), (0x82, (0x82, message.clone())));
 
     assert_eq!(message[..8], 0.25_f64.to_le_bytes());
     let numbers: Vec<f64> =
@@ -121,7 +121,7 @@ fn a_browser_gets_the_page_and_then_samples() {
     assert_eq!(numbers[7 * frames.len()..], [0.75, -1.0, 3.5]);
     // The end of the program closes the socket.
     drop(live);
-    let (kind, reason) = frame(&mut early);
+    let (kind, reason) = read_frame(&mut early);
     assert_eq!((kind, reason), (0x88, 1001_u16.to_be_bytes().to_vec()));
 }
 
@@ -130,16 +130,16 @@ fn a_browser_gets_the_page_and_then_samples() {
 #[test]
 fn the_loop_waits_for_nobody() {
     let mut live = Live::open(&Arm {}, 0).unwrap();
-    let (_idle, mut busy) = (socket(&live.url()), socket(&live.url()));
+    let (_idle, mut busy) = (open_web_socket(&live.url()), open_web_socket(&live.url()));
     for k in 0..20_000 {
-        live.show(&sample(f64::from(k) * 1e-3)).unwrap();
+        live.show(&sample_at_time(f64::from(k) * 1e-3)).unwrap();
     }
-    let last = sample(100.0);
+    let last = sample_at_time(100.0);
     let mut seen = 0.0;
     while seen < 100.0 {
         // A sample published while a client reads is dropped; the next one is not.
         live.show(&last).unwrap();
-        let (_, message) = frame(&mut busy);
+        let (_, message) = read_frame(&mut busy);
         let t = f64::from_le_bytes(message[..8].try_into().unwrap());
         assert!(t >= seen);
         seen = t;
@@ -151,14 +151,15 @@ fn what_is_no_page_of_its_own_is_refused() {
     let live = Live::open(&Arm {}, 0).unwrap();
     let url = live.url();
     let port = url.trim_end_matches('/').rsplit(':').next().unwrap();
-    let response_status = |path: &str, fields: &str| text(ask(&url, path, fields))[9..12].to_string();
+    let response_status =
+        |path: &str, fields: &str| response_text(send_request(&url, path, fields))[9..12].to_string();
     assert_eq!(response_status("/else", ""), "404");
     assert_eq!(response_status("/socket", ""), "404");
     assert_eq!(response_status("/socket", &format!("{UPGRADE}Origin: http://elsewhere.example\r\n")), "403");
     assert_eq!(response_status("/", &format!("Host: rebound.example:{port}\r\n")), "403");
     assert_eq!(response_status("/", &format!("Host: localhost:{port}\r\n")), "200");
     // Invalid data ends its own connection only.
-    let mut noise = ask(&url, "/", "");
+    let mut noise = send_request(&url, "/", "");
     noise.write_all(&[0xff; 20_000]).ok();
     assert_eq!(response_status("/", ""), "200");
 }
@@ -173,8 +174,8 @@ fn mistakes_are_told() {
         matches!(&error, Error::Port { port: known, cause } if *known == port && cause.kind() == std::io::ErrorKind::AddrInUse)
     );
     assert!(error.to_string().starts_with(&format!("port {port} on this machine: ")));
-    assert!(matches!(live.show(&sample(f64::NAN)), Err(Error::NotFinite { sample: 0, .. })));
-    let mut broken = sample(0.0);
+    assert!(matches!(live.show(&sample_at_time(f64::NAN)), Err(Error::NotFinite { sample: 0, .. })));
+    let mut broken = sample_at_time(0.0);
     broken.q[1] = f64::INFINITY;
     assert!(matches!(live.show(&broken), Err(Error::NotFinite { frame, .. }) if frame == "lower"));
     // The port is free again after the view is dropped.

@@ -21,7 +21,7 @@ struct Boat {
     winch: Torque,
 }
 
-fn sample(t: f64) -> Sample<f64, 8, 7, 1> {
+fn sample_at_time(t: f64) -> Sample<f64, 8, 7, 1> {
     let half = 0.5 * t;
     let q = [t, 2.0, 0.1, half.sin(), 0.0, 0.0, half.cos(), 0.1 + 1.0 / 3.0];
     Sample {
@@ -38,40 +38,40 @@ fn sample(t: f64) -> Sample<f64, 8, 7, 1> {
 struct Reader<'a>(&'a [u8]);
 
 impl<'a> Reader<'a> {
-    fn take(&mut self, count: usize) -> &'a [u8] {
+    fn take_bytes(&mut self, count: usize) -> &'a [u8] {
         let (taken, rest) = self.0.split_at(count);
         self.0 = rest;
         taken
     }
 
-    fn number(&mut self, bytes: usize) -> u64 {
-        self.take(bytes).iter().rev().fold(0, |n, byte| n << 8 | u64::from(*byte))
+    fn read_number(&mut self, bytes: usize) -> u64 {
+        self.take_bytes(bytes).iter().rev().fold(0, |n, byte| n << 8 | u64::from(*byte))
     }
 
-    fn string(&mut self) -> &'a str {
-        let length = self.number(4) as usize;
-        std::str::from_utf8(self.take(length)).unwrap()
+    fn read_string(&mut self) -> &'a str {
+        let length = self.read_number(4) as usize;
+        std::str::from_utf8(self.take_bytes(length)).unwrap()
     }
 }
 
 /// Returns the records of an MCAP file, each with its offset, its kind and its content.
-fn records(file: &[u8]) -> Vec<(usize, u8, Reader<'_>)> {
+fn records_of_file(file: &[u8]) -> Vec<(usize, u8, Reader<'_>)> {
     let magic = b"\x89MCAP0\r\n";
     assert!(file.starts_with(magic) && file.ends_with(magic));
     let mut rest = Reader(&file[8..file.len() - 8]);
     let mut records = Vec::new();
     while !rest.0.is_empty() {
         let at = file.len() - 8 - rest.0.len();
-        let (kind, length) = (rest.number(1) as u8, rest.number(8) as usize);
-        records.push((at, kind, Reader(rest.take(length))));
+        let (kind, length) = (rest.read_number(1) as u8, rest.read_number(8) as usize);
+        records.push((at, kind, Reader(rest.take_bytes(length))));
     }
     records
 }
 
 #[test]
 fn records_follow_the_format() {
-    let file = mcap(&Boat {}, &[sample(0.0), sample(0.25), sample(1.5)]).unwrap();
-    let mut records = records(&file);
+    let file = mcap(&Boat {}, &[sample_at_time(0.0), sample_at_time(0.25), sample_at_time(1.5)]).unwrap();
+    let mut records = records_of_file(&file);
     let kinds: Vec<u8> = records.iter().map(|record| record.1).collect();
     let described = [3, 4, 3, 4, 3, 4];
     assert_eq!(kinds, [&[1][..], &described, &[5; 9], &[15], &described, &[11, 2]].concat());
@@ -79,42 +79,47 @@ fn records_follow_the_format() {
     let mut topics = Vec::new();
     for pair in first[1..].chunks_mut(2) {
         let [schema, channel] = pair else { panic!("a schema and its channel") };
-        let (id, name) = (schema.2.number(2), schema.2.string());
-        assert_eq!(schema.2.string(), "jsonschema");
-        let schema: Value = serde_json::from_str(schema.2.string()).unwrap();
-        assert_eq!((channel.2.number(2), channel.2.number(2)), (id, id));
-        topics.push((channel.2.string(), name, schema["type"].clone()));
-        assert_eq!((channel.2.string(), channel.2.number(4), channel.2.0.len()), ("json", 0, 0));
+        let (id, name) = (schema.2.read_number(2), schema.2.read_string());
+        assert_eq!(schema.2.read_string(), "jsonschema");
+        let schema: Value = serde_json::from_str(schema.2.read_string()).unwrap();
+        assert_eq!((channel.2.read_number(2), channel.2.read_number(2)), (id, id));
+        topics.push((channel.2.read_string(), name, schema["type"].clone()));
+        assert_eq!((channel.2.read_string(), channel.2.read_number(4), channel.2.0.len()), ("json", 0, 0));
     }
     assert_eq!(topics[0], ("/tf", "foxglove.FrameTransforms", "object".into()));
     assert_eq!(topics[1], ("/joint_states", "foxglove.JointStates", "object".into()));
     assert_eq!(topics[2], ("/state", "linkwork.State", "object".into()));
     for (k, record) in rest[..9].iter_mut().enumerate() {
         let t = [0, 250_000_000, 1_500_000_000][k / 3];
-        let head = (record.2.number(2), record.2.number(4), record.2.number(8), record.2.number(8));
+        let head = (
+            record.2.read_number(2),
+            record.2.read_number(4),
+            record.2.read_number(8),
+            record.2.read_number(8),
+        );
         assert_eq!(head, (k as u64 % 3 + 1, k as u64 / 3, t, t));
         assert!(serde_json::from_slice::<Value>(record.2.0).is_ok());
     }
     let summary = rest[10].0 as u64;
     let statistics = &mut rest[16].2;
-    let counts = (statistics.number(8), statistics.number(2), statistics.number(4));
-    assert_eq!((counts, statistics.number(12)), ((9, 3, 3), 0));
-    assert_eq!((statistics.number(8), statistics.number(8)), (0, 1_500_000_000));
-    assert_eq!(statistics.number(4), 30);
+    let counts = (statistics.read_number(8), statistics.read_number(2), statistics.read_number(4));
+    assert_eq!((counts, statistics.read_number(12)), ((9, 3, 3), 0));
+    assert_eq!((statistics.read_number(8), statistics.read_number(8)), (0, 1_500_000_000));
+    assert_eq!(statistics.read_number(4), 30);
     for channel in 1..=3 {
-        assert_eq!((statistics.number(2), statistics.number(8)), (channel, 3));
+        assert_eq!((statistics.read_number(2), statistics.read_number(8)), (channel, 3));
     }
     let footer = &mut rest[17].2;
-    assert_eq!((footer.number(8), footer.number(8), footer.number(4)), (summary, 0, 0));
+    assert_eq!((footer.read_number(8), footer.read_number(8), footer.read_number(4)), (summary, 0, 0));
 }
 
 /// Checks that the logged placements are those of the mechanism, up to rounding of quaternions, and that all
 /// other values have full precision.
 #[test]
 fn messages_say_what_the_samples_say() {
-    let sample = sample(0.25);
+    let sample = sample_at_time(0.25);
     let file = mcap(&Boat {}, &[sample]).unwrap();
-    let messages = records(&file).into_iter().filter(|record| record.1 == 5);
+    let messages = records_of_file(&file).into_iter().filter(|record| record.1 == 5);
     let messages: Vec<Value> =
         messages.map(|record| serde_json::from_slice(&record.2.0[22..]).unwrap()).collect();
     let [frames, joints, state] = &messages[..] else { panic!("three topics") };
@@ -145,21 +150,24 @@ fn messages_say_what_the_samples_say() {
 
 #[test]
 fn what_cannot_be_logged_is_told() {
-    let late = mcap(&Boat {}, &[sample(1.0), sample(0.5)]);
+    let late = mcap(&Boat {}, &[sample_at_time(1.0), sample_at_time(0.5)]);
     assert!(matches!(late, Err(Error::Time { sample: 1, .. })));
-    assert!(matches!(mcap(&Boat {}, &[sample(-0.1)]), Err(Error::Time { sample: 0, .. })));
-    assert!(matches!(mcap(&Boat {}, &[sample(f64::NAN)]), Err(Error::Time { .. })));
-    let mut broken = sample(0.0);
+    assert!(matches!(mcap(&Boat {}, &[sample_at_time(-0.1)]), Err(Error::Time { sample: 0, .. })));
+    assert!(matches!(mcap(&Boat {}, &[sample_at_time(f64::NAN)]), Err(Error::Time { .. })));
+    let mut broken = sample_at_time(0.0);
     broken.u[0] = f64::INFINITY;
-    assert!(matches!(mcap(&Boat {}, &[sample(0.0), broken]), Err(Error::NotFinite { sample: 1, .. })));
-    assert!(records(&mcap(&Boat {}, &[]).unwrap()).len() == 16);
+    assert!(matches!(
+        mcap(&Boat {}, &[sample_at_time(0.0), broken]),
+        Err(Error::NotFinite { sample: 1, .. })
+    ));
+    assert!(records_of_file(&mcap(&Boat {}, &[]).unwrap()).len() == 16);
 }
 
 /// Compares with the reader of the format's authors, if Python has it.
 #[test]
 fn another_reader_agrees() {
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("boat.mcap");
-    let samples: Vec<_> = (0..5).map(|k| sample(0.1 * f64::from(k))).collect();
+    let samples: Vec<_> = (0..5).map(|k| sample_at_time(0.1 * f64::from(k))).collect();
     std::fs::write(&path, mcap(&Boat {}, &samples).unwrap()).unwrap();
     let script = "
 import json, sys

@@ -16,7 +16,7 @@ struct Humanoid;
 type HumanoidSample = linkwork::simulate::Sample<f64, 36, 35, 29>;
 
 /// Simulates a flight of the humanoid with all joints in motion, at 60 samples per second.
-fn flight(seconds: f64) -> Vec<HumanoidSample> {
+fn flight_samples(seconds: f64) -> Vec<HumanoidSample> {
     let v = SVector::<f64, 35>::from_fn(|k, _| if k < 6 { 0.2 } else { (k as f64).sin() });
     let stiff =
         |_, q: &SVector<f64, 36>, _: &SVector<f64, 35>| SVector::<f64, 29>::from_fn(|k, _| -20.0 * q[k + 7]);
@@ -26,7 +26,7 @@ fn flight(seconds: f64) -> Vec<HumanoidSample> {
 
 #[test]
 fn samples_come_back_to_half_a_step() {
-    let samples = flight(1.0);
+    let samples = flight_samples(1.0);
     let html = page("Humanoid", &Humanoid, &samples).unwrap();
     let motion = &motions(&html)[0];
     let (channels, step) = (channels(motion), |name: &str| motion[name].as_f64().unwrap());
@@ -56,7 +56,7 @@ fn samples_come_back_to_half_a_step() {
 
 #[test]
 fn ten_seconds_of_a_humanoid_are_small() {
-    let html = page("Humanoid", &Humanoid, &flight(10.0)).unwrap();
+    let html = page("Humanoid", &Humanoid, &flight_samples(10.0)).unwrap();
     assert!(html.len() < 400_000, "{} bytes", html.len());
 }
 
@@ -194,7 +194,7 @@ fn visual_geometry_of_files_is_drawn() {
 
     let figure = Figure::of(&Shapes).meshes(concat!(env!("CARGO_MANIFEST_DIR"), "/tests")).unwrap();
     assert_eq!(figure.missing_meshes(), ["package://shapes/meshes/lost.stl"]);
-    let html = shown(figure);
+    let html = page_of_shapes(figure);
     let motion = &motions(&html)[0];
     let meshes: Vec<_> = motion["pieces"].as_array().unwrap().iter().filter(|p| p[0] == "Mesh").collect();
     assert_eq!(meshes.len(), 1, "the other one has no file");
@@ -203,7 +203,7 @@ fn visual_geometry_of_files_is_drawn() {
 }
 
 /// Returns the page of a drawing of `Shapes` in its neutral configuration.
-fn shown(figure: Figure) -> String {
+fn page_of_shapes(figure: Figure) -> String {
     let placements = vec![Shapes.frame_placements(&Shapes.neutral()).to_vec()];
     let motion = Motion::from_placements("", figure, vec![0.0], placements).unwrap();
     Page::new("shapes").motion(motion).html()
@@ -219,7 +219,7 @@ fn missing_meshes_are_replaced_and_listed() {
     let lost = "<code>package://shapes/meshes/lost.stl</code>";
     let wedge = "<code>package://shapes/meshes/wedge.obj</code>";
     for (html, bodies, list) in [
-        (shown(Figure::of(&Shapes).meshes(folder).unwrap()), &["arm", "tip"][..], lost.to_string()),
+        (page_of_shapes(Figure::of(&Shapes).meshes(folder).unwrap()), &["arm", "tip"][..], lost.to_string()),
         (page("shapes", &Shapes, &[sample]).unwrap(), &["base", "arm", "tip"], format!("{lost}, {wedge}")),
     ] {
         assert!(html.contains(&format!("{note}{list}.</p>")));
@@ -258,7 +258,7 @@ struct SdfShapes;
 
 /// Returns the kinds of visual geometry with their positions and first axes in the ground frame, in the zero
 /// configuration.
-fn seen<M, const NV: usize>(mechanism: &M) -> Vec<(Kind, Vector3<f64>, Vector3<f64>)>
+fn visual_geometry<M, const NV: usize>(mechanism: &M) -> Vec<(Kind, Vector3<f64>, Vector3<f64>)>
 where
     M: Drawn<NV, NV, Scalar = f64>,
 {
@@ -279,8 +279,8 @@ where
 /// irrelevant.
 #[test]
 fn formats_agree_on_what_is_seen() {
-    let urdf = seen::<_, 2>(&Shapes);
-    let [mujoco, sdf] = [seen::<_, 2>(&MujocoShapes), seen::<_, 2>(&SdfShapes)];
+    let urdf = visual_geometry::<_, 2>(&Shapes);
+    let [mujoco, sdf] = [visual_geometry::<_, 2>(&MujocoShapes), visual_geometry::<_, 2>(&SdfShapes)];
     // In the MJCF file, a collision shape is drawn if a body has no visual geometry.
     assert_eq!(mujoco.len(), 5);
     assert_eq!(mujoco[4].0, Kind::Ellipsoid);
@@ -337,7 +337,7 @@ fn single_precision_and_kinematics_are_drawn_too() {
 #[test]
 fn pages_need_nothing_and_names_are_only_text() {
     let hostile = "</script><script>alert('1')</script>\"&";
-    let samples = flight(0.1);
+    let samples = flight_samples(0.1);
     let energy = samples.iter().map(|s| Humanoid.kinetic_energy(&s.q, &s.v)).collect();
     let motion =
         Motion::of(hostile, &Humanoid, &samples).unwrap().plot(hostile, hostile, [(hostile, energy)]);
@@ -351,7 +351,7 @@ fn pages_need_nothing_and_names_are_only_text() {
 
 #[test]
 fn what_cannot_be_shown_is_told() {
-    let samples = flight(0.1);
+    let samples = flight_samples(0.1);
     let humanoid_motion = || Motion::of("", &Humanoid, &samples).unwrap();
     assert!(matches!(page::<_, 36, 35, 29>("", &Humanoid, &[]), Err(Error::Empty { .. })));
     assert!(matches!(
@@ -438,8 +438,8 @@ fn coordinates_of_a_unit_are_plotted_together() {
 
 #[test]
 fn generic_code_can_draw() {
-    fn pieces<M: Drawn<NQ, NV>, const NQ: usize, const NV: usize>(_: &M) -> usize {
+    fn count_pieces<M: Drawn<NQ, NV>, const NQ: usize, const NV: usize>(_: &M) -> usize {
         M::DRAWING.len()
     }
-    assert_eq!(pieces(&Turning {}), 2);
+    assert_eq!(count_pieces(&Turning {}), 2);
 }

@@ -19,29 +19,31 @@ struct Ball {
     hills: Contact,
 }
 
-fn sample(t: f64) -> Sample<f64, 7, 6, 0> {
+fn sample_at_time(t: f64) -> Sample<f64, 7, 6, 0> {
     let q = [0.2 * t, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0];
     Sample { t, q: q.into(), v: SVector::zeros(), u: [].into(), event: None, violation: 0.0 }
 }
 
-fn ball() -> Motion {
-    Motion::of("ball", &Ball {}, &[sample(0.0), sample(0.5), sample(1.0)]).unwrap().without_plots()
+fn motion_of_ball() -> Motion {
+    Motion::of("ball", &Ball {}, &[sample_at_time(0.0), sample_at_time(0.5), sample_at_time(1.0)])
+        .unwrap()
+        .without_plots()
 }
 
-fn hill(u: f64, w: f64) -> [f64; 3] {
+fn point_on_hill(u: f64, w: f64) -> [f64; 3] {
     [u, w, 0.2 * (3.0 * u).sin()]
 }
 
-fn data(motion: Motion) -> Value {
+fn data_of_motion(motion: Motion) -> Value {
     motions(&Page::new("").motion(motion).html()).remove(0)
 }
 
-fn meshes(motion: &Value) -> Vec<&Value> {
+fn meshes_of_motion(motion: &Value) -> Vec<&Value> {
     motion["pieces"].as_array().unwrap().iter().filter(|piece| piece[0] == "Mesh").collect()
 }
 
 /// Returns the lowest and highest coordinate of a mesh along each axis.
-fn bounds(surface: &Value) -> [[f64; 2]; 3] {
+fn bounds_of_mesh(surface: &Value) -> [[f64; 2]; 3] {
     let (low, step) = (&surface[6][0], &surface[6][1]);
     [0, 1, 2].map(|k| {
         let low = low[k].as_f64().unwrap();
@@ -50,7 +52,7 @@ fn bounds(surface: &Value) -> [[f64; 2]; 3] {
 }
 
 fn assert_bounds(surface: &Value, known: [[f64; 2]; 3]) {
-    let found = bounds(surface);
+    let found = bounds_of_mesh(surface);
     for (found, known) in found.as_flattened().iter().zip(known.as_flattened()) {
         assert!((found - known).abs() < 2e-3, "{surface} {known}");
     }
@@ -60,10 +62,11 @@ fn assert_bounds(surface: &Value, known: [[f64; 2]; 3]) {
 /// distance does not change.
 #[test]
 fn a_surface_is_drawn_over_a_region() {
-    let plain = data(ball());
-    let figure = ball().drawn().surface("more", None, [-1.0, 2.0], [-0.5, 0.5], hill).unwrap();
-    let motion = data(ball().figure(figure).unwrap());
-    let [_, surface] = meshes(&motion)[..] else { panic!("the terrain and one surface") };
+    let plain = data_of_motion(motion_of_ball());
+    let figure =
+        motion_of_ball().drawn().surface("more", None, [-1.0, 2.0], [-0.5, 0.5], point_on_hill).unwrap();
+    let motion = data_of_motion(motion_of_ball().figure(figure).unwrap());
+    let [_, surface] = meshes_of_motion(&motion)[..] else { panic!("the terrain and one surface") };
     assert_eq!((&surface[1], &surface[2]), (&"Surface".into(), &"more".into()));
     assert_bounds(surface, [[-1.0, 2.0], [-0.5, 0.5], [-0.2, 0.2]]);
     assert!(motion["scene"][6].is_null());
@@ -74,8 +77,8 @@ fn a_surface_is_drawn_over_a_region() {
 /// which is the diagonal of its bounding box.
 #[test]
 fn a_terrain_is_drawn_by_its_declaration() {
-    let motion = data(ball());
-    let [surface] = meshes(&motion)[..] else { panic!("the terrain") };
+    let motion = data_of_motion(motion_of_ball());
+    let [surface] = meshes_of_motion(&motion)[..] else { panic!("the terrain") };
     assert_eq!((&surface[1], &surface[2], &surface[3]), (&"Surface".into(), &"hills".into(), &(-1).into()));
     let size = motion["scene"][0].as_f64().unwrap();
     assert!((size - 0.2 * 3.0_f64.sqrt()).abs() < 1e-3, "{size}");
@@ -114,10 +117,10 @@ fn a_terrain_may_be_a_table_on_a_body() {
     let q = [turned, 0.7, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0];
     let sample =
         Sample { t: 0.0, q: q.into(), v: SVector::zeros(), u: [].into(), event: None, violation: 0.0 };
-    let motion = data(Motion::of("tray", &tray, &[sample]).unwrap());
-    let [surface] = meshes(&motion)[..] else { panic!("the terrain") };
+    let motion = data_of_motion(Motion::of("tray", &tray, &[sample]).unwrap());
+    let [surface] = meshes_of_motion(&motion)[..] else { panic!("the terrain") };
     let size = motion["scene"][0].as_f64().unwrap();
-    let found = bounds(surface);
+    let found = bounds_of_mesh(surface);
     for (found, known) in found[..2].as_flattened().iter().zip([-2.0 - size, size, -size, 1.0 + size]) {
         assert!((found - known).abs() < 2e-3, "{found} {known}");
     }
@@ -134,10 +137,11 @@ fn surfaces_that_cannot_be_drawn_are_told() {
     assert!(pole.contains("the surface `pole`") && pole.contains("at 0, 0"), "{pole}");
     for bounds in [[1.0, 1.0], [0.0, f64::NAN], [f64::NEG_INFINITY, 0.0]] {
         assert!(
-            error_message(figure_of_ball().surface("", None, bounds, [0.0, 1.0], hill)).contains("increase")
+            error_message(figure_of_ball().surface("", None, bounds, [0.0, 1.0], point_on_hill))
+                .contains("increase")
         );
     }
-    let nowhere = figure_of_ball().surface("", Some("moon"), [0.0, 1.0], [0.0, 1.0], hill);
+    let nowhere = figure_of_ball().surface("", Some("moon"), [0.0, 1.0], [0.0, 1.0], point_on_hill);
     assert!(matches!(nowhere, Err(Error::Frame { name, .. }) if name == "moon"));
 }
 
@@ -146,8 +150,8 @@ fn surfaces_that_cannot_be_drawn_are_told() {
 #[test]
 fn arrows_are_the_vectors_that_were_given() {
     let vectors = vec![[0.0, 1.0, 20.0], [3.0, f64::NAN, 10.0], [-3.0, 0.0, 0.0]];
-    let motion = ball().force(Some("ball"), [0.0, 0.0, -0.1], vectors).unwrap();
-    let motion = data(motion.torque(None, [1.0, 0.0, 0.0], vec![[0.0, 0.0, 2.0]; 3]).unwrap());
+    let motion = motion_of_ball().force(Some("ball"), [0.0, 0.0, -0.1], vectors).unwrap();
+    let motion = data_of_motion(motion.torque(None, [1.0, 0.0, 0.0], vec![[0.0, 0.0, 2.0]; 3]).unwrap());
     let arrows = motion["arrows"].as_array().unwrap();
     assert_eq!((&arrows[0][0], &arrows[0][1]), (&"Force".into(), &0.into()));
     assert_eq!((&arrows[1][0], &arrows[1][1]), (&"Torque".into(), &(-1).into()));
@@ -162,7 +166,7 @@ fn arrows_are_the_vectors_that_were_given() {
         assert!((arrow_component(0, 2, sample).unwrap() - z).abs() < 0.01);
     }
     assert_eq!((arrow_component(0, 1, 1), arrow_component(1, 2, 2)), (None, Some(2.0)));
-    let few = ball().force(None, [0.0; 3], vec![[0.0; 3]]);
+    let few = motion_of_ball().force(None, [0.0; 3], vec![[0.0; 3]]);
     assert!(matches!(few, Err(Error::Count { expected: 3, found: 1, .. })));
 }
 
@@ -174,7 +178,7 @@ fn collada_files_are_read_in_metres() {
     [3, 7, 11, 12, 13, 14].into_iter().for_each(|k| numbers[k] = 1.0);
     let figure = Figure::of(&Ball {}).add("wedge", Kind::Mesh("meshes/wedge.dae"), Some("ball"), &numbers);
     let figure = figure.unwrap().meshes(concat!(env!("CARGO_MANIFEST_DIR"), "/tests")).unwrap();
-    let motion = data(ball().figure(figure).unwrap());
-    let low = meshes(&motion)[0][6][0].as_array().unwrap().iter().map(|x| x.as_f64().unwrap());
+    let motion = data_of_motion(motion_of_ball().figure(figure).unwrap());
+    let low = meshes_of_motion(&motion)[0][6][0].as_array().unwrap().iter().map(|x| x.as_f64().unwrap());
     assert!(low.zip([0.05, 0.0, 0.0]).all(|(x, y)| (x - y).abs() < 1e-6));
 }

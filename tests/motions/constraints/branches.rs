@@ -13,13 +13,13 @@ use std::f64::consts::PI;
 use support::random::Random;
 
 /// Returns the error of the acceleration in units of the expected error.
-fn off<M, const NV: usize, const N: usize>(m: &M, branch: &Branch<NV, N>) -> f64
+fn acceleration_error<M, const NV: usize, const N: usize>(m: &M, branch: &Branch<NV, N>) -> f64
 where
     M: Mechanism<NV, NV, 0, Scalar = f64>,
 {
-    let v = branch.velocity();
+    let v = branch.branch_velocity();
     let found = m.forward_dynamics(0.0, &branch.q, &v, &SVector::zeros());
-    let (want, most) = branch.acceleration(m);
+    let (want, most) = branch.branch_acceleration(m);
     let expected = 1e-6 * (want.amax() + v.norm_squared()) + 1e-9 * most;
     let off = (found - want).amax() / expected;
     if off.is_nan() { f64::INFINITY } else { off }
@@ -27,7 +27,7 @@ where
 
 /// Returns the seeds of the test cases: `0..usual`, or the value of the variable `LINKWORK_ORACLE`, `20000`
 /// or `400..405`.
-fn cases(usual: u64) -> std::ops::Range<u64> {
+fn test_case_seeds(usual: u64) -> std::ops::Range<u64> {
     let asked = std::env::var("LINKWORK_ORACLE").unwrap_or_default();
     let (from, to) = asked.split_once("..").unwrap_or(("0", &asked));
     from.parse().unwrap_or(0)..to.parse().unwrap_or(usual)
@@ -42,26 +42,26 @@ const STYLES: [Style; 4] = [
 
 /// Returns an angle and its rate. The angle is far from the singular configuration, near it, in it up to
 /// rounding, or exactly in it. One state in eight is at rest.
-fn approach(random: &mut Random, flat: f64) -> (f64, f64) {
-    let distance = 10_f64.powf(-8.0 - random.uniform(8.0)) * random.uniform(1.0).signum();
-    let distance = if random.uniform(1.0) > 0.9 { 0.0 } else { distance };
-    let rate = 10_f64.powf(random.uniform(1.5)) * random.uniform(1.0).signum();
+fn random_approach(random: &mut Random, flat: f64) -> (f64, f64) {
+    let distance = 10_f64.powf(-8.0 - random.uniform_number(8.0)) * random.uniform_number(1.0).signum();
+    let distance = if random.uniform_number(1.0) > 0.9 { 0.0 } else { distance };
+    let rate = 10_f64.powf(random.uniform_number(1.5)) * random.uniform_number(1.0).signum();
     // At rest in a singular configuration the assembly mode is not determined.
-    let still = random.uniform(1.0) > 0.75 && distance.abs() > 1e-6;
+    let still = random.uniform_number(1.0) > 0.75 && distance.abs() > 1e-6;
     (flat + distance, if still { 0.0 } else { rate })
 }
 
 /// Returns the lengths of a linkage that is singular at a crank angle of `π` or zero, whether it is `π`, and
 /// the angle.
 fn flat_lengths(random: &mut Random) -> ([f64; 4], bool, f64) {
-    let mut length = || 1.0 + random.uniform(0.7);
+    let mut length = || 1.0 + random.uniform_number(0.7);
     let (base, l1, l2) = (length(), length(), length());
     let (outer, inner) = (base + l1 - l2, l2 - (l1 - base).abs());
     // In a folded kite the coupler rotates alone, or coupler and crank, while the other links are at rest.
-    if random.uniform(1.0) > 0.5 {
+    if random.uniform_number(1.0) > 0.5 {
         return ([base, l1, l1, base], true, PI);
     }
-    if random.uniform(1.0) > 0.0 && outer > 0.3 {
+    if random.uniform_number(1.0) > 0.0 && outer > 0.3 {
         ([base, l1, l2, outer], true, PI)
     } else if inner > 0.3 {
         ([base, l1, l2, inner], false, 0.0)
@@ -70,12 +70,12 @@ fn flat_lengths(random: &mut Random) -> ([f64; 4], bool, f64) {
     }
 }
 
-fn parallelogram(angle: f64, rate: f64) -> Branch<3, 1> {
+fn parallelogram_branch(angle: f64, rate: f64) -> Branch<3, 1> {
     let by = SVector::from([1.0, -1.0, 1.0]);
     Branch { q: by * angle, by, bend: SVector::zeros(), rate: [rate].into() }
 }
 
-fn flat(lengths: [f64; 4], at_pi: bool, side: f64, angle: f64, rate: f64) -> Branch<3, 1> {
+fn flat_linkage_branch(lengths: [f64; 4], at_pi: bool, side: f64, angle: f64, rate: f64) -> Branch<3, 1> {
     let jets = flat_branch(lengths, at_pi, angle, side);
     let coefficients_of_jets = |k: usize| SVector::<f64, 3>::from_fn(|i, _| jets[i].0[k]);
     Branch {
@@ -93,8 +93,8 @@ fn flat(lengths: [f64; 4], at_pi: bool, side: f64, angle: f64, rate: f64) -> Bra
 const HARD: [u64; 8] = [4_647, 4_958, 17_407, 66_896, 862_310, 962_679, 1_187_227, 1_242_381];
 
 /// Checks accelerations at random points of the assembly modes, with all styles of masses and springs.
-fn check(kind: &str, usual: u64, case: impl Fn(&mut Random, &Style) -> (f64, String)) {
-    for seed in cases(usual).chain(HARD) {
+fn check_random_branches(kind: &str, usual: u64, case: impl Fn(&mut Random, &Style) -> (f64, String)) {
+    for seed in test_case_seeds(usual).chain(HARD) {
         let mut random = Random::new(seed);
         let style = &STYLES[seed as usize % 4];
         let (off, what) = case(&mut random, style);
@@ -104,67 +104,70 @@ fn check(kind: &str, usual: u64, case: impl Fn(&mut Random, &Style) -> (f64, Str
 
 #[test]
 fn parallelograms_accelerate_as_pendulums() {
-    check("parallelogram", 4000, |random, style| {
-        let (base, l1) = (1.0 + random.uniform(0.7), 1.0 + random.uniform(0.7));
-        let flat = if random.uniform(1.0) > 0.0 { PI } else { 0.0 };
-        let (angle, rate) = approach(random, flat);
-        let branch = parallelogram(angle, rate);
-        let tilted = Tilted::random(random, style, [base, l1, base, l1]);
-        let plain = FourBar::random(random, style, [base, l1, base, l1]);
-        let most = off(&tilted, &branch).max(off(&plain, &branch));
+    check_random_branches("parallelogram", 4000, |random, style| {
+        let (base, l1) = (1.0 + random.uniform_number(0.7), 1.0 + random.uniform_number(0.7));
+        let flat = if random.uniform_number(1.0) > 0.0 { PI } else { 0.0 };
+        let (angle, rate) = random_approach(random, flat);
+        let branch = parallelogram_branch(angle, rate);
+        let tilted = Tilted::random_instance(random, style, [base, l1, base, l1]);
+        let plain = FourBar::random_instance(random, style, [base, l1, base, l1]);
+        let most = acceleration_error(&tilted, &branch).max(acceleration_error(&plain, &branch));
         (most, format!("at {:e} from {flat}, {rate} rad/s, {plain:?} {tilted:?}", angle - flat))
     });
 }
 
 #[test]
 fn flat_linkages_accelerate_along_their_branch() {
-    check("four-bar", 4000, |random, style| {
+    check_random_branches("four-bar", 4000, |random, style| {
         let (lengths, at_pi, angle) = flat_lengths(random);
-        let side = random.uniform(1.0).signum();
+        let side = random.uniform_number(1.0).signum();
         let mut approach = || {
-            let (theta, rate) = approach(random, angle);
-            (theta, rate, flat(lengths, at_pi, side, theta, rate))
+            let (theta, rate) = random_approach(random, angle);
+            (theta, rate, flat_linkage_branch(lengths, at_pi, side, theta, rate))
         };
         // A crank that is too long for the other lengths does not reach every angle.
         let (theta, rate, branch) = std::iter::repeat_with(&mut approach)
             .find(|(.., branch)| branch.q.iter().chain(&branch.bend).all(|x| x.is_finite()))
             .expect("the flat position itself is reached");
-        let tilted = Tilted::random(random, style, lengths);
-        let plain = FourBar::random(random, style, lengths);
-        let most = off(&tilted, &branch).max(off(&plain, &branch));
+        let tilted = Tilted::random_instance(random, style, lengths);
+        let plain = FourBar::random_instance(random, style, lengths);
+        let most = acceleration_error(&tilted, &branch).max(acceleration_error(&plain, &branch));
         (most, format!("at {:e} from {angle}, {rate} rad/s, {plain:?} {tilted:?}", theta - angle))
     });
 }
 
 #[test]
 fn windows_accelerate_as_pendulums() {
-    check("row", 2000, |random, style| {
-        let flat = if random.uniform(1.0) > 0.0 { PI } else { 0.0 };
-        let (angle, rate) = approach(random, flat);
+    check_random_branches("row", 2000, |random, style| {
+        let flat = if random.uniform_number(1.0) > 0.0 { PI } else { 0.0 };
+        let (angle, rate) = random_approach(random, flat);
         let by = SVector::from([1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0]);
         let branch = Branch { q: by * angle, by, bend: SVector::zeros(), rate: [rate].into() };
-        let mut length = || 1.0 + random.uniform(0.7);
+        let mut length = || 1.0 + random.uniform_number(0.7);
         let (post, w1, w2, w3) = (length(), length(), length(), length());
-        let turn = random.uniform(PI);
-        let [m1, m2, m3, m4] = core::array::from_fn(|_| style.mass(random));
-        let [k1, k2, k3] = core::array::from_fn(|_| style.stiffness(random));
+        let turn = random.uniform_number(PI);
+        let [m1, m2, m3, m4] = core::array::from_fn(|_| style.random_mass(random));
+        let [k1, k2, k3] = core::array::from_fn(|_| style.random_stiffness(random));
         let (aside, down) = (9.81 * turn.sin(), 9.81 * turn.cos());
         let row = Row { down, aside, post, w1, w2, w3, m1, m2, m3, m4, k1, k2, k3 };
-        (off(&row, &branch), format!("at {:e} from {flat}, {rate} rad/s, {row:?}", angle - flat))
+        (
+            acceleration_error(&row, &branch),
+            format!("at {:e} from {flat}, {rate} rad/s, {row:?}", angle - flat),
+        )
     });
 }
 
-fn stacked(random: &mut Random, style: &Style) -> Stacked {
-    let mut length = || 1.0 + random.uniform(0.7);
+fn random_stacked_windows(random: &mut Random, style: &Style) -> Stacked {
+    let mut length = || 1.0 + random.uniform_number(0.7);
     let (low, high, width, shelf) = (length(), length(), length(), length());
-    let turn = random.uniform(PI);
-    let [m1, m2, m3, m4, m5, m6] = core::array::from_fn(|_| style.mass(random));
-    let [k1, k2, k3, k4] = core::array::from_fn(|_| style.stiffness(random));
+    let turn = random.uniform_number(PI);
+    let [m1, m2, m3, m4, m5, m6] = core::array::from_fn(|_| style.random_mass(random));
+    let [k1, k2, k3, k4] = core::array::from_fn(|_| style.random_stiffness(random));
     let (aside, down) = (9.81 * turn.sin(), 9.81 * turn.cos());
     Stacked { down, aside, low, high, width, shelf, m1, m2, m3, m4, m5, m6, k1, k2, k3, k4 }
 }
 
-fn stack(angles: [f64; 2], rates: [f64; 2]) -> Branch<6, 2> {
+fn stacked_windows_branch(angles: [f64; 2], rates: [f64; 2]) -> Branch<6, 2> {
     let by = SMatrix::<f64, 6, 2>::new(1.0, 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0, 1.0);
     Branch { q: by * SVector::from(angles), by, bend: SVector::zeros(), rate: rates.into() }
 }
@@ -172,17 +175,17 @@ fn stack(angles: [f64; 2], rates: [f64; 2]) -> Branch<6, 2> {
 /// One of the windows is in a singular configuration, or both are.
 #[test]
 fn stacked_windows_accelerate_as_two_pendulums() {
-    check("stack", 2000, |random, style| {
+    check_random_branches("stack", 2000, |random, style| {
         // If the posts are in line, the heavy bodies move almost equally: two coordinates are then nearly
         // dependent.
         let style = &Style { masses: style.masses.min(1.0), springs: style.springs };
-        let (low, first) = approach(random, 0.0);
-        let (near, second) = approach(random, PI);
-        let high = if random.uniform(1.0) > 0.0 { near } else { random.uniform(1.0) };
+        let (low, first) = random_approach(random, 0.0);
+        let (near, second) = random_approach(random, PI);
+        let high = if random.uniform_number(1.0) > 0.0 { near } else { random.uniform_number(1.0) };
         let rate_unless_zero = |rate: f64, other: f64| if rate == 0.0 { other } else { rate };
         let (first, second) = (rate_unless_zero(first, 0.4), rate_unless_zero(second, -0.7));
-        let stacked = stacked(random, style);
-        let off = off(&stacked, &stack([low, high], [first, second]));
+        let stacked = random_stacked_windows(random, style);
+        let off = acceleration_error(&stacked, &stacked_windows_branch([low, high], [first, second]));
         (
             off,
             format!("at {low:e} and {high:e} = π + {:e}, {first} and {second} rad/s, {stacked:?}", high - PI),
@@ -191,7 +194,7 @@ fn stacked_windows_accelerate_as_two_pendulums() {
 }
 
 /// Returns the change of the energy over a motion through singular configurations.
-fn gain<M, S, const NV: usize>(
+fn energy_gain<M, S, const NV: usize>(
     m: &M,
     (q, v): (SVector<f64, NV>, SVector<f64, NV>),
     end: f64,
@@ -215,15 +218,16 @@ const HARD_MOTIONS: [u64; 6] = [836, 2_353, 7_612, 10_079, 14_783, 17_831];
 /// Checks that motions which pass singular configurations at random fractions of their steps conserve energy.
 #[test]
 fn random_linkages_keep_their_energy_through_flat_positions() {
-    for seed in cases(60).chain(HARD_MOTIONS) {
+    for seed in test_case_seeds(60).chain(HARD_MOTIONS) {
         let mut random = Random::new(1000 + seed);
         let style = Style { masses: 0.3 + (seed % 3) as f64, springs: 2.0 + 2.0 * (seed % 3) as f64 };
         let (lengths, at_pi, angle) = flat_lengths(&mut random);
-        let side = random.uniform(1.0).signum();
-        let m = FourBar::random(&mut random, &style, lengths);
-        let rate = 6.0 + random.uniform(3.0);
-        let branch = flat(lengths, at_pi, side, angle - 0.3 - random.uniform(0.1), rate);
-        let state = (branch.q, branch.velocity());
+        let side = random.uniform_number(1.0).signum();
+        let m = FourBar::random_instance(&mut random, &style, lengths);
+        let rate = 6.0 + random.uniform_number(3.0);
+        let branch =
+            flat_linkage_branch(lengths, at_pi, side, angle - 0.3 - random.uniform_number(0.1), rate);
+        let state = (branch.q, branch.branch_velocity());
         let end = 0.1_f64;
         // The steps resolve the fastest rotation of the motion, and the rate of change of each velocity
         // relative to its maximum, which results from a stiff spring or from the curvature of the assembly
@@ -246,10 +250,10 @@ fn random_linkages_keep_their_energy_through_flat_positions() {
                 "seed {seed}, {name}, {h} s: {share:?} of {whole} J, {rate} rad/s, {m:?}"
             );
         };
-        assert_small_energy_gain("Runge–Kutta", gain(&m, state, end, Rk4::step(h)), 1e-3);
-        assert_small_energy_gain("Dormand–Prince", gain(&m, state, end, DormandPrince::new()), 1e-4);
-        assert_small_energy_gain("midpoint", gain(&m, state, end, ImplicitMidpoint::step(h)), 1e-2);
-        assert_small_energy_gain("Euler", gain(&m, state, end, SemiImplicitEuler::step(h)), 0.2);
+        assert_small_energy_gain("Runge–Kutta", energy_gain(&m, state, end, Rk4::step(h)), 1e-3);
+        assert_small_energy_gain("Dormand–Prince", energy_gain(&m, state, end, DormandPrince::new()), 1e-4);
+        assert_small_energy_gain("midpoint", energy_gain(&m, state, end, ImplicitMidpoint::step(h)), 1e-2);
+        assert_small_energy_gain("Euler", energy_gain(&m, state, end, SemiImplicitEuler::step(h)), 0.2);
     }
 }
 
@@ -258,18 +262,18 @@ fn random_linkages_keep_their_energy_through_flat_positions() {
 /// distance between assembly modes, the directions of the constraints are arbitrary.
 #[test]
 fn states_beside_their_branch_keep_its_velocity() {
-    for seed in cases(300) {
+    for seed in test_case_seeds(300) {
         let mut random = Random::new(2000 + seed);
         let style = &STYLES[seed as usize % 4];
         let (lengths, at_pi, angle) = flat_lengths(&mut random);
-        let side = random.uniform(1.0).signum();
-        let m = FourBar::random(&mut random, style, lengths);
-        let distance = 10_f64.powf(-7.0 + random.uniform(1.0));
-        let branch = flat(lengths, at_pi, side, angle + distance, 3.0);
-        let v = branch.velocity();
+        let side = random.uniform_number(1.0).signum();
+        let m = FourBar::random_instance(&mut random, style, lengths);
+        let distance = 10_f64.powf(-7.0 + random.uniform_number(1.0));
+        let branch = flat_linkage_branch(lengths, at_pi, side, angle + distance, 3.0);
+        let v = branch.branch_velocity();
         let size = v.amax();
         // The deviation has a random direction and nearly the magnitude of the distance.
-        let beside = random.vector::<3>(0.5) * (distance * size / 3.0);
+        let beside = random.random_vector::<3>(0.5) * (distance * size / 3.0);
         let (_, kept) = m
             .project_state(0.0, &(branch.q + beside), &v)
             .unwrap_or_else(|e| panic!("seed {seed}: {e}, {m:?}"));

@@ -25,7 +25,7 @@ struct Parallelogram {
 }
 
 /// Returns the largest error of a crank's angle after two and a half revolutions, over eight states.
-fn farthest<S: Lockstep<f64>>(method: S, steps: usize, time: f64) -> f64 {
+fn largest_angle_error<S: Lockstep<f64>>(method: S, steps: usize, time: f64) -> f64 {
     const COUNT: usize = 8;
     let initial_rate = |k: usize| 5.0 * core::f64::consts::PI / time + 0.01 * k as f64;
     let initial_angle = |k: usize| 0.3 + 0.05 * k as f64;
@@ -48,9 +48,9 @@ fn farthest<S: Lockstep<f64>>(method: S, steps: usize, time: f64) -> f64 {
 fn lanes_pass_singular_positions() {
     for steps in [400, 1500, 4000] {
         let step = 2.0 / steps as f64;
-        let error = farthest(Rk4::step(step), steps, 2.0);
+        let error = largest_angle_error(Rk4::step(step), steps, 2.0);
         assert!(error < 1e-6, "Rk4: {error} with {steps} steps");
-        let error = farthest(SemiImplicitEuler::step(step), steps, 2.0);
+        let error = largest_angle_error(SemiImplicitEuler::step(step), steps, 2.0);
         assert!(error < 1e-6, "SemiImplicitEuler: {error} with {steps} steps");
     }
 }

@@ -68,11 +68,7 @@ struct Start<'m, M, const NQ: usize, const NV: usize> {
 }
 
 impl<'m, M, const NQ: usize, const NV: usize> Start<'m, M, NQ, NV> {
-    fn projected<const NU: usize, const NH: usize, const NC: usize>(
-        m: &'m M,
-        q: [f64; NQ],
-        v: [f64; NV],
-    ) -> Self
+    fn on<const NU: usize, const NH: usize, const NC: usize>(m: &'m M, q: [f64; NQ], v: [f64; NV]) -> Self
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64>,
     {
@@ -97,7 +93,7 @@ impl<'m, M, const NQ: usize, const NV: usize> Start<'m, M, NQ, NV> {
     }
 
     /// Returns the maximum energy errors in the first and in the last quarter of a run, and the mean errors.
-    fn energy<const NU: usize, const NH: usize, const NC: usize, S: Method<f64>>(
+    fn energy_errors<const NU: usize, const NH: usize, const NC: usize, S: Method<f64>>(
         &self,
         method: S,
         h: f64,
@@ -140,11 +136,11 @@ fn methods_keep_their_order() {
         })+};
     }
     check! {
-        Start::projected(&Bob {}, [0.6, -0.8], [0.4, 0.3]), 5e-3;
-        Start::projected(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]), 5e-3;
-        Start::projected(&Hung {}, [0.0, 0.1, -1.0, 0.0, 0.1, 0.1, 0.98], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 5e-3;
-        Start::projected(&DISK, [0.0, 0.0, 0.4, 0.5, 0.3, 0.7], [0.0, 0.0, 0.0, 0.5, 0.3, 6.0]), 2.5e-3;
-        Start::projected(&BOWL, [0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 5e-3;
+        Start::on(&Bob {}, [0.6, -0.8], [0.4, 0.3]), 5e-3;
+        Start::on(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]), 5e-3;
+        Start::on(&Hung {}, [0.0, 0.1, -1.0, 0.0, 0.1, 0.1, 0.98], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 5e-3;
+        Start::on(&DISK, [0.0, 0.0, 0.4, 0.5, 0.3, 0.7], [0.0, 0.0, 0.0, 0.5, 0.3, 6.0]), 2.5e-3;
+        Start::on(&BOWL, [0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 5e-3;
     }
 }
 
@@ -154,20 +150,20 @@ fn energy_does_not_drift() {
     macro_rules! check {
         ($($start:expr, $euler:expr, $midpoint:expr;)+) => {$({
             let start = $start;
-            let (worst, mean) = start.energy(SemiImplicitEuler::step(2e-3), 2e-3, 8000);
+            let (worst, mean) = start.energy_errors(SemiImplicitEuler::step(2e-3), 2e-3, 8000);
             assert!(worst[0] < $euler && worst[1] < 1.2 * worst[0], "{worst:?}");
             assert!((mean[1] - mean[0]).abs() < 0.1 * worst[0], "{mean:?} of {worst:?}");
-            let (worst, mean) = start.energy(ImplicitMidpoint::step(2e-3), 2e-3, 8000);
+            let (worst, mean) = start.energy_errors(ImplicitMidpoint::step(2e-3), 2e-3, 8000);
             assert!(worst[0] < $midpoint && worst[1] < 1.2 * worst[0], "{worst:?}");
             assert!((mean[1] - mean[0]).abs() < 0.1 * worst[0], "{mean:?} of {worst:?}");
         })+};
     }
     check! {
-        Start::projected(&Bob {}, [0.6, -0.8], [0.4, 0.3]), 1e-2, 1e-4;
-        Start::projected(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]), 0.3, 4e-2;
-        Start::projected(&DISK, [0.0, 0.0, 0.4, 0.5, 0.3, 0.7], [0.0, 0.0, 0.0, 0.5, 0.3, 6.0]), 0.1, 1e-2;
-        Start::projected(&FreeDisk {}, [0.0, 0.0, 0.39, 0.2, 0.0, 0.0, 0.98], [0.0, 0.0, 0.0, 0.3, 6.0, 0.5]), 0.1, 1e-2;
-        Start::projected(&BOWL, [0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 2e-3, 1e-4;
+        Start::on(&Bob {}, [0.6, -0.8], [0.4, 0.3]), 1e-2, 1e-4;
+        Start::on(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]), 0.3, 4e-2;
+        Start::on(&DISK, [0.0, 0.0, 0.4, 0.5, 0.3, 0.7], [0.0, 0.0, 0.0, 0.5, 0.3, 6.0]), 0.1, 1e-2;
+        Start::on(&FreeDisk {}, [0.0, 0.0, 0.39, 0.2, 0.0, 0.0, 0.98], [0.0, 0.0, 0.0, 0.3, 6.0, 0.5]), 0.1, 1e-2;
+        Start::on(&BOWL, [0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]), 2e-3, 1e-4;
     }
 }
 
@@ -184,15 +180,15 @@ fn a_pendulum_is_not_pumped() {
 /// A four-bar linkage with 26.8 J keeps its energy; it once gained 0.19 J in 4 s and 45 J in 12 s.
 #[test]
 fn a_linkage_keeps_its_energy() {
-    let start = Start::projected(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]);
-    let (worst, _) = start.energy(ImplicitMidpoint::step(1e-3), 1e-3, 12_000);
+    let start = Start::on(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]);
+    let (worst, _) = start.energy_errors(ImplicitMidpoint::step(1e-3), 1e-3, 12_000);
     assert!(worst[1] < 1e-2, "{worst:?}");
 }
 
 /// Backward integration returns to the start, for loops, quaternions and rolling.
 #[test]
 fn midpoint_rule_is_reversible() {
-    fn check<M, const NQ: usize, const NV: usize, const NU: usize>(start: &Start<'_, M, NQ, NV>)
+    fn check_start<M, const NQ: usize, const NV: usize, const NU: usize>(start: &Start<'_, M, NQ, NV>)
     where
         M: Mechanism<NQ, NV, NU, Scalar = f64>,
     {
@@ -204,13 +200,9 @@ fn midpoint_rule_is_reversible() {
         let off = start.m.difference(&start.q, &back.q).amax().max((back.v + start.v).amax());
         assert!(off < 1e-9, "{off:e}");
     }
-    check(&Start::projected(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]));
-    check(&Start::projected(
-        &Hung {},
-        [0.0, 0.1, -1.0, 0.0, 0.1, 0.1, 0.98],
-        [0.5, 0.2, 0.0, 1.0, 2.0, -1.0],
-    ));
-    check(&Start::projected(
+    check_start(&Start::on(&FourBar {}, [1.2, -1.0, 1.4], [2.0, 0.0, 0.0]));
+    check_start(&Start::on(&Hung {}, [0.0, 0.1, -1.0, 0.0, 0.1, 0.1, 0.98], [0.5, 0.2, 0.0, 1.0, 2.0, -1.0]));
+    check_start(&Start::on(
         &FreeDisk {},
         [0.0, 0.0, 0.39, 0.2, 0.0, 0.0, 0.98],
         [0.0, 0.0, 0.0, 0.3, 6.0, 0.5],
@@ -248,7 +240,7 @@ fn feedback_is_integrated_by_the_midpoint_rule() {
 fn constrained_rollouts_do_not_mix() {
     let linkage = FourBar {};
     let states: Vec<_> =
-        [1.2, 1.3, 1.5].map(|crank| Start::projected(&linkage, [crank, -1.0, 1.4], [2.0, 0.0, 0.0])).into();
+        [1.2, 1.3, 1.5].map(|crank| Start::on(&linkage, [crank, -1.0, 1.4], [2.0, 0.0, 0.0])).into();
     let entries_of_all_states = |entry: &dyn Fn(&Start<'_, FourBar, 3, 3>, usize) -> f64| -> Vec<f64> {
         (0..3).flat_map(|i| states.iter().map(move |s| entry(s, i))).collect()
     };

@@ -31,7 +31,7 @@ struct Slides<T> {
 
 #[test]
 fn light_bodies_between_heavy_ones_hold_them() {
-    fn check<T: Real>(lightest: i32, tolerance: T) {
+    fn check_light_masses<T: Real>(lightest: i32, tolerance: T) {
         let ten = T::one() * linkwork::nalgebra::convert(10.0);
         for k in 0..=lightest {
             let slides = Slides { heavy: T::one(), light: T::one() / ten.powi(k) };
@@ -41,25 +41,25 @@ fn light_bodies_between_heavy_ones_hold_them() {
             assert!((a[0] - want).abs() < tolerance && (a[1] - want).abs() < tolerance, "{a} for 10^-{k}");
         }
     }
-    check::<f64>(12, 1e-14);
-    check::<f32>(12, 1e-5);
+    check_light_masses::<f64>(12, 1e-14);
+    check_light_masses::<f32>(12, 1e-5);
 }
 
 const WINDOWS: TwoWindows = TwoWindows { g: 9.81, mass: 1.0, length: 1.0 };
 
 /// Returns the configuration and velocity with all posts at this clockwise angle from the upward vertical,
 /// and at this rate.
-fn posts(angle: f64, rate: f64) -> (SVector<f64, 5>, SVector<f64, 5>) {
+fn state_of_posts(angle: f64, rate: f64) -> (SVector<f64, 5>, SVector<f64, 5>) {
     let alternating_signs = |x: f64| SVector::from([-x, x, -x, x, -x]);
     (alternating_signs(angle), alternating_signs(rate))
 }
 
 /// Returns the error of the accelerations of the linkage against those of an equivalent pendulum:
 /// `(N + (N + 1)/3) l θ̈ = (N + (N + 1)/2) g sin θ`.
-fn off(angle: f64, rate: f64) -> f64 {
-    let (q, v) = posts(angle, rate);
+fn acceleration_error(angle: f64, rate: f64) -> f64 {
+    let (q, v) = state_of_posts(angle, rate);
     let a = WINDOWS.forward_dynamics(&q, &v, &SVector::zeros());
-    (a - posts(0.0, 3.5 / 3.0 * 9.81 * angle.sin()).1).amax()
+    (a - state_of_posts(0.0, 3.5 / 3.0 * 9.81 * angle.sin()).1).amax()
 }
 
 /// Checks that accelerations are continuous through a singular configuration. At 90° all links are on one
@@ -70,16 +70,16 @@ fn accelerations_go_on_through_singular_positions() {
         for side in [-1.0, 1.0] {
             let distance = side * 10_f64.powi(-exponent);
             for line in [FRAC_PI_2, 3.0 * FRAC_PI_2] {
-                let found = off(line + distance, 6.0);
+                let found = acceleration_error(line + distance, 6.0);
                 assert!(found < 1e-7, "{found} at {distance} from {line}");
-                let found = off(line + distance, 0.7);
+                let found = acceleration_error(line + distance, 0.7);
                 assert!(found < 1e-5, "{found} at {distance} from {line}, slowly");
             }
         }
     }
-    assert!(off(FRAC_PI_2, 6.0) < 1e-7 && off(-FRAC_PI_2, 6.0) < 1e-7);
+    assert!(acceleration_error(FRAC_PI_2, 6.0) < 1e-7 && acceleration_error(-FRAC_PI_2, 6.0) < 1e-7);
     // The state deviates from the assembly mode by rounding, as after a step of an integrator.
-    let (q, v) = posts(FRAC_PI_2 + 1e-6, 6.0);
+    let (q, v) = state_of_posts(FRAC_PI_2 + 1e-6, 6.0);
     let aside = SVector::from([1e-13, -2e-13, 5e-14, -1e-13, 7e-14]);
     let a = WINDOWS.forward_dynamics(&(q + aside), &(v + aside * 100.0), &SVector::zeros());
     assert!((a - WINDOWS.forward_dynamics(&q, &v, &SVector::zeros())).amax() < 1e-6);
@@ -94,7 +94,7 @@ fn off_top(angle: f64) -> f64 {
 
 /// Returns the error of the first post's top after ten seconds, and the change of the energy.
 fn window_errors<M: Method<f64>>(method: M) -> (f64, f64) {
-    let (q, v) = posts(0.0, 1.0);
+    let (q, v) = state_of_posts(0.0, 1.0);
     let energy =
         |q: &SVector<f64, 5>, v: &SVector<f64, 5>| WINDOWS.kinetic_energy(q, v) + WINDOWS.potential_energy(q);
     let end = simulate(&WINDOWS).from(q, v).method(method).duration(10.0).finish().expect("it turns on");
@@ -120,7 +120,7 @@ struct Swing {
 }
 
 /// Returns the same errors as [`turned`], for the equivalent pendulum.
-fn swung<M: Method<f64>>(method: M) -> (f64, f64) {
+fn pendulum_errors<M: Method<f64>>(method: M) -> (f64, f64) {
     let swing = Swing {};
     let total_energy = |q: &_, v: &_| swing.kinetic_energy(q, v) + swing.potential_energy(q);
     let (q, v) = (SVector::from([0.0]), SVector::from([-1.0]));
@@ -132,16 +132,16 @@ fn swung<M: Method<f64>>(method: M) -> (f64, f64) {
 /// configuration eight times in ten seconds.
 #[test]
 fn implicit_steps_are_as_good_in_singular_positions_as_without() {
-    fn check<M: Method<f64>>(name: &str, method: fn(f64) -> M) {
+    fn check_window_errors<M: Method<f64>>(name: &str, method: fn(f64) -> M) {
         for step in [2e-3, 1e-3] {
-            let ((top, energy), (own, least)) = (window_errors(method(step)), swung(method(step)));
+            let ((top, energy), (own, least)) = (window_errors(method(step)), pendulum_errors(method(step)));
             let alike = top < 1.2 * own + 1e-5 && energy < 1.2 * least + 1e-6;
             assert!(alike, "{name}: {top} m, {energy} J with {step} s; a pendulum {own} m, {least} J");
         }
     }
-    check("midpoint", ImplicitMidpoint::step);
-    check("Rosenbrock", Rosenbrock::step);
-    check("Euler", SemiImplicitEuler::step);
+    check_window_errors("midpoint", ImplicitMidpoint::step);
+    check_window_errors("Rosenbrock", Rosenbrock::step);
+    check_window_errors("Euler", SemiImplicitEuler::step);
 }
 
 #[test]
@@ -157,12 +157,12 @@ fn adaptive_steps_go_through_singular_positions() {
 #[test]
 fn linkages_are_released_near_singular_positions() {
     for (exponent, side) in [(2, 1.0), (4, -1.0), (6, 1.0), (8, -1.0)] {
-        let (q, v) = posts(FRAC_PI_2 + side * 10_f64.powi(-exponent), 0.0);
+        let (q, v) = state_of_posts(FRAC_PI_2 + side * 10_f64.powi(-exponent), 0.0);
         let start = WINDOWS.potential_energy(&q);
         let assert_energy_and_branch = |end: Sample<f64, 5, 5, 0>, most: f64| {
             let energy = WINDOWS.kinetic_energy(&end.q, &end.v) + WINDOWS.potential_energy(&end.q);
             assert!((energy - start).abs() < most, "{} J from 1e-{exponent}", energy - start);
-            let aside = (end.q - posts(-end.q[0], 0.0).0).amax();
+            let aside = (end.q - state_of_posts(-end.q[0], 0.0).0).amax();
             assert!(aside < 1e-6, "{aside} rad off the branch from 1e-{exponent}");
         };
         let simulate_windows = || simulate(&WINDOWS).from(q, v).duration(2.0);
@@ -224,7 +224,12 @@ flat!(ChangePoint, [2, 1, 3, 2]);
 /// with an error of its order.
 #[test]
 fn cranks_turn_through_flat_positions() {
-    fn check<M: Mechanism<3, 3, 0, Scalar = f64>>(m: &M, q: SVector<f64, 3>, v: SVector<f64, 3>, name: &str) {
+    fn check_motion_from<M: Mechanism<3, 3, 0, Scalar = f64>>(
+        m: &M,
+        q: SVector<f64, 3>,
+        v: SVector<f64, 3>,
+        name: &str,
+    ) {
         let simulate_mechanism = || simulate(m).from(q, v).duration(2.0);
         let total_energy = |q: &_, v: &_| m.kinetic_energy(0.0, q, v) + m.potential_energy(0.0, q);
         let whole = total_energy(&q, &v);
@@ -261,10 +266,10 @@ fn cranks_turn_through_flat_positions() {
     for rate in [-12.0, -9.0] {
         let (m, held) = (Parallelogram {}, SVector::from([rate, 0.0, 0.0]));
         let q = m.assemble(&[1.0, -1.0, 1.0].into(), &[0]).expect("it closes");
-        check(&m, q, m.complete_velocity(&q, &held, &[0]).expect("it turns"), "parallelogram");
+        check_motion_from(&m, q, m.complete_velocity(&q, &held, &[0]).expect("it turns"), "parallelogram");
         let m = ChangePoint {};
         let q = m.assemble(&[1.0, -0.5, 1.2].into(), &[0]).expect("it closes");
-        check(&m, q, m.complete_velocity(&q, &held, &[0]).expect("it turns"), "change point");
+        check_motion_from(&m, q, m.complete_velocity(&q, &held, &[0]).expect("it turns"), "change point");
     }
 }
 
@@ -357,7 +362,12 @@ fn stiff_springs_act_in_singular_positions() {
 }
 
 /// Returns the maximum change of the energy in a run, relative to the initial energy.
-fn swing<T: Real, M: Method<T>>(stiffness: f64, (angle, rate): (f64, f64), time: f64, method: M) -> f64 {
+fn largest_energy_change<T: Real, M: Method<T>>(
+    stiffness: f64,
+    (angle, rate): (f64, f64),
+    time: f64,
+    method: M,
+) -> f64 {
     let convert_number = |x: f64| linkwork::nalgebra::convert::<f64, T>(x);
     let m = Sprung { stiffness: convert_number(stiffness) };
     let configuration_with_angle =
@@ -386,10 +396,10 @@ fn stiff_springs_swing_through_singular_positions() {
             ($scalar:ty, $start:expr, $more:expr) => {
                 let (k, s, t, h) = (stiffness, ($start, 0.0), time, h as $scalar);
                 let found = [
-                    swing::<$scalar, _>(k, s, t, Rk4::step(h)),
-                    swing::<$scalar, _>(k, s, t, ImplicitMidpoint::step(h)),
-                    swing::<$scalar, _>(k, s, t, Rosenbrock::step(h)),
-                    swing::<$scalar, _>(k, s, t, SemiImplicitEuler::step(h)),
+                    largest_energy_change::<$scalar, _>(k, s, t, Rk4::step(h)),
+                    largest_energy_change::<$scalar, _>(k, s, t, ImplicitMidpoint::step(h)),
+                    largest_energy_change::<$scalar, _>(k, s, t, Rosenbrock::step(h)),
+                    largest_energy_change::<$scalar, _>(k, s, t, SemiImplicitEuler::step(h)),
                 ];
                 // Bounds from the orders of the methods. Rosenbrock damps, and Euler's energy oscillates with
                 // h ω / 2.
@@ -415,8 +425,8 @@ fn single_precision_passes_singular_positions() {
         for h in [1e-3, 1e-2] {
             macro_rules! all {
                 ($($name:literal: $method:ident;)+) => {$(
-                    let single = swing::<f32, _>(0.0, start, 2.0, $method::step(h as f32));
-                    let double = swing::<f64, _>(0.0, start, 2.0, $method::step(h));
+                    let single = largest_energy_change::<f32, _>(0.0, start, 2.0, $method::step(h as f32));
+                    let double = largest_energy_change::<f64, _>(0.0, start, 2.0, $method::step(h));
                     let what = $name;
                     assert!(single < 1.1 * double + 2e-4, "{what}: {single} and {double} with {h} s from \
                         {start:?}");
@@ -440,12 +450,12 @@ fn single_precision_turns_through_singular_positions_again_and_again() {
     for start in [(1.0, 12.0), (1.0, 37.0), (1.0, -37.0), (0.9, 40.0)] {
         for tolerance in [1e-4_f32, 1e-5] {
             let method = DormandPrince::new().tolerance(tolerance, tolerance);
-            let single = swing::<f32, _>(0.0, start, 2.0, method);
+            let single = largest_energy_change::<f32, _>(0.0, start, 2.0, method);
             let method = DormandPrince::new().tolerance(f64::from(tolerance), f64::from(tolerance));
-            let double = swing::<f64, _>(0.0, start, 2.0, method);
+            let double = largest_energy_change::<f64, _>(0.0, start, 2.0, method);
             assert!(single < 2.0 * double + 2e-4, "{single} and {double} with {tolerance} from {start:?}");
         }
-        let single = swing::<f32, _>(0.0, start, 2.0, Rk4::step(1e-3));
+        let single = largest_energy_change::<f32, _>(0.0, start, 2.0, Rk4::step(1e-3));
         assert!(single < 1e-4, "Runge–Kutta: {single} from {start:?}");
     }
 }
@@ -460,7 +470,7 @@ fn fast_turns_keep_to_their_branch() {
     for rate in first.into_iter().chain(more) {
         macro_rules! all {
             ($($scalar:ty, $method:ident: $most:expr;)+) => {$(
-                let found = swing::<$scalar, _>(0.0, (0.3, rate), 2.0, $method::step(1e-2));
+                let found = largest_energy_change::<$scalar, _>(0.0, (0.3, rate), 2.0, $method::step(1e-2));
                 let what = concat!(stringify!($method), " of ", stringify!($scalar));
                 assert!(found < $most, "{what}: {found} of the energy at {rate} rad/s");
             )+};

@@ -63,7 +63,14 @@ struct Rubbed {
 }
 
 /// Checks an impact in a state, and half a dozen steps from it. Returns the number of errors.
-fn attack<M, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+fn check_impact_and_steps<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
     m: &M,
     q: SVector<f64, NQ>,
     v: SVector<f64, NV>,
@@ -104,49 +111,49 @@ where
 
 /// Returns random coefficients: friction from zero to a million, and restitution in its range, including both
 /// ends.
-fn laws(random: &mut Random) -> (f64, f64) {
+fn random_contact_coefficients(random: &mut Random) -> (f64, f64) {
     let friction = if random.next() > 0.7 { 0.0 } else { 10.0_f64.powf(1.5 + 4.5 * random.next()) };
     (friction, random.one_of([0.0, 0.0, 1.0, 1.0, 0.5, 1e-9]))
 }
 
 /// Checks `count` random states of each mechanism. Returns the number of errors.
-pub fn attacks(seed: u64, count: usize) -> usize {
+pub fn check_random_states(seed: u64, count: usize) -> usize {
     let (mut random, mut errors) = (Random(seed), 0);
     for _ in 0..count {
-        let (friction, restitution) = laws(&mut random);
+        let (friction, restitution) = random_contact_coefficients(&mut random);
         let m = Twice { friction, restitution };
         let mut q = m.neutral();
         q[2] = 0.05 + random.one_of([0.0, 0.0, -1e-3, 1e-9, 0.1]);
         q[0] = random.one_of([0.0, 1.0, -1e-12]);
         if random.next() > 0.5 {
             let size = random.one_of([1e-12, 1e-6, 0.1, 3.0]);
-            let mut turn = random.vector(size);
+            let mut turn = random.random_vector(size);
             (turn[0], turn[1], turn[2]) = (0.0, 0.0, 0.0);
             q = m.integrate(&q, &turn);
         }
         let speed = random.one_of([0.0, 1e-12, 1.0, 10.0]);
-        errors += attack(&m, q, random.vector(speed));
+        errors += check_impact_and_steps(&m, q, random.random_vector(speed));
 
         let m = Pile { friction, restitution };
         let mut q = m.neutral();
         (q[0], q[2], q[7], q[9], q[16]) = (-0.1, 0.1, 0.1, 0.1, 0.1 + 0.03_f64.sqrt());
         q[16] += random.one_of([0.0, 1e-9, -1e-6]);
         let speed = random.one_of([0.0, 1e-9, 2.0]);
-        errors += attack(&m, q, random.vector(speed));
+        errors += check_impact_and_steps(&m, q, random.random_vector(speed));
 
         let m = Rubbed { friction, moment: random.one_of([0.0, 1e-3, 0.05, 1e6]), restitution };
         let turn = SVector::from([0.0, 0.0, 0.0, random.next(), 3.0 * random.next(), random.next()]);
         let mut q = m.integrate(&m.neutral(), &turn);
         (q[0], q[2]) = (random.one_of([0.0, 0.0, 1.0, -1e-9]), 0.05 + random.one_of([0.0, 0.0, -1e-6, 0.01]));
         let speed = random.one_of([0.0, 1e-9, 2.0, 50.0]);
-        errors += attack(&m, q, random.vector(speed));
+        errors += check_impact_and_steps(&m, q, random.random_vector(speed));
 
         let (a, b) = (random.next() * 3.0, random.next() * 3.0);
         let m = Chain { friction, restitution, height: -(0.5 * a.sin() + 0.5 * (a + b).sin()) };
-        errors += attack(&m, [a, b].into(), random.vector(3.0));
+        errors += check_impact_and_steps(&m, [a, b].into(), random.random_vector(3.0));
 
         let m = Jammed { gap: random.one_of([1e-300, 1e-12, 1e-6, 0.3]), restitution };
-        errors += attack(&m, [random.next() * m.gap].into(), random.vector(5.0));
+        errors += check_impact_and_steps(&m, [random.next() * m.gap].into(), random.random_vector(5.0));
     }
     errors
 }
@@ -167,7 +174,7 @@ fn a_block_turns_about_two_of_many_points() {
         3.9121351162862305e-13,
     ]
     .into();
-    super::laws::check(&m, &q, &v);
+    super::laws::check_impact_conditions(&m, &q, &v);
 }
 
 /// Checks that the removal of overlaps does not create others: a heavy ball that falls between two others
@@ -200,6 +207,6 @@ fn states_at_random_have_answers() {
     let asked = std::env::var("LINKWORK_ORACLE").unwrap_or_default();
     let range = asked.split_once("..").and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
     let (from, to) = range.unwrap_or((0, asked.parse().unwrap_or(1)));
-    let errors: usize = (from..to).map(|block: u64| attacks(7 + block, 100)).sum();
+    let errors: usize = (from..to).map(|block: u64| check_random_states(7 + block, 100)).sum();
     assert!(errors as u64 <= (to - from) / 20, "{errors}");
 }

@@ -23,7 +23,7 @@ struct Solo {
 }
 
 /// Returns joint torques of springs and dampers, as from servo drives.
-fn hold(q: &SVector<f64, 19>, v: &SVector<f64, 18>) -> SVector<f64, 12> {
+fn servo_torques(q: &SVector<f64, 19>, v: &SVector<f64, 18>) -> SVector<f64, 12> {
     SVector::from_fn(|k, _| {
         let wanted = [0.0, 0.8, -1.6][k % 3];
         6.0 * (wanted - q[7 + k]) - 0.15 * v[6 + k]
@@ -42,7 +42,7 @@ fn a_quadruped_stands() {
     }
     let run = simulate(&m)
         .from(q, [0.0; 18])
-        .inputs(|_, q, v| hold(q, v))
+        .inputs(|_, q, v| servo_torques(q, v))
         .method(TimeStepping::step(1e-3))
         .sample_every(0.5)
         .duration(14.0);
@@ -53,7 +53,7 @@ fn a_quadruped_stands() {
     let gaps = m.contact_gaps(&after.q);
     assert!(gaps.amax() < 1e-8, "{gaps}");
     // The contact forces of the feet balance the weight, along and across the slope.
-    let u = hold(&after.q, &after.v);
+    let u = servo_torques(&after.q, &after.v);
     let forces = contact::forces(&m, after.t, &after.q, &after.v, &u, 1e-3).unwrap();
     let normal: f64 = (0..4).map(|k| forces[3 * k]).sum();
     let weight = m.total_mass() * 9.81;
@@ -171,10 +171,10 @@ fn responses_of_limbs_are_those_of_the_mass_matrix() {
     let mut random = Random(11);
     for _ in 0..20 {
         let m = Solo { slope: 0.1 };
-        let q = m.integrate(&m.neutral(), &random.vector(1.0));
+        let q = m.integrate(&m.neutral(), &random.random_vector(1.0));
         let errors = response_errors(&m, &q);
         assert!(errors[0].max(errors[1]) < 1e-12, "{errors:?}");
-        let q = Crab {}.integrate(&Crab {}.neutral(), &random.vector(1.0));
+        let q = Crab {}.integrate(&Crab {}.neutral(), &random.random_vector(1.0));
         let errors = response_errors(&Crab {}, &q);
         assert!(errors[0].max(errors[1]) < 1e-12, "{errors:?}");
     }

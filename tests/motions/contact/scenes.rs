@@ -48,7 +48,7 @@ struct Wall {
 /// Simulates a scene for `duration` seconds in steps of 2 ms. Checks that each step exists, that no step adds
 /// energy beyond `gain`, J, and that penetration remains below `depth`, m. Returns the end and the largest
 /// violation of the contact conditions.
-fn checked<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
+fn check_scene<M, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>(
     m: &M,
     (q, v): (SVector<f64, NQ>, SVector<f64, NV>),
     method: TimeStepping<f64>,
@@ -71,29 +71,29 @@ where
 
 /// Checks a row of dominoes: the first one knocks over the others. The last one lies on the ground, and the
 /// others lean on it.
-fn dominoes() {
+fn check_falling_dominoes() {
     let m = Dominoes { friction: 0.3 };
     let (mut q, mut v) = (m.neutral(), SVector::zeros());
     (0..5).for_each(|k| (q[7 * k], q[7 * k + 2]) = (0.025 * k as f64, 0.025));
     (v[0], v[4]) = (0.075, 3.0);
     for method in [TimeStepping::step(2e-3), TimeStepping::step(2e-3).leapfrog()] {
-        let (end, violation) = checked(&m, (q, v), method, (0.7, 1e-5, 1e-3));
+        let (end, violation) = check_scene(&m, (q, v), method, (0.7, 1e-5, 1e-3));
         assert!((0..4).all(|k| end[7 * k + 2] < 0.022) && end[30] < 0.0041, "{end}");
         assert!(violation < 0.2, "{violation}");
     }
 }
 
 /// Bricks rest on each other until a ball hits them.
-fn wall() {
+fn check_brick_wall() {
     let m = Wall {};
     let (mut q, mut v) = (m.neutral(), SVector::<f64, 24>::zeros());
     (q[2], q[7], q[9], q[14], q[16]) = (0.04, 0.101, 0.04, 0.0505, 0.12);
     (q[21], q[23]) = (-0.3, 0.15);
     v[18] = 4.0;
     let method = TimeStepping::step(2e-3).midpoint();
-    let (before, _) = checked(&m, (q, v), method, (0.04, 1e-9, 1e-9));
+    let (before, _) = check_scene(&m, (q, v), method, (0.04, 1e-9, 1e-9));
     assert!((before - q).rows(0, 21).amax() < 1e-12, "bricks rest before the ball arrives");
-    let (end, violation) = checked(&m, (q, v), method, (0.6, 1e-4, 1e-2));
+    let (end, violation) = check_scene(&m, (q, v), method, (0.6, 1e-4, 1e-2));
     assert!(end[14] > q[14] + 0.01 && end[16] < 0.121, "the upper brick is pushed: {end}");
     assert!(violation < 1e-3, "{violation}");
 }
@@ -101,7 +101,7 @@ fn wall() {
 /// The matrices of a step with many contacts need more stack than a test's thread has in unoptimised builds.
 #[test]
 fn dominoes_and_a_wall_fall() {
-    for scene in [dominoes, wall] {
+    for scene in [check_falling_dominoes, check_brick_wall] {
         thread::Builder::new().stack_size(128 << 20).spawn(scene).unwrap().join().unwrap();
     }
 }

@@ -18,7 +18,7 @@ struct Tower {
 
 /// Checks that the tower stands: of eighty corners forty are in contact, with ten more normal forces than the
 /// equilibrium of the bodies determines.
-fn tower() {
+fn check_standing_tower() {
     let m = Tower {};
     let mut q = m.neutral();
     for k in 0..10 {
@@ -41,5 +41,5 @@ fn tower() {
 /// megabytes of a test's thread.
 #[test]
 fn a_tower_of_ten_boxes_stands() {
-    thread::Builder::new().stack_size(32 << 20).spawn(tower).unwrap().join().unwrap();
+    thread::Builder::new().stack_size(32 << 20).spawn(check_standing_tower).unwrap().join().unwrap();
 }

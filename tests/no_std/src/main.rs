@@ -22,7 +22,7 @@ struct Arm;
 type Joints = SVector<f64, { Arm::NV }>;
 
 /// Returns torques that move the arm from `q`, `v` towards `target`.
-fn control(q: &Joints, v: &Joints, target: &Joints) -> Joints {
+fn control_torques(q: &Joints, v: &Joints, target: &Joints) -> Joints {
     let acceleration = (target - q) * 25.0 - v * 10.0;
     Arm.inverse_dynamics(q, v, &acceleration)
 }
@@ -34,7 +34,7 @@ fn step(q: &Joints, v: &Joints, u: &Joints) -> (Joints, Joints) {
 }
 
 /// Whether the generated functions of the arm are consistent with each other.
-fn consistent(q: &Joints, v: &Joints, a: &Joints) -> bool {
+fn is_consistent(q: &Joints, v: &Joints, a: &Joints) -> bool {
     let mass_matrix = Arm.mass_matrix(q);
     let forces = mass_matrix * a + Arm.bias_forces(q, v);
     let kinetic = v.dot(&(mass_matrix * v)) / 2.0;
@@ -92,7 +92,7 @@ struct Flight {
 }
 
 /// Whether all integrators compute the same flight of a body.
-fn flies(mass: f64) -> bool {
+fn agrees_on_flight(mass: f64) -> bool {
     let flight = Flight { mass };
     let v = SVector::from([1.0, 0.0, 3.0, 0.1, 0.2, 0.3, -0.5, 0.4, 0.3]);
     let simulate_flight = || simulate(&flight).from(flight.neutral(), v).duration(0.1);
@@ -135,7 +135,7 @@ struct Engine {
 }
 
 /// Whether the engine can be assembled and its loop stays closed.
-fn turns(length: f64) -> bool {
+fn keeps_loop_closed(length: f64) -> bool {
     let engine = Engine { length };
     let Ok(q) = engine.assemble(&[0.8, -1.0, 0.1].into(), &[0]) else { return false };
     let Ok(v) = engine.complete_velocity(&q, &[50.0, 0.0, 0.0].into(), &[0]) else { return false };
@@ -165,7 +165,7 @@ struct Sledge {
 }
 
 /// Whether the sledge falls, slides and comes to rest, with time stepping and with located events.
-fn rests(friction: f64) -> bool {
+fn comes_to_rest(friction: f64) -> bool {
     let sledge = Sledge { friction };
     let simulate_sledge = || simulate(&sledge).from([0.0, 0.15, 0.1], [0.5, 0.0, 0.0]).duration(2.0);
     let steps = simulate_sledge().method(TimeStepping::step(1e-3)).finish();
@@ -184,12 +184,14 @@ extern "C" fn main(_: i32, _: *const *const u8) -> i32 {
     let mut sound = true;
     let mut remaining = 3000;
     while remaining > 0 {
-        let u = control(&q, &v, &target);
-        sound &= consistent(&q, &v, &u);
+        let u = control_torques(&q, &v, &target);
+        sound &= is_consistent(&q, &v, &u);
         (q, v) = step(&q, &v, &u);
         remaining -= 1;
     }
     let arrived = (q - target).norm() < 1e-3;
-    let alone = flies(black_box(0.5)) && turns(black_box(0.13)) && rests(black_box(0.4));
+    let alone = agrees_on_flight(black_box(0.5))
+        && keeps_loop_closed(black_box(0.13))
+        && comes_to_rest(black_box(0.4));
     i32::from(!(sound && arrived && side_by_side(&q, &v) && alone))
 }

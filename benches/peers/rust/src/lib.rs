@@ -43,7 +43,7 @@ pub struct Peer {
 type Failure = Box<dyn Error>;
 
 impl Peer {
-    fn open(folder: &Path, numbers: &[f64], count: usize) -> Result<Peer, Failure> {
+    fn load_peer_from_folder(folder: &Path, numbers: &[f64], count: usize) -> Result<Peer, Failure> {
         let model = RobotModel::from_urdf(folder.join("robot.urdf"))?;
         let names = std::fs::read_to_string(folder.join("joints"))?;
         let names: Vec<&str> = names.lines().collect();
@@ -58,20 +58,21 @@ impl Peer {
         let nv = names.len() + if free { 6 } else { 0 };
         let mut peer = Peer { kind, states: Vec::new(), order, out: vec![0.0; nv * nv] };
         for row in numbers.chunks_exact(numbers.len() / count) {
-            let state = peer.state(row, free)?;
+            let state = peer.state_from_row(row, free)?;
             peer.states.push(state);
         }
         Ok(peer)
     }
 
     /// Converts a row of `q`, `v`, `a` and `τ` to a state.
-    fn state(&mut self, row: &[f64], free: bool) -> Result<State, Failure> {
+    fn state_from_row(&mut self, row: &[f64], free: bool) -> Result<State, Failure> {
         let n = self.order.len();
         let (base_q, base_v) = if free { (7, 6) } else { (0, 0) };
         let (q, rest) = row.split_at(n + base_q);
         let [v, a, tau] = [0, 1, 2].map(|k| &rest[k * (n + base_v)..(k + 1) * (n + base_v)]);
         let reordered_joint_values = |all: &[f64]| self.order.iter().map(|&k| all[k]).collect::<Vec<f64>>();
-        let base = if free { base(q, v, a)? } else { BaseState::stationary(Frame::identity())? };
+        let base =
+            if free { base_state_in_world(q, v, a)? } else { BaseState::stationary(Frame::identity())? };
         let mut state = State {
             q: reordered_joint_values(&q[base_q..]),
             v: reordered_joint_values(&v[base_v..]),
@@ -97,7 +98,7 @@ impl Peer {
 
     /// Returns the matrix that converts dynibo's generalized forces to those of the other peers: a rotation
     /// of the base's force and a permutation of the rows.
-    fn change(&self, state: &State) -> DMatrix<f64> {
+    fn force_conversion_matrix(&self, state: &State) -> DMatrix<f64> {
         let nv = state.lack.len();
         let base = nv - self.order.len();
         let mut change = DMatrix::zeros(nv, nv);
@@ -112,9 +113,9 @@ impl Peer {
         change
     }
 
-    fn result(&self, function: usize, state: &State) -> DMatrix<f64> {
+    fn evaluate_function(&self, function: usize, state: &State) -> DMatrix<f64> {
         let nv = state.lack.len();
-        let change = self.change(state);
+        let change = self.force_conversion_matrix(state);
         let vector = DVectorView::from_slice(&self.out, nv);
         if function == 0 {
             return DMatrix::from_column_slice(
@@ -141,7 +142,7 @@ impl Peer {
 }
 
 /// Returns the base's state in world axes.
-fn base(q: &[f64], v: &[f64], a: &[f64]) -> Result<BaseState, Failure> {
+fn base_state_in_world(q: &[f64], v: &[f64], a: &[f64]) -> Result<BaseState, Failure> {
     let rotation = UnitQuaternion::new_unchecked(Quaternion::new(q[6], q[3], q[4], q[5]));
     let world: Rotation3<f64> = rotation.to_rotation_matrix();
     let [linear, angular] = [0, 3].map(|k| Vector3::from_column_slice(&v[k..k + 3]));
@@ -162,7 +163,7 @@ extern "C" fn inverse(peer: &mut Peer, k: usize) {
     debug_assert!(done.is_ok());
 }
 
-extern "C" fn mass(peer: &mut Peer, k: usize) {
+extern "C" fn evaluate_mass_matrix(peer: &mut Peer, k: usize) {
     let s = &peer.states[k];
     let done = match &mut peer.kind {
         Kind::Fixed(robot) => robot.mass_matrix(&s.q, &mut peer.out),
@@ -171,7 +172,7 @@ extern "C" fn mass(peer: &mut Peer, k: usize) {
     debug_assert!(done.is_ok());
 }
 
-extern "C" fn forward(peer: &mut Peer, k: usize) {
+extern "C" fn evaluate_forward_dynamics(peer: &mut Peer, k: usize) {
     let s = &peer.states[k];
     let out = &mut peer.out[..s.lack.len()];
     let done = match &mut peer.kind {
@@ -195,7 +196,7 @@ pub unsafe extern "C" fn peer_open(
 ) -> Option<Box<Peer>> {
     // SAFETY: the caller guarantees the string and the array.
     let (folder, numbers) = unsafe { (CStr::from_ptr(folder), std::slice::from_raw_parts(states, length)) };
-    match Peer::open(Path::new(folder.to_str().ok()?), numbers, count) {
+    match Peer::load_peer_from_folder(Path::new(folder.to_str().ok()?), numbers, count) {
         Ok(peer) => Some(Box::new(peer)),
         Err(error) => {
             eprintln!("dynibo: {}: {error}", folder.to_string_lossy());
@@ -213,8 +214,8 @@ pub extern "C" fn peer_step(
 ) -> Option<extern "C" fn(&mut Peer, usize)> {
     match (function, variant) {
         (0, 0) => Some(inverse),
-        (1, 0) => Some(mass),
-        (2, 0) => Some(forward),
+        (1, 0) => Some(evaluate_mass_matrix),
+        (2, 0) => Some(evaluate_forward_dynamics),
         _ => None,
     }
 }
@@ -226,7 +227,7 @@ pub extern "C" fn peer_step(
 /// `out` must have room for the result.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn peer_result(peer: &Peer, function: usize, state: usize, out: *mut f64) {
-    let result = peer.result(function, &peer.states[state]);
+    let result = peer.evaluate_function(function, &peer.states[state]);
     // SAFETY: the caller guarantees the size of `out`.
     unsafe { std::ptr::copy_nonoverlapping(result.as_ptr(), out, result.len()) };
 }

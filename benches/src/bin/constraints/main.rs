@@ -15,10 +15,12 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match words.as_slice() {
-        [] => table::measure(None, false),
-        ["write", folder] => table::write(Path::new(folder)).map_err(|error| error.to_string()),
-        ["measure", folder] => table::measure(Some(Path::new(folder)), false),
-        ["measure", folder, "--quick"] => table::measure(Some(Path::new(folder)), true),
+        [] => table::measure_mechanisms(None, false),
+        ["write", folder] => {
+            table::write_mechanism_files(Path::new(folder)).map_err(|error| error.to_string())
+        }
+        ["measure", folder] => table::measure_mechanisms(Some(Path::new(folder)), false),
+        ["measure", folder, "--quick"] => table::measure_mechanisms(Some(Path::new(folder)), true),
         _ => Err("expected nothing, `write FOLDER` or `measure FOLDER [--quick]`".to_string()),
     };
     match done {

@@ -46,7 +46,14 @@ impl<const NV: usize, const NC: usize> Flat for Solution<NV, NC> {
 
 /// Returns a mechanism with its states. The first state is the given configuration and velocity projected
 /// onto the constraints; the others are random, at distances up to `spread`.
-fn mechanism<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+fn mechanism_with_states<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
     (title, name): (&'static str, &'static str),
     m: M,
     (q, v): (impl Into<SVector<f64, NQ>>, impl Into<SVector<f64, NV>>),
@@ -64,19 +71,19 @@ where
         Some(State { q, v, a, tau })
     };
     let mut random = Random::new(7);
-    let mut vector = |limit| SVector::<f64, NV>::from_fn(|_, _| random.uniform(limit));
+    let mut vector = |limit| SVector::<f64, NV>::from_fn(|_, _| random.uniform_within(limit));
     let mut states = Vec::from_iter(consistent_state(&middle, &start));
     while states.len() < STATES {
         let speed = start.amax().max(1.0);
         states.extend(consistent_state(&m.integrate(&middle, &vector(spread)), &vector(speed)));
     }
     let states = Rc::new(states);
-    let numbers = states.iter().flat_map(State::numbers).collect();
+    let numbers = states.iter().flat_map(State::all_numbers).collect();
     let accelerations = Own {
         owner: Owner::Linkwork,
         mechanism: m.clone(),
         states: states.clone(),
-        name: Function::Constrained.name(),
+        name: Function::Constrained.function_name(),
         call: |m: &M, s: &State<NQ, NV>| {
             let (a, lambda) = m.constrained_dynamics(0.0, &s.q, &s.v, &s.tau);
             Solution(a, lambda)
@@ -86,7 +93,7 @@ where
         owner: Owner::Linkwork,
         mechanism: (m, step),
         states: Rc::new(states[..1].to_vec()),
-        name: Function::Motion.name(),
+        name: Function::Motion.function_name(),
         call: |(m, step): &(M, f64), s: &State<NQ, NV>| {
             let run = simulate(m).from(s.q, s.v).method(Rk4::step(*step));
             run.duration(100.0 * step).finish().map_or(SVector::repeat(f64::NAN), |end| end.v)
@@ -97,31 +104,36 @@ where
 }
 
 /// Returns the constructors of all mechanisms.
-pub fn mechanisms() -> Vec<fn() -> Mechanism> {
+pub fn mechanism_constructors() -> Vec<fn() -> Mechanism> {
     vec![
         || {
             let m = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
             let start = ([0.3, 0.6, 1.8], [2.0, 0.0, 0.0]);
-            mechanism(("four-bar linkage", "four_bar"), m, start, (0.3, STEP))
+            mechanism_with_states(("four-bar linkage", "four_bar"), m, start, (0.3, STEP))
         },
         || {
             let m = SliderCrank { g: 9.81, r: 0.04, l: 0.13, m_crank: 0.9, m_rod: 0.5, m_piston: 0.35 };
             let start = ([0.3, -0.4, 0.16], [20.0, 0.0, 0.0]);
-            mechanism(("slider-crank", "slider_crank"), m, start, (0.3, STEP))
+            mechanism_with_states(("slider-crank", "slider_crank"), m, start, (0.3, STEP))
         },
         || {
             let start = (AndrewsSqueezer::START, [0.0; 7]);
-            mechanism(("Andrews' squeezer", "andrews_squeezer"), AndrewsSqueezer {}, start, (0.05, 3e-5))
+            mechanism_with_states(
+                ("Andrews' squeezer", "andrews_squeezer"),
+                AndrewsSqueezer {},
+                start,
+                (0.05, 3e-5),
+            )
         },
         || {
             let m = TwoWindows { g: 9.81, mass: 1.0, length: 1.0 };
             let start = ([0.0; 5], [-1.0, 1.0, -1.0, 1.0, -1.0]);
-            mechanism(("two windows", "two_windows"), m, start, (0.3, STEP))
+            mechanism_with_states(("two windows", "two_windows"), m, start, (0.3, STEP))
         },
         || {
             let m = BricardLinkage { g: 9.81, mass: 1.0, length: 1.0 };
             let start = ([0.3, -0.23, 0.3, -0.23, 0.3], [0.0; 5]);
-            mechanism(("Bricard's linkage", "bricard_linkage"), m, start, (0.1, STEP))
+            mechanism_with_states(("Bricard's linkage", "bricard_linkage"), m, start, (0.1, STEP))
         },
         || {
             let (crank_mass, forearm_mass, tool_mass) = (0.4, 0.3, 0.9);
@@ -135,37 +147,42 @@ pub fn mechanisms() -> Vec<fn() -> Mechanism> {
                 forearm: 0.4,
             };
             let start = ([2.0, -1.3, 0.9, 1.3], [1.0, 0.0, -1.0, 0.0]);
-            mechanism(("five-bar", "five_bar"), m, start, (0.2, STEP))
+            mechanism_with_states(("five-bar", "five_bar"), m, start, (0.2, STEP))
         },
-        stewart,
+        stewart_platform,
         || {
             let m = RollingDisk { g: 9.81, m: 2.0, radius: 0.4 };
             let start = ([0.0, 0.0, 0.4, 0.0, 0.1, 0.0], [1.2, 0.0, 0.0, 0.0, 0.0, 3.0]);
-            mechanism(("rolling disk", "rolling_disk"), m, start, (0.3, STEP))
+            mechanism_with_states(("rolling disk", "rolling_disk"), m, start, (0.3, STEP))
         },
         || {
             let m = BallInBowl { g: 9.81, mass: 0.3, radius: 0.05, bowl: 0.45 };
             let start = ([0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5], [0.3, 0.2, 0.0, 1.0, 2.0, 3.0]);
-            mechanism(("ball in a bowl", "ball_in_bowl"), m, start, (0.1, STEP))
+            mechanism_with_states(("ball in a bowl", "ball_in_bowl"), m, start, (0.1, STEP))
         },
         || {
             let m = ChaplyginSleigh { m: 1.0, j: 0.5, a: 0.3 };
-            mechanism(("Chaplygin's sleigh", "chaplygin_sleigh"), m, ([0.0; 3], [1.0, 0.0, 2.0]), (1.0, STEP))
+            mechanism_with_states(
+                ("Chaplygin's sleigh", "chaplygin_sleigh"),
+                m,
+                ([0.0; 3], [1.0, 0.0, 2.0]),
+                (1.0, STEP),
+            )
         },
         || {
             let v = [4.6, 0.0, 0.0, 0.1, 0.0, 0.0, -15.3, 0.0, -13.1];
             let m = Bicycle::BENCHMARK;
-            mechanism(("bicycle", "bicycle"), m, (m.neutral(), v), (0.2, STEP))
+            mechanism_with_states(("bicycle", "bicycle"), m, (m.neutral(), v), (0.2, STEP))
         },
         || {
             let m = Rattleback::BENCHMARK;
             let start = ([0.0, 0.0, 0.02, 0.01, 0.01, 0.0, 0.9999], [0.0, 0.0, 0.0, 0.0, 0.0, -5.0]);
-            mechanism(("rattleback", "rattleback"), m, start, (0.1, STEP))
+            mechanism_with_states(("rattleback", "rattleback"), m, start, (0.1, STEP))
         },
     ]
 }
 
-fn stewart() -> Mechanism {
+fn stewart_platform() -> Mechanism {
     let m = StewartPlatform {
         g: 9.81,
         base_radius: 0.8,
@@ -183,5 +200,5 @@ fn stewart() -> Mechanism {
     }
     let mut v = SVector::<f64, { StewartPlatform::NV }>::zeros();
     v.fixed_rows_mut::<6>(0).copy_from_slice(&[0.3, -0.2, 0.5, 0.4, 0.6, -0.5]);
-    mechanism(("Stewart platform", "stewart_platform"), m, (q, v), (0.1, STEP))
+    mechanism_with_states(("Stewart platform", "stewart_platform"), m, (q, v), (0.1, STEP))
 }

@@ -1,9 +1,11 @@
 //! Comparison of constrained mechanisms with other libraries: accelerations, and a thousand steps.
 
-use crate::mechanisms::{Mechanism, mechanisms};
+use crate::mechanisms::{Mechanism, mechanism_constructors};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
 use linkwork_benches::peers::library::{self, Rows};
-use linkwork_benches::peers::turns::{Measured, TOLERANCE, agree, difference, largest, time};
+use linkwork_benches::peers::turns::{
+    Measured, TOLERANCE, difference, largest_or_nan, measure_in_turns, remove_disagreeing,
+};
 use linkwork_benches::states::STATES;
 use std::fs;
 use std::io;
@@ -26,8 +28,8 @@ const COLUMNS: [Owner; 4] = [Owner::Linkwork, Owner::Sympy, Owner::Pinocchio, Ow
 
 /// Writes a file for every mechanism with a state and its accelerations in each line, and prints the names of
 /// the folders.
-pub fn write(folder: &Path) -> io::Result<()> {
-    for make in mechanisms() {
+pub fn write_mechanism_files(folder: &Path) -> io::Result<()> {
+    for make in mechanism_constructors() {
         let m = make();
         let folder = folder.join(m.name);
         fs::create_dir_all(&folder)?;
@@ -54,10 +56,10 @@ struct Line {
 }
 
 /// Measures all mechanisms and prints two tables; without a folder, only those of Linkwork.
-pub fn measure(folder: Option<&Path>, quick: bool) -> Result<(), String> {
+pub fn measure_mechanisms(folder: Option<&Path>, quick: bool) -> Result<(), String> {
     let budget = if quick { 0.05 } else { 0.3 };
     let (mut lines, mut wrong) = (Vec::new(), Vec::new());
-    for make in mechanisms() {
+    for make in mechanism_constructors() {
         let mut mechanism = make();
         let numbers: &'static [f64] = std::mem::take(&mut mechanism.numbers).leak();
         let (mut soft, mut found) = (None, Vec::new());
@@ -76,17 +78,20 @@ pub fn measure(folder: Option<&Path>, quick: bool) -> Result<(), String> {
             };
             let own = std::mem::replace(own, Box::new(Nobody));
             let (mut exact, mut others) = (vec![own], Vec::new());
-            for peer in folder.into_iter().flat_map(|folder| peers(folder, mechanism.name, function, rows)) {
+            for peer in folder
+                .into_iter()
+                .flat_map(|folder| peers_with_mechanism(folder, mechanism.name, function, rows))
+            {
                 if peer.owner() == Owner::Mujoco { others.push(peer) } else { exact.push(peer) }
             }
-            let what = format!("{} {}", mechanism.title, function.title());
-            wrong.extend(agree(&mut exact, &what, (rows.nv, states), tolerance));
+            let what = format!("{} {}", mechanism.title, function.table_title());
+            wrong.extend(remove_disagreeing(&mut exact, &what, (rows.nv, states), tolerance));
             if let (Some(other), Function::Constrained) = (others.first_mut(), function) {
                 let errors = (0..states).map(|k| difference(&other.result(k), &exact[0].result(k), rows.nv));
-                soft = Some(largest(errors));
+                soft = Some(largest_or_nan(errors));
             }
             exact.extend(others);
-            found.push(time(&mut exact, states, budget));
+            found.push(measure_in_turns(&mut exact, states, budget));
         }
         let steps = found.pop().unwrap_or_default();
         let accelerations = found.pop().unwrap_or_default();
@@ -98,11 +103,16 @@ pub fn measure(folder: Option<&Path>, quick: bool) -> Result<(), String> {
 }
 
 /// Returns the implementations of this function by all peers that have the mechanism.
-fn peers(folder: &Path, name: &str, function: Function, rows: Rows<'_>) -> Vec<Box<dyn Contender>> {
+fn peers_with_mechanism(
+    folder: &Path,
+    name: &str,
+    function: Function,
+    rows: Rows<'_>,
+) -> Vec<Box<dyn Contender>> {
     let own = folder.join(name);
     let libraries = LIBRARIES.iter().flat_map(|(path, owner)| {
         let path = folder.join(path.replace('*', name));
-        library::peers(&path, *owner, &own, function, rows)
+        library::peers_of_library(&path, *owner, &own, function, rows)
     });
     libraries.collect()
 }
@@ -123,27 +133,31 @@ fn print(lines: &[Line]) {
     println!("| --- | {}", "---: | ".repeat(14).trim_end());
     for line in lines {
         let [lambdify, pydy, _] = line.python.map_or([None; 3], |times| times.map(Some));
-        let others = best(&line.accelerations).into_iter().chain([pydy, lambdify]);
+        let others = minimum_times(&line.accelerations).into_iter().chain([pydy, lambdify]);
         let times: Vec<Option<f64>> = others.collect();
         let mut cells = vec![line.mechanism.title.to_string()];
         cells.extend([line.mechanism.nv, line.mechanism.nc].map(|n| n.to_string()));
-        cells.extend(times.iter().map(|t| number(*t, 3)));
-        cells.extend(times[1..].iter().map(|t| number(t.zip(times[0]).map(|(t, own)| t / own), 2)));
+        cells.extend(times.iter().map(|t| format_significant_digits(*t, 3)));
+        cells.extend(
+            times[1..].iter().map(|t| format_significant_digits(t.zip(times[0]).map(|(t, own)| t / own), 2)),
+        );
         cells.push(line.soft.map_or("–".to_string(), |e| format!("{e:.0e}")));
         println!("| {} |", cells.join(" | "));
     }
     println!("\n| mechanism: a thousand steps, ms | Linkwork | SymPy, C | Pinocchio | MuJoCo | PyDy |");
     println!("| --- | {}", "---: | ".repeat(5).trim_end());
     for line in lines {
-        let times = best(&line.steps).map(|t| t.map(|t| t * 10.0 / 1e6));
+        let times = minimum_times(&line.steps).map(|t| t.map(|t| t * 10.0 / 1e6));
         let mut cells = vec![line.mechanism.title.to_string()];
-        cells.extend(times.into_iter().chain([line.python.map(|t| t[2])]).map(|t| number(t, 3)));
+        cells.extend(
+            times.into_iter().chain([line.python.map(|t| t[2])]).map(|t| format_significant_digits(t, 3)),
+        );
         println!("| {} |", cells.join(" | "));
     }
 }
 
 /// Returns the minimum times of Linkwork and of the peers.
-fn best(measured: &[Measured]) -> [Option<f64>; 4] {
+fn minimum_times(measured: &[Measured]) -> [Option<f64>; 4] {
     COLUMNS.map(|owner| {
         let all = measured.iter().filter(|m| m.owner == owner);
         all.map(|m| m.time).min_by(f64::total_cmp)
@@ -151,7 +165,7 @@ fn best(measured: &[Measured]) -> [Option<f64>; 4] {
 }
 
 /// Formats a value with this number of significant digits, or a dash.
-fn number(value: Option<f64>, digits: i32) -> String {
+fn format_significant_digits(value: Option<f64>, digits: i32) -> String {
     let Some(x) = value.filter(|x| *x > 0.0) else { return "–".to_string() };
     let decimals = (digits - 1 - x.log10().floor() as i32).max(0) as usize;
     format!("{x:.decimals$}")

@@ -34,7 +34,7 @@ const EFFORT: f64 = 1e-2 * PERIOD;
 
 /// Returns the processor time of a call, divided by the number of nodes, ns: the minimum over many
 /// repetitions.
-fn least(nodes: usize, mut f: impl FnMut()) -> f64 {
+fn minimum_time_per_node(nodes: usize, mut f: impl FnMut()) -> f64 {
     let cpu_time_in_nanoseconds = || {
         let time = clock_gettime(ClockId::ProcessCPUTime);
         time.tv_sec as f64 * 1e9 + time.tv_nsec as f64
@@ -78,7 +78,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
 
     /// Writes the gradients with respect to configuration and velocity, and the block of the Hessian that
     /// depends on the state, without the curvature of the difference (Gauss-Newton approximation).
-    fn model<const NV: usize, const NU: usize>(
+    fn write_cost_derivatives<const NV: usize, const NU: usize>(
         &self,
         (q, v): &State<NQ, NV>,
         [of_q, of_v]: [f64; 2],
@@ -100,20 +100,20 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
     }
 
     /// Returns the cost of the last state and its derivatives.
-    fn last<const NV: usize, const NU: usize>(&self, state: &State<NQ, NV>) -> Value<f64, NV>
+    fn final_state_cost<const NV: usize, const NU: usize>(&self, state: &State<NQ, NV>) -> Value<f64, NV>
     where
         M: Derivatives<NQ, NV, NU, Scalar = f64>,
     {
         let mut all = Value::zeros();
         let Value { q, v, qq, vv, .. } = &mut all;
         (*qq, *vv) = (SMatrix::identity() * LAST[0], SMatrix::identity() * LAST[1]);
-        self.model(state, LAST, [q, v], qq);
+        self.write_cost_derivatives(state, LAST, [q, v], qq);
         all
     }
 
     /// Writes the transition of a step with its Jacobians, and the cost of its initial state. The constant
     /// Hessians of the node are already set.
-    fn node<const NV: usize, const NU: usize>(
+    fn evaluate_node<const NV: usize, const NU: usize>(
         &self,
         state: &State<NQ, NV>,
         u: &SVector<f64, NU>,
@@ -124,12 +124,12 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         discrete::transition_into(self.mechanism, &self.method, 0.0, &state.0, &state.1, u, step)
             .expect("it moves");
         let Quadratic { q, v, qq, .. } = cost;
-        self.model(state, RUNNING, [q, v], qq);
+        self.write_cost_derivatives(state, RUNNING, [q, v], qq);
         cost.u = u * EFFORT;
     }
 
     /// Evaluates all nodes from the last to the first, and passes each to `then`.
-    fn each<const NV: usize, const NU: usize>(
+    fn evaluate_nodes_backwards<const NV: usize, const NU: usize>(
         &self,
         states: &[State<NQ, NV>],
         inputs: &[SVector<f64, NU>],
@@ -141,19 +141,19 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         let costs = Quadratic { qq, vv, uu: SMatrix::identity() * EFFORT, ..Quadratic::zeros() };
         let mut node = (discrete::Transition::zeros(), costs);
         for (k, (state, u)) in states.iter().zip(inputs).enumerate().rev() {
-            self.node(state, u, &mut node);
+            self.evaluate_node(state, u, &mut node);
             then(k, &node);
         }
     }
 
     /// Linearises and runs the backward recursion; of each node only the policy is stored.
-    fn sweep<const NV: usize, const NU: usize>(&self, all: &mut Trajectory<NQ, NV, NU>)
+    fn backward_sweep<const NV: usize, const NU: usize>(&self, all: &mut Trajectory<NQ, NV, NU>)
     where
         M: Derivatives<NQ, NV, NU, Scalar = f64>,
     {
         let Trajectory { states, inputs, policies } = all;
-        let mut to_go = self.last(&states[NODES]);
-        self.each(states, inputs, |k, (step, cost)| {
+        let mut to_go = self.final_state_cost(&states[NODES]);
+        self.evaluate_nodes_backwards(states, inputs, |k, (step, cost)| {
             backward_into(step, cost, 0.0, &mut policies[k], &mut to_go).expect("it is convex");
         });
     }
@@ -183,7 +183,7 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         costs + self.of_state(&state, LAST)
     }
 
-    fn measure<const NV: usize, const NU: usize>(
+    fn measure_optimal_control<const NV: usize, const NU: usize>(
         &self,
         name: &str,
         start: SVector<f64, NQ>,
@@ -203,26 +203,26 @@ impl<M, const NQ: usize> Problem<'_, M, NQ> {
         (all.states, all.inputs) = next.clone();
         let mut costs = Vec::new();
         for _ in 0..ITERATIONS {
-            self.sweep(&mut all);
+            self.backward_sweep(&mut all);
             costs.push(self.rollout(&all, &mut next));
             (all.states, all.inputs) = next.clone();
         }
-        let linearise = least(NODES, || {
-            self.each(&all.states, &all.inputs, |_, node| {
+        let linearise = minimum_time_per_node(NODES, || {
+            self.evaluate_nodes_backwards(&all.states, &all.inputs, |_, node| {
                 black_box(node);
             });
         });
         let mut kept = Vec::new();
-        self.each(&all.states, &all.inputs, |_, node| kept.push(*node));
-        let last = self.last(&all.states[NODES]);
-        let backwards = least(NODES, || {
+        self.evaluate_nodes_backwards(&all.states, &all.inputs, |_, node| kept.push(*node));
+        let last = self.final_state_cost(&all.states[NODES]);
+        let backwards = minimum_time_per_node(NODES, || {
             let mut to_go = last;
             for (k, (step, cost)) in (0..NODES).rev().zip(&kept) {
                 backward_into(step, cost, 0.0, &mut all.policies[k], &mut to_go).expect("it is convex");
             }
         });
-        let sweep = least(NODES, || self.sweep(&mut all));
-        let rollout = least(NODES, || {
+        let sweep = minimum_time_per_node(NODES, || self.backward_sweep(&mut all));
+        let rollout = minimum_time_per_node(NODES, || {
             black_box(self.rollout(&all, &mut next));
         });
         format!(
@@ -240,21 +240,15 @@ fn main() {
     let uniform_joint_vector = |x: f64| SVector::<f64, 7>::repeat(x);
     // Torques that hold the arm at rest in its initial configuration.
     let held = Panda.inverse_dynamics(&uniform_joint_vector(0.1), &SVector::zeros(), &SVector::zeros());
-    let panda = Problem { mechanism: &Panda, method, goal: uniform_joint_vector(-0.2) }.measure(
-        "panda",
-        uniform_joint_vector(0.1),
-        vec![held; NODES],
-    );
+    let panda = Problem { mechanism: &Panda, method, goal: uniform_joint_vector(-0.2) }
+        .measure_optimal_control("panda", uniform_joint_vector(0.1), vec![held; NODES]);
 
     // A flying body moves its legs and rotates by reaction.
     let neutral_with_joint_offset = |x: f64| {
         let displacement = SVector::from_fn(|k, _| if k < 6 { 0.0 } else { x });
         Solo.integrate(&Solo.neutral(), &displacement)
     };
-    let solo = Problem { mechanism: &Solo, method, goal: neutral_with_joint_offset(-0.2) }.measure(
-        "solo",
-        neutral_with_joint_offset(0.1),
-        vec![SVector::zeros(); NODES],
-    );
-    println!("{{{panda}, {solo}, {}}}", trot::measure());
+    let solo = Problem { mechanism: &Solo, method, goal: neutral_with_joint_offset(-0.2) }
+        .measure_optimal_control("solo", neutral_with_joint_offset(0.1), vec![SVector::zeros(); NODES]);
+    println!("{{{panda}, {solo}, {}}}", trot::measure_trot());
 }

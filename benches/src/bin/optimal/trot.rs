@@ -1,7 +1,7 @@
 //! Trot with a known contact sequence: phases in which feet stick, separated by touchdowns. The gait and its
 //! costs are those of Crocoddyl's own example, `crocoddyl.utils.quadruped.SimpleQuadrupedalGaitProblem`.
 
-use super::{ITERATIONS, State, least};
+use super::{ITERATIONS, State, minimum_time_per_node};
 use linkwork::contact::{self, Held, HeldDerivatives, Touch};
 use linkwork::nalgebra::{DMatrix, SMatrix, SVector};
 use linkwork::optimal::{Policy, Quadratic, Value, backward_into};
@@ -75,7 +75,7 @@ struct Phase {
 }
 
 /// Returns the position of foot `k` in ground axes.
-fn foot(k: usize, q: &Configuration) -> Place {
+fn position_of_foot(k: usize, q: &Configuration) -> Place {
     let m = Walker {};
     match k {
         0 => m.front_left_foot(q),
@@ -97,7 +97,7 @@ fn foot_jacobian(k: usize, q: &Configuration) -> SMatrix<f64, 3, 18> {
 
 /// Returns two steps of diagonal pairs of feet; the first step has half the length.
 fn gait(start: &Configuration) -> Vec<Phase> {
-    let mut feet: [Place; 4] = std::array::from_fn(|k| foot(k, start));
+    let mut feet: [Place; 4] = std::array::from_fn(|k| position_of_foot(k, start));
     let mut centre: Place = feet.iter().sum::<Place>() / 4.0;
     centre.z = Walker {}.center_of_mass(start).z;
     let standing_phase =
@@ -156,7 +156,7 @@ fn of_joints<const R: usize>(by_tau: &SMatrix<f64, R, 18>) -> SMatrix<f64, R, 12
 
 /// Returns the violated rows of the friction cone as coefficients of the normal and tangential forces, each
 /// with its violation.
-fn outside(force: [f64; 3]) -> impl Iterator<Item = ([f64; 3], f64)> {
+fn violated_cone_rows(force: [f64; 3]) -> impl Iterator<Item = ([f64; 3], f64)> {
     let sides = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]].map(|[x, y]| [-FRICTION, x, y]);
     let [normal, x, y] = force;
     let past = sides.into_iter().map(move |row| (row, row[0] * normal + row[1] * x + row[2] * y));
@@ -165,7 +165,7 @@ fn outside(force: [f64; 3]) -> impl Iterator<Item = ([f64; 3], f64)> {
 }
 
 /// Returns the weights of squares of configuration and velocity in a phase.
-fn weights(phase: &Phase) -> [Motion; 2] {
+fn state_cost_weights(phase: &Phase) -> [Motion; 2] {
     let weights_of_motion = |base: [f64; 2], joints: f64| {
         Motion::from_fn(|k, _| OF_STATES * if k < 6 { base[k / 3] } else { joints }.powi(2))
     };
@@ -207,7 +207,7 @@ struct Plan {
 
 impl Trot {
     /// Returns the cost of a state and of its contact forces in a node.
-    fn costs(&self, k: usize, (q, v): &State<19, 18>, forces: Option<&SVector<f64, 12>>) -> f64 {
+    fn cost_of_node(&self, k: usize, (q, v): &State<19, 18>, forces: Option<&SVector<f64, 12>>) -> f64 {
         let (phase, [of_q, of_v]) = (&self.phases[k], &self.weights[k]);
         let off = Walker {}.difference(&self.start, q);
         let mut sum = off.component_mul(&off).dot(of_q) + v.component_mul(v).dot(of_v);
@@ -216,16 +216,16 @@ impl Trot {
         }
         let of_feet = if phase.lands { OF_LANDINGS } else { OF_FEET };
         for (k, aim) in phase.feet.iter().enumerate() {
-            sum += aim.map_or(0.0, |aim| of_feet * (foot(k, q) - aim).norm_squared());
+            sum += aim.map_or(0.0, |aim| of_feet * (position_of_foot(k, q) - aim).norm_squared());
         }
         for force in forces.map_or(&[][..], |all| all.as_slice().as_chunks::<3>().0) {
-            sum += outside(*force).map(|(_, off)| OF_CONES * off * off).sum::<f64>();
+            sum += violated_cone_rows(*force).map(|(_, off)| OF_CONES * off * off).sum::<f64>();
         }
         sum / 2.0
     }
 
     /// Writes the gradients and Hessians of the state's cost, times a factor.
-    fn model(&self, k: usize, (q, v): &State<19, 18>, factor: f64, cost: &mut Cost) {
+    fn write_cost_derivatives(&self, k: usize, (q, v): &State<19, 18>, factor: f64, cost: &mut Cost) {
         let (phase, [of_q, of_v]) = (&self.phases[k], &self.weights[k]);
         let off = Walker {}.difference(&self.start, q);
         let (of_q, of_v) = (of_q * factor, of_v * factor);
@@ -251,14 +251,14 @@ impl Trot {
         let of_feet = factor * if phase.lands { OF_LANDINGS } else { OF_FEET };
         for (k, aim) in phase.feet.iter().enumerate() {
             if let Some(aim) = aim {
-                let off = foot(k, q) - aim;
+                let off = position_of_foot(k, q) - aim;
                 cost.add_squares_of_configuration(of_feet, &off, &foot_jacobian(k, q));
             }
         }
     }
 
     /// Evaluates a node to first order, with its cost to second order.
-    fn node(
+    fn evaluate_node(
         &self,
         k: usize,
         state: &State<19, 18>,
@@ -273,12 +273,12 @@ impl Trot {
         }
         if phase.lands {
             *step = contact::land_derivatives(&Walker {}, 0.0, q, v, &phase.touches)?.transition(q);
-            self.model(k, state, 1.0, cost);
+            self.write_cost_derivatives(k, state, 1.0, cost);
             // Inputs have no effect at a touchdown: with this cost they are zero.
             cost.uu.fill_diagonal(1.0);
             return Ok(());
         }
-        self.model(k, state, PERIOD, cost);
+        self.write_cost_derivatives(k, state, PERIOD, cost);
         let held = contact::hold(&Walker {}, phase.touches).with_gains(0.0, DAMPING);
         held.held_derivatives_into(0.0, q, v, &Walker {}.generalized_forces(q, u), found)?;
         let by_u = of_joints(&found.by_tau);
@@ -288,7 +288,7 @@ impl Trot {
         cost.uu.fill_diagonal(OF_INPUTS * PERIOD);
         let (mut gradient, mut hessian) = (SVector::<f64, 12>::zeros(), SMatrix::<f64, 12, 12>::zeros());
         for (k, force) in found.forces.as_slice().as_chunks::<3>().0.iter().enumerate() {
-            for (row, off) in outside(*force) {
+            for (row, off) in violated_cone_rows(*force) {
                 *is_mixed = true;
                 for (i, x) in row.iter().enumerate() {
                     gradient[3 * k + i] += OF_CONES * PERIOD * off * x;
@@ -306,21 +306,21 @@ impl Trot {
     }
 
     /// Returns the cost of the last state and its derivatives.
-    fn last(&self, state: &State<19, 18>) -> Value<f64, 18> {
+    fn final_state_cost(&self, state: &State<19, 18>) -> Value<f64, 18> {
         let mut cost = Quadratic::zeros();
-        self.model(self.phases.len() - 1, state, 1.0, &mut cost);
+        self.write_cost_derivatives(self.phases.len() - 1, state, 1.0, &mut cost);
         let Quadratic { q, v, qq, qv, vv, .. } = cost;
         Value { q, v, qq, qv, vv }
     }
 
     /// Linearises the trajectory and runs the backward recursion. Returns the coefficients of the step
     /// length, and of its square, in the expected change of the cost.
-    fn sweep(&self, plan: &mut Plan) -> [f64; 2] {
+    fn backward_sweep(&self, plan: &mut Plan) -> [f64; 2] {
         let mut node = Node::zeros();
-        let mut to_go = self.last(&plan.states[plan.inputs.len()]);
+        let mut to_go = self.final_state_cost(&plan.states[plan.inputs.len()]);
         let mut expected = [0.0; 2];
         for (k, policy) in plan.policies.iter_mut().enumerate().rev() {
-            self.node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
+            self.evaluate_node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
             backward_into(&node.step, &node.cost, 0.0, policy, &mut to_go).expect("it is convex");
             expected.iter_mut().zip(policy.expected).for_each(|(sum, more)| *sum += more);
         }
@@ -340,23 +340,24 @@ impl Trot {
             next.1.push(u);
             let (q, v) = &state;
             if phase.lands {
-                sum += self.costs(k, &state, None);
+                sum += self.cost_of_node(k, &state, None);
                 let landed = contact::land(&m, 0.0, q, v, &phase.touches).expect("feet hold");
                 state.1 = landed.v;
                 continue;
             }
             let held = contact::hold(&m, phase.touches).with_gains(0.0, DAMPING);
             let Held { a, forces } = held.held(0.0, q, v, &m.generalized_forces(q, &u)).expect("feet hold");
-            sum += (self.costs(k, &state, Some(&forces)) + OF_INPUTS * u.norm_squared() / 2.0) * PERIOD;
+            sum +=
+                (self.cost_of_node(k, &state, Some(&forces)) + OF_INPUTS * u.norm_squared() / 2.0) * PERIOD;
             let v = v + a * PERIOD;
             state = (m.integrate(q, &(v * PERIOD)), v);
         }
         next.0.push(state);
-        sum + self.costs(plan.inputs.len(), &state, None)
+        sum + self.cost_of_node(plan.inputs.len(), &state, None)
     }
 
     /// Returns the gait as JSON for a program with the same costs.
-    fn written(&self) -> String {
+    fn gait_as_json(&self) -> String {
         let format_optional_point = |place: &Option<Place>| {
             place.map_or("null".to_owned(), |place| format!("{:?}", place.as_slice()))
         };
@@ -375,7 +376,7 @@ impl Trot {
 
 /// Runs the iterations from the inputs of the robot at rest, with the line search of Crocoddyl's `SolverDDP`.
 /// Returns the results as JSON.
-pub fn measure() -> String {
+pub fn measure_trot() -> String {
     let mut start = Walker {}.neutral();
     start[2] = 0.235;
     for (k, angles) in
@@ -384,7 +385,7 @@ pub fn measure() -> String {
         start.fixed_rows_mut::<3>(7 + 3 * k).copy_from_slice(&angles);
     }
     let phases = gait(&start);
-    let trot = Trot { start, weights: phases.iter().map(weights).collect(), phases };
+    let trot = Trot { start, weights: phases.iter().map(state_cost_weights).collect(), phases };
     let nodes = trot.phases.len() - 1;
     let mut plan = Plan {
         states: vec![(start, Motion::zeros()); nodes + 1],
@@ -403,7 +404,7 @@ pub fn measure() -> String {
     (plan.states, plan.inputs) = next.clone();
     let mut costs = Vec::new();
     for _ in 0..ITERATIONS {
-        let [linear, quadratic] = trot.sweep(&mut plan);
+        let [linear, quadratic] = trot.backward_sweep(&mut plan);
         let lengths = (0..10).map(|k| 0.5_f64.powi(k));
         let shorter = lengths.map(|length| (length, trot.rollout(&plan, length, &mut next)));
         let mut shorter = shorter.collect::<Vec<_>>().into_iter();
@@ -416,34 +417,34 @@ pub fn measure() -> String {
         (plan.states, plan.inputs) = next.clone();
     }
     let mut node = Node::zeros();
-    let linearise = least(nodes, || {
+    let linearise = minimum_time_per_node(nodes, || {
         for k in 0..nodes {
-            trot.node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
+            trot.evaluate_node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
             black_box(&node);
         }
     });
     let mut kept = Vec::new();
     for k in 0..nodes {
-        trot.node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
+        trot.evaluate_node(k, &plan.states[k], &plan.inputs[k], &mut node).expect("feet hold");
         kept.push((node.step, node.cost));
     }
-    let last = trot.last(&plan.states[nodes]);
-    let backwards = least(nodes, || {
+    let last = trot.final_state_cost(&plan.states[nodes]);
+    let backwards = minimum_time_per_node(nodes, || {
         let mut to_go = last;
         for (policy, (step, cost)) in plan.policies.iter_mut().zip(&kept).rev() {
             backward_into(step, cost, 0.0, policy, &mut to_go).expect("it is convex");
         }
     });
-    let sweep = least(nodes, || {
-        black_box(trot.sweep(&mut plan));
+    let sweep = minimum_time_per_node(nodes, || {
+        black_box(trot.backward_sweep(&mut plan));
     });
-    let rollout = least(nodes, || {
+    let rollout = minimum_time_per_node(nodes, || {
         black_box(trot.rollout(&plan, 1.0, &mut next));
     });
     format!(
         "\"trot\": {{\"linearise\": {linearise}, \"backward\": {backwards}, \"sweep\": {sweep}, \"rollout\": \
          {rollout}, \"costs\": {costs:?}, \"start\": {:?}, \"inputs\": {inputs:?}, \"phases\": {}}}",
         start.as_slice(),
-        trot.written()
+        trot.gait_as_json()
     )
 }

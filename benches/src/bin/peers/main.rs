@@ -15,9 +15,9 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match words.as_slice() {
-        ["write", folder] => write::write(Path::new(folder)).map_err(|error| error.to_string()),
-        ["measure", folder] => table::measure(Path::new(folder), false),
-        ["measure", folder, "--quick"] => table::measure(Path::new(folder), true),
+        ["write", folder] => write::write_robot_folders(Path::new(folder)).map_err(|error| error.to_string()),
+        ["measure", folder] => table::measure_robots(Path::new(folder), false),
+        ["measure", folder, "--quick"] => table::measure_robots(Path::new(folder), true),
         _ => Err("expected `write FOLDER` or `measure FOLDER [--quick]`".to_string()),
     };
     match done {

@@ -5,7 +5,7 @@ use linkwork_benches::generic::{Model, Options};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
 use linkwork_benches::peers::own::{Call, Flat, Keeping, Own};
 use linkwork_benches::robots::{G1, Gen3, Kinova, Panda};
-use linkwork_benches::states::{State, states};
+use linkwork_benches::states::{State, random_states};
 use linkwork_models::{AnymalB, PandaArm, SimpleHumanoid, Solo12, Ur5};
 use std::rc::Rc;
 
@@ -42,7 +42,7 @@ fn linkwork_contender<M: 'static, R: Flat + 'static, const NQ: usize, const NV: 
     call: Call<M, R, NQ, NV>,
 ) -> Generated {
     let states = states.clone();
-    (function, Box::new(Own { owner, mechanism, states, name: function.name(), call }))
+    (function, Box::new(Own { owner, mechanism, states, name: function.function_name(), call }))
 }
 
 /// Returns the functions of a mechanism as contenders.
@@ -130,7 +130,7 @@ macro_rules! robot {
         let (urdf, options): (String, Options<'static>) = ($urdf, $options);
         let model = Model::from_urdf(&urdf, &options);
         let model = model.unwrap_or_else(|message| panic!("{}: {message}", $name));
-        let states: Rc<Vec<State<{ $type::NQ }, { $type::NV }>>> = Rc::new(states(&model));
+        let states: Rc<Vec<State<{ $type::NQ }, { $type::NV }>>> = Rc::new(random_states(&model));
         let joints = if options.free { 6 } else { 0 };
         let mut functions: Vec<Generated> = Vec::new();
         $(functions.extend($macro!($of, $value, $owner, &states));)+
@@ -142,7 +142,7 @@ macro_rules! robot {
             joints: &const { $type::VELOCITIES }[joints..],
             nq: $type::NQ,
             nv: $type::NV,
-            numbers: states.iter().flat_map(State::numbers).collect(),
+            numbers: states.iter().flat_map(State::all_numbers).collect(),
             functions,
         }
     }};
@@ -167,7 +167,7 @@ macro_rules! file {
 mod chains;
 
 /// Returns the constructors of all robots of the comparison.
-pub fn robots() -> Vec<fn() -> Robot> {
+pub fn robot_constructors() -> Vec<fn() -> Robot> {
     const FIXED: Options<'static> = Options { free: false, lock: &[] };
     const FREE: Options<'static> = Options { free: true, lock: &[] };
     const LOCKED: Options<'static> =

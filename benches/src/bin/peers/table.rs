@@ -1,9 +1,9 @@
 //! Checks that the implementations agree, then prints their times as a table.
 
-use crate::robots::{Robot, robots};
+use crate::robots::{Robot, robot_constructors};
 use linkwork_benches::peers::contender::{Contender, Function, Owner};
 use linkwork_benches::peers::library::{self, Rows};
-use linkwork_benches::peers::turns::{Measured, TOLERANCE, agree, time};
+use linkwork_benches::peers::turns::{Measured, TOLERANCE, measure_in_turns, remove_disagreeing};
 use linkwork_benches::states::STATES;
 use std::path::Path;
 
@@ -13,7 +13,7 @@ const FLAGS: [&str; 2] = ["exact", "fast"];
 
 /// Measures every function of every robot and prints a table. Implementations that disagree are omitted; a
 /// disagreement of Linkwork's own code is an error.
-pub fn measure(folder: &Path, quick: bool) -> Result<(), String> {
+pub fn measure_robots(folder: &Path, quick: bool) -> Result<(), String> {
     let budget = if quick { 0.05 } else { 0.2 };
     println!(
         "| robot | function | Linkwork, ns | with parameters | prepared | Pinocchio | CasADi C | dynibo | \
@@ -21,18 +21,18 @@ pub fn measure(folder: &Path, quick: bool) -> Result<(), String> {
     );
     println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     let mut wrong = Vec::new();
-    for make in robots() {
+    for make in robot_constructors() {
         let mut robot = make();
         let numbers: &'static [f64] = std::mem::take(&mut robot.numbers).leak();
         for function in Function::ALL {
-            let mut contenders = contenders(folder, &mut robot, numbers, function);
-            let what = format!("{} {}", robot.name, function.title());
-            wrong.extend(agree(&mut contenders, &what, (robot.nv, STATES), TOLERANCE));
+            let mut contenders = contenders_for_function(folder, &mut robot, numbers, function);
+            let what = format!("{} {}", robot.name, function.table_title());
+            wrong.extend(remove_disagreeing(&mut contenders, &what, (robot.nv, STATES), TOLERANCE));
             if contenders.iter().any(|contender| contender.owner() == Owner::Linkwork) {
-                let measured = time(&mut contenders, STATES, budget);
-                println!("{}", line(&robot, function, Owner::Linkwork, &measured));
+                let measured = measure_in_turns(&mut contenders, STATES, budget);
+                println!("{}", format_table_line(&robot, function, Owner::Linkwork, &measured));
                 if measured.iter().any(|m| m.owner == Owner::Kept) {
-                    println!("{}", line(&robot, function, Owner::Kept, &measured));
+                    println!("{}", format_table_line(&robot, function, Owner::Kept, &measured));
                 }
             }
         }
@@ -41,7 +41,7 @@ pub fn measure(folder: &Path, quick: bool) -> Result<(), String> {
 }
 
 /// Returns the implementations of a function by all libraries that have it.
-fn contenders(
+fn contenders_for_function(
     folder: &Path,
     robot: &mut Robot,
     numbers: &'static [f64],
@@ -52,12 +52,12 @@ fn contenders(
     let mut all = Vec::new();
     for (library, owner) in [("libpinocchio_peer.so", Owner::Pinocchio), ("libdynibo_peer.so", Owner::Dynibo)]
     {
-        all.extend(library::peers(&folder.join(library), owner, &files, function, rows));
+        all.extend(library::peers_of_library(&folder.join(library), owner, &files, function, rows));
     }
     for form in CASADI {
         for flags in FLAGS {
-            let path = files.join(format!("{}_{form}.{flags}.so", function.file()));
-            all.extend(library::casadi(&path, function, rows));
+            let path = files.join(format!("{}_{form}.{flags}.so", function.file_name()));
+            all.extend(library::casadi_function(&path, function, rows));
         }
     }
     let generated = std::mem::take(&mut robot.functions);
@@ -68,7 +68,7 @@ fn contenders(
 }
 
 /// Returns a line of the table, for one of Linkwork's functions.
-fn line(robot: &Robot, function: Function, owner: Owner, measured: &[Measured]) -> String {
+fn format_table_line(robot: &Robot, function: Function, owner: Owner, measured: &[Measured]) -> String {
     let fastest_of_owner =
         |owner| measured.iter().filter(|m| m.owner == owner).min_by(|a, b| a.time.total_cmp(&b.time));
     let own = fastest_of_owner(owner);
@@ -81,13 +81,14 @@ fn line(robot: &Robot, function: Function, owner: Owner, measured: &[Measured]) 
     let format_time_ratio =
         |m: Option<&Measured>| format_optional_number(m.zip(own).map(|(m, own)| m.time / own.time), 1);
     let kept = if owner == Owner::Kept { ", zeros kept" } else { "" };
-    let mut cells = vec![format!("{} ({})", robot.name, robot.nv), format!("{}{kept}", function.title())];
+    let mut cells =
+        vec![format!("{} ({})", robot.name, robot.nv), format!("{}{kept}", function.table_title())];
     cells.extend([own, fastest_of_owner(Owner::Parameters), fastest_of_owner(Owner::Prepared)].map(time));
     cells.extend(others.map(time));
     cells.extend(others.map(format_time_ratio));
     cells.push(format_optional_number(own.and_then(|m| m.bytes).map(|bytes| bytes as f64), 0));
     if let Some(casadi) = fastest_of_owner(Owner::Casadi) {
-        eprintln!("{} {}: CasADi's best is {}", robot.name, function.title(), casadi.variant);
+        eprintln!("{} {}: CasADi's best is {}", robot.name, function.table_title(), casadi.variant);
     }
     format!("| {} |", cells.join(" | "))
 }

@@ -1,6 +1,6 @@
 //! Writes the robots as files for the peers.
 
-use crate::robots::{Robot, robots};
+use crate::robots::{Robot, robot_constructors};
 use linkwork_benches::peers::contender::Function;
 use roxmltree::Document;
 use std::fs;
@@ -9,8 +9,8 @@ use std::path::Path;
 
 /// Writes a folder for every robot: `robot.urdf`; `joints`, the names of the moving joints in order; `free`
 /// if the base is free; `derivatives` if they are measured. Prints the folders.
-pub fn write(folder: &Path) -> io::Result<()> {
-    for make in robots() {
+pub fn write_robot_folders(folder: &Path) -> io::Result<()> {
+    for make in robot_constructors() {
         let robot = make();
         let folder = folder.join(robot.name);
         fs::create_dir_all(&folder)?;

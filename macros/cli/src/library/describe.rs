@@ -6,16 +6,16 @@ use linkwork_compiler::mechanism::Limit;
 use serde_json::{Value, json};
 
 /// Returns the description of the mechanism as JSON.
-pub fn description(known: &Known<'_, '_>) -> String {
+pub fn description_as_json(known: &Known<'_, '_>) -> String {
     let m = known.model;
     let names_with_units = |names: Vec<&str>, units: &[String]| -> Vec<Value> {
         let units = units.iter().map(String::as_str).chain(std::iter::repeat(""));
         names.into_iter().zip(units).map(|(name, unit)| json!({ "name": name, "unit": unit })).collect()
     };
-    fn plain(list: &[String]) -> Vec<&str> {
+    fn names_as_str(list: &[String]) -> Vec<&str> {
         list.iter().map(String::as_str).collect()
     }
-    let docs = super::functions::docs(&known.source.mechanism.shell.attributes);
+    let docs = super::functions::doc_paragraphs(&known.source.mechanism.shell.attributes);
     let unit_of_output = |function: &str| {
         let at = m.outputs.iter().position(|output| output.name == function)?;
         m.units.outputs.get(at).cloned()
@@ -26,21 +26,21 @@ pub fn description(known: &Known<'_, '_>) -> String {
         "name": known.input.declaration.name,
         "prefix": known.prefix,
         "version": env!("CARGO_PKG_VERSION"),
-        "number": known.number(),
+        "number": known.scalar_type_name(),
         "documentation": without_links(&docs.join("\n\n")),
-        "configuration": names_with_units(plain(&m.configuration), &m.units.configuration),
+        "configuration": names_with_units(names_as_str(&m.configuration), &m.units.configuration),
         "velocities": names_with_units(
             m.velocities.iter().map(|(name, _)| name.as_str()).collect(),
             &m.units.velocities,
         ),
         "inputs": names_with_units(m.inputs.iter().map(|(name, _)| name.as_str()).collect(), &m.units.inputs),
-        "parameters": names_with_units(plain(&m.parameters), &m.units.parameters),
+        "parameters": names_with_units(names_as_str(&m.parameters), &m.units.parameters),
         "outputs": names_with_units(
             m.outputs.iter().map(|output| output.name.as_str()).collect(),
             &m.units.outputs,
         ),
         "frames": m.frames.iter().map(|frame| frame.name.as_str()).collect::<Vec<_>>(),
-        "limits": m.limits.iter().map(limit).collect::<Vec<_>>(),
+        "limits": m.limits.iter().map(limits_as_json).collect::<Vec<_>>(),
         "constraints": m.constraints.len(),
         "contacts": m.contacts.len(),
         "time": m.time,
@@ -53,10 +53,10 @@ pub fn description(known: &Known<'_, '_>) -> String {
 }
 
 /// Serialises the limits of a joint: numbers, `"parameters"` for a bound that depends on parameters, or null.
-fn limit(limit: &Limit<'_>) -> Value {
-    let [lower, upper, velocity, effort] = limit
-        .bounds()
-        .map(|bound| bound.map(|bound| bound.value().map_or(json!("parameters"), |value| json!(value))));
+fn limits_as_json(limit: &Limit<'_>) -> Value {
+    let [lower, upper, velocity, effort] = limit.bounds().map(|bound| {
+        bound.map(|bound| bound.constant_value().map_or(json!("parameters"), |value| json!(value)))
+    });
     json!({ "index": limit.v.0, "lower": lower, "upper": upper, "velocity": velocity, "effort": effort })
 }
 

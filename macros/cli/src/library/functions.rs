@@ -47,12 +47,12 @@ impl Function {
 }
 
 /// Returns all functions of the struct that can be called with plain arrays, and the names of the others.
-pub fn read(items: &[Item], mechanism: &str) -> (Vec<Function>, Vec<String>) {
+pub fn read_struct_functions(items: &[Item], mechanism: &str) -> (Vec<Function>, Vec<String>) {
     let (mut found, mut left_out, mut names) = (Vec::new(), Vec::new(), Vec::new());
     for item in items {
         let Item::Impl(block) = item else { continue };
         let is_own = matches!(&*block.self_ty, Type::Path(path) if path.path.segments.last().is_some_and(|s| s.ident == mechanism));
-        if block.trait_.is_some() || !is_own || asks(block.generics.where_clause.as_ref()) {
+        if block.trait_.is_some() || !is_own || is_placeholder_block(block.generics.where_clause.as_ref()) {
             continue;
         }
         for inner in &block.items {
@@ -82,7 +82,7 @@ pub fn read(items: &[Item], mechanism: &str) -> (Vec<Function>, Vec<String>) {
 }
 
 /// Returns whether a block contains placeholder functions that only explain why a function does not exist.
-fn asks(bounds: Option<&syn::WhereClause>) -> bool {
+fn is_placeholder_block(bounds: Option<&syn::WhereClause>) -> bool {
     bounds.is_some_and(|bounds| bounds.to_token_stream().to_string().contains("absent"))
 }
 
@@ -111,7 +111,7 @@ fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
     }
     let ReturnType::Type(_, kind) = &function.sig.output else { return None };
     let is_mode = is_optional_sign(kind);
-    let shapes = if is_mode { vec![Vec::new()] } else { shapes(kind)? };
+    let shapes = if is_mode { vec![Vec::new()] } else { shapes_of_results(kind)? };
     let results = result_names(name, shapes.len()).into_iter().zip(shapes).collect();
     let list: Vec<String> = arguments
         .iter()
@@ -123,7 +123,7 @@ fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
         })
         .collect();
     let call = format!("m.{name}({}){}", list.join(", "), if is_mode { ".unwrap_or(0)" } else { "" });
-    let mut docs = docs(&function.attrs);
+    let mut docs = doc_paragraphs(&function.attrs);
     if is_mode {
         docs.iter_mut().for_each(|text| *text = text.replace("`None`", "zero"));
     }
@@ -131,7 +131,7 @@ fn one(name: &str, function: &syn::ImplItemFn) -> Option<Function> {
 }
 
 /// Returns the paragraphs of doc comments.
-pub fn docs(attributes: &[syn::Attribute]) -> Vec<String> {
+pub fn doc_paragraphs(attributes: &[syn::Attribute]) -> Vec<String> {
     let lines = attributes.iter().filter_map(|attribute| match &attribute.meta {
         syn::Meta::NameValue(pair) if pair.path.is_ident("doc") => match &pair.value {
             syn::Expr::Lit(literal) => match &literal.lit {
@@ -203,7 +203,7 @@ fn is_number(kind: &Type) -> bool {
 /// Returns whether a type is `Option<i8>`, a sign that may be undetermined. Plain arrays contain zero for
 /// `None`.
 fn is_optional_sign(kind: &Type) -> bool {
-    word(kind).is_some_and(|(name, types, _)| {
+    type_name_with_arguments(kind).is_some_and(|(name, types, _)| {
         name == "Option" && types.iter().all(|inner| inner.to_token_stream().to_string() == "i8")
     })
 }
@@ -212,7 +212,7 @@ fn referenced_kind(kind: &Type) -> Option<Kind> {
     if let Type::Slice(slice) = kind {
         return (slice.elem.to_token_stream().to_string() == "usize").then_some(Kind::Marks);
     }
-    match shape(kind)?.as_slice() {
+    match dimensions_of_type(kind)?.as_slice() {
         [n] => Some(Kind::Matrix(*n, 1)),
         [rows, columns] => Some(Kind::Matrix(*rows, *columns)),
         _ => None,
@@ -220,7 +220,7 @@ fn referenced_kind(kind: &Type) -> Option<Kind> {
 }
 
 /// Returns the last identifier of a type's path, with its type arguments and integer arguments.
-fn word(kind: &Type) -> Option<(String, Vec<Type>, Vec<usize>)> {
+fn type_name_with_arguments(kind: &Type) -> Option<(String, Vec<Type>, Vec<usize>)> {
     let Type::Path(path) = kind else { return None };
     let last = path.path.segments.last()?;
     let (mut types, mut sizes) = (Vec::new(), Vec::new());
@@ -240,11 +240,11 @@ fn word(kind: &Type) -> Option<(String, Vec<Type>, Vec<usize>)> {
 }
 
 /// Returns the dimensions of a number, vector or matrix.
-fn shape(kind: &Type) -> Option<Vec<usize>> {
+fn dimensions_of_type(kind: &Type) -> Option<Vec<usize>> {
     if is_number(kind) {
         return Some(Vec::new());
     }
-    let (name, _, sizes) = word(kind)?;
+    let (name, _, sizes) = type_name_with_arguments(kind)?;
     match (name.as_str(), sizes.as_slice()) {
         ("SVector", [n]) => Some(vec![*n]),
         ("SMatrix", [rows, columns]) => Some(vec![*rows, *columns]),
@@ -253,24 +253,24 @@ fn shape(kind: &Type) -> Option<Vec<usize>> {
 }
 
 /// Returns the shapes of all results of a function with this return type.
-fn shapes(kind: &Type) -> Option<Vec<Vec<usize>>> {
+fn shapes_of_results(kind: &Type) -> Option<Vec<Vec<usize>>> {
     if let Type::Tuple(tuple) = kind {
         if tuple.elems.is_empty() || tuple.elems.len() > 6 {
             return None;
         }
-        return tuple.elems.iter().map(shape).collect();
+        return tuple.elems.iter().map(dimensions_of_type).collect();
     }
     if let Type::Array(array) = kind {
-        let (name, ..) = word(&array.elem)?;
+        let (name, ..) = type_name_with_arguments(&array.elem)?;
         let length = array.len.to_token_stream().to_string().parse().ok()?;
         return (name == "IsometryMatrix3").then_some(vec![vec![length, 4, 4]]);
     }
-    if let Some(shape) = shape(kind) {
+    if let Some(shape) = dimensions_of_type(kind) {
         return Some(vec![shape]);
     }
-    let (name, types, sizes) = word(kind)?;
+    let (name, types, sizes) = type_name_with_arguments(kind)?;
     match (name.as_str(), sizes.as_slice()) {
-        ("Result", []) => shapes(types.first()?),
+        ("Result", []) => shapes_of_results(types.first()?),
         ("OutputJacobians", [rows, n, m]) => {
             Some(vec![vec![*rows, *n], vec![*rows, *n], vec![*rows, *n], vec![*rows, *m]])
         }

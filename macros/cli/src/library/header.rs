@@ -5,9 +5,9 @@ use linkwork_compiler::export::{in_comment, in_comment_lines};
 use std::fmt::Write;
 
 /// Returns the text of the header.
-pub fn header(known: &Known<'_, '_>) -> String {
+pub fn header_text(known: &Known<'_, '_>) -> String {
     let m = known.model;
-    let (prefix, number) = (known.prefix, if known.single() { "float" } else { "double" });
+    let (prefix, number) = (known.prefix, if known.is_single_precision() { "float" } else { "double" });
     let upper = prefix.to_ascii_uppercase();
     let mut text = format!(
         "/* The mechanism `{}`, compiled by Linkwork: link lib{prefix}.a (with -lpthread -ldl -lm) or load \
@@ -63,7 +63,7 @@ fn write_frames(text: &mut String, known: &Known<'_, '_>, upper: &str) {
         return;
     }
     let spoken: Vec<String> = known.model.frames.iter().map(|frame| frame.name.clone()).collect();
-    let names = linkwork_compiler::export::capitals(&spoken);
+    let names = linkwork_compiler::export::preprocessor_names(&spoken);
     text.push_str("/* Frames by number. */\nenum {\n");
     for (k, (name, says)) in names.iter().zip(&spoken).enumerate() {
         let comma = if k + 1 < names.len() { "," } else { "" };

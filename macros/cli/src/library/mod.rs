@@ -11,9 +11,9 @@ use crate::Stop;
 use crate::commands::text_option;
 use crate::grid::{self, Grid};
 use crate::input::{Compiled, Input};
-use crate::sources::{self, dependency};
+use crate::sources::{self, manifest_dependency};
 use clap::ArgMatches;
-pub use functions::docs;
+pub use functions::doc_paragraphs;
 use functions::{Function, Kind};
 use linkwork_compiler::Source;
 use linkwork_compiler::expr::Graph;
@@ -49,24 +49,24 @@ struct Known<'a, 'g> {
 }
 
 impl Known<'_, '_> {
-    fn single(&self) -> bool {
+    fn is_single_precision(&self) -> bool {
         self.source.mechanism.description.scalar == ScalarType::F32
     }
 
-    fn number(&self) -> &'static str {
-        if self.single() { "f32" } else { "f64" }
+    fn scalar_type_name(&self) -> &'static str {
+        if self.is_single_precision() { "f32" } else { "f64" }
     }
 
     /// Returns the type of the struct with its generic argument.
-    fn kind(&self) -> String {
+    fn struct_type(&self) -> String {
         match self.source.mechanism.shell.generics.type_params().count() {
             0 => self.input.declaration.name.clone(),
-            _ => format!("{}<{}>", self.input.declaration.name, self.number()),
+            _ => format!("{}<{}>", self.input.declaration.name, self.scalar_type_name()),
         }
     }
 
     /// Returns whether the mechanism has unilateral contacts.
-    fn contacting(&self) -> bool {
+    fn has_contacts(&self) -> bool {
         !self.model.contacts.is_empty()
     }
 }
@@ -74,9 +74,9 @@ impl Known<'_, '_> {
 /// Generates the crate of a mechanism. It depends on the Linkwork sources in the folder `--linkwork`,
 /// otherwise on the sources that the command was built from, if they exist, otherwise on the release in the
 /// registry.
-pub fn write(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate, Stop> {
+pub fn generate_crate(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate, Stop> {
     let graph = Graph::new();
-    let Compiled { source, model, output } = input.compiled(&graph)?;
+    let Compiled { source, model, output } = input.compile_mechanism(&graph)?;
     let shell = &source.mechanism.shell;
     if shell.generics.type_params().count() > 1 || shell.generics.const_params().next().is_some() {
         return Err(Stop::Failure(format!(
@@ -88,37 +88,40 @@ pub fn write(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate,
     let emitted = source.emit(&model, &output);
     let expansion = format!("{}\n{}", emitted.tokens, emitted.text);
     let file = syn::parse_file(&expansion)?;
-    let (mut functions, left_out) = functions::read(&file.items, &input.declaration.name);
-    functions.extend(frames(&model));
-    functions.extend(limits(&model));
+    let (mut functions, left_out) = functions::read_struct_functions(&file.items, &input.declaration.name);
+    functions.extend(frame_functions(&model));
+    functions.extend(limit_functions(&model));
     let requests = source.mechanism.requests;
     let kinematic = model.kinematic;
     if !kinematic && model.contacts.is_empty() {
-        functions.extend(steps(&model, requests.derivatives && !model_slips(&functions)));
+        functions.extend(step_functions(&model, requests.derivatives && !model_slips(&functions)));
     }
     let known = Known {
         input,
         source: &source,
         model: &model,
         prefix,
-        tables: grid::table_options(matches, &source.tables())?,
+        tables: grid::table_options(matches, &source.tables_with_variable_counts())?,
         functions,
         left_out,
         equations: output.equations.plain.clone(),
     };
-    let description = describe::description(&known);
-    let linkwork = text_option(matches, "linkwork").map(home).transpose()?.or_else(sources::of_command);
-    let manifest = manifest(prefix, linkwork.as_deref());
+    let description = describe::description_as_json(&known);
+    let linkwork = text_option(matches, "linkwork")
+        .map(absolute_source_folder)
+        .transpose()?
+        .or_else(sources::of_command);
+    let manifest = manifest_text(prefix, linkwork.as_deref(), requests.reproducible);
     let text = match matches.get_flag("expanded") {
-        true => write::library(&known, &description, "")? + &expansion,
-        false => write::library(&known, &description, &declaration(input)?)?,
+        true => write::library_text(&known, &description, "")? + &expansion,
+        false => write::library_text(&known, &description, &declaration_with_absolute_paths(input)?)?,
     };
     Ok(Crate {
         prefix: prefix.to_string(),
         files: vec![
             ("Cargo.toml", manifest),
             ("src/lib.rs", text),
-            ("include/NAME.h", header::header(&known)),
+            ("include/NAME.h", header::header_text(&known)),
             ("description.json", description),
         ],
         left_out: known.left_out,
@@ -126,7 +129,7 @@ pub fn write(input: &Input, prefix: &str, matches: &ArgMatches) -> Result<Crate,
 }
 
 /// Returns the folder of the Linkwork sources as an absolute path.
-fn home(folder: &str) -> Result<PathBuf, Stop> {
+fn absolute_source_folder(folder: &str) -> Result<PathBuf, Stop> {
     let whole = Path::new(folder).canonicalize().ok();
     let whole = whole.filter(|whole| whole.join("runtime/library/Cargo.toml").is_file());
     whole.ok_or_else(|| Stop::Failure(format!("`--linkwork`: {folder} has no sources of Linkwork")))
@@ -140,7 +143,7 @@ fn model_slips(functions: &[Function]) -> bool {
 }
 
 /// Returns the declaration of the mechanism, with the paths of files made absolute.
-fn declaration(input: &Input) -> Result<String, Stop> {
+fn declaration_with_absolute_paths(input: &Input) -> Result<String, Stop> {
     let mut arguments = TokenStream::new();
     let mut names_file = false;
     for token in input.declaration.arguments.clone() {
@@ -163,7 +166,7 @@ fn declaration(input: &Input) -> Result<String, Stop> {
 }
 
 /// Returns the functions that take a frame by its index.
-fn frames(model: &Model<'_>) -> Vec<Function> {
+fn frame_functions(model: &Model<'_>) -> Vec<Function> {
     if model.frames.is_empty() {
         return Vec::new();
     }
@@ -224,7 +227,7 @@ fn frames(model: &Model<'_>) -> Vec<Function> {
 }
 
 /// Returns the functions for limits of coordinates, velocities and forces, if there are any.
-fn limits(model: &Model<'_>) -> Vec<Function> {
+fn limit_functions(model: &Model<'_>) -> Vec<Function> {
     if model.limits.is_empty() {
         return Vec::new();
     }
@@ -268,7 +271,7 @@ fn limits(model: &Model<'_>) -> Vec<Function> {
 }
 
 /// Returns the functions for steps of the classical Runge–Kutta method.
-fn steps(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
+fn step_functions(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
     let [nq, nv, nu] = [model.nq(), model.nv(), model.nu()];
     let vector_argument = |name: &str, n| (name.to_string(), Kind::Matrix(n, 1));
     let time = model.time.then(|| ("t".to_string(), Kind::Number));
@@ -329,14 +332,15 @@ fn steps(model: &Model<'_>, with_jacobians: bool) -> Vec<Function> {
 }
 
 /// Returns the manifest, which depends on the Linkwork sources in a folder or on the release.
-fn manifest(prefix: &str, linkwork: Option<&Path>) -> String {
+fn manifest_text(prefix: &str, linkwork: Option<&Path>, reproducible: bool) -> String {
+    let features = if reproducible { "\n[features]\ndefault = [\"linkwork/reproducible\"]\n" } else { "" };
     format!(
         "[package]\nname = \"{}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[lib]\nname \
          = \"{prefix}\"\ncrate-type = [\"cdylib\", \"staticlib\"]\n\n\
-         [dependencies]\n{}\n{}\n\n[workspace]\n",
+         [dependencies]\n{}\n{}\n{features}\n[workspace]\n",
         prefix.replace('_', "-"),
-        dependency("linkwork", "runtime", linkwork),
-        dependency("linkwork-library", "runtime/library", linkwork),
+        manifest_dependency("linkwork", "runtime", linkwork),
+        manifest_dependency("linkwork-library", "runtime/library", linkwork),
     )
 }
 

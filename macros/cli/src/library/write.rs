@@ -5,9 +5,9 @@ use crate::Stop;
 use std::fmt::Write;
 
 /// Returns the text of `lib.rs`. Without a declaration, the caller must append the generated code.
-pub fn library(known: &Known<'_, '_>, description: &str, declaration: &str) -> Result<String, Stop> {
+pub fn library_text(known: &Known<'_, '_>, description: &str, declaration: &str) -> Result<String, Stop> {
     let m = known.model;
-    let (kind, number, prefix) = (known.kind(), known.number(), known.prefix);
+    let (kind, number, prefix) = (known.struct_type(), known.scalar_type_name(), known.prefix);
     let [nq, nv, nu] = [m.nq(), m.nv(), m.nu()];
     let mut text = format!(
         "use linkwork::prelude::*;\nuse linkwork_library::{{self as library, Failure, Function, Given, \
@@ -41,17 +41,17 @@ pub fn library(known: &Known<'_, '_>, description: &str, declaration: &str) -> R
         }}\n\n",
         m.parameters.len(),
         format!("{description}\0"),
-        known.functions.iter().map(|f| row(f, nv)).collect::<String>(),
-        made(known),
-        checked(known),
-        match (m.kinematic, known.contacting()) {
+        known.functions.iter().map(|f| function_table_row(f, nv)).collect::<String>(),
+        constructor_expression(known),
+        parameter_check(known),
+        match (m.kinematic, known.has_contacts()) {
             (true, _) =>
                 "let _ = motion;\nErr(Failure::new(\"the mechanism has no dynamics\"))".to_string(),
             (_, true) => format!("library::simulate_with_contacts::<Self, {number}, {nq}, {nv}, {nu}>(self, \
                                   motion)"),
             (_, false) => format!("library::simulate::<Self, {number}, {nq}, {nv}, {nu}>(self, motion)"),
         },
-        match (m.kinematic || known.contacting(), known.source.mechanism.requests.batch) {
+        match (m.kinematic || known.has_contacts(), known.source.mechanism.requests.batch) {
             (true, _) =>
                 "let _ = rollout;\nErr(Failure::new(\"rollouts go through smooth motions: this mechanism has \
                  none\"))".to_string(),
@@ -60,7 +60,7 @@ pub fn library(known: &Known<'_, '_>, description: &str, declaration: &str) -> R
             (_, false) => format!("library::roll_out::<Self, {number}, {nq}, {nv}, {nu}>(self, rollout)"),
         },
     );
-    text.push_str(&tables(known));
+    text.push_str(&tables_as_constants(known));
     if known.functions.iter().any(|f| f.arguments.iter().any(|(_, kind)| *kind == Kind::Frame)) {
         let _ = write!(
             text,
@@ -79,7 +79,7 @@ pub fn library(known: &Known<'_, '_>, description: &str, declaration: &str) -> R
 }
 
 /// Returns the row of a function in the library's function table.
-fn row(f: &Function, nv: usize) -> String {
+fn function_table_row(f: &Function, nv: usize) -> String {
     let arguments: Vec<String> =
         f.arguments.iter().map(|(_, kind)| Function::length(kind, nv).to_string()).collect();
     let results: Vec<String> =
@@ -101,7 +101,7 @@ fn row(f: &Function, nv: usize) -> String {
 }
 
 /// Returns the expression that constructs the mechanism from its parameters and tables.
-fn made(known: &Known<'_, '_>) -> String {
+fn constructor_expression(known: &Known<'_, '_>) -> String {
     let shell = &known.source.mechanism.shell;
     let name = &known.input.declaration.name;
     let tables = shell.tables.iter().filter_map(|f| f.ident.as_ref()).enumerate();
@@ -137,7 +137,7 @@ fn made(known: &Known<'_, '_>) -> String {
 }
 
 /// Returns the Rust text of the mechanism's tables as constants.
-fn tables(known: &Known<'_, '_>) -> String {
+fn tables_as_constants(known: &Known<'_, '_>) -> String {
     let mut text = String::new();
     for (k, grid) in known.tables.iter().enumerate() {
         let axes: Vec<String> = grid.axes.iter().map(|axis| format!("&{axis:?}")).collect();
@@ -157,7 +157,7 @@ fn tables(known: &Known<'_, '_>) -> String {
     text
 }
 
-fn checked(known: &Known<'_, '_>) -> &'static str {
+fn parameter_check(known: &Known<'_, '_>) -> &'static str {
     match known.model.parameters.is_empty() {
         true => "Ok(())",
         false => "self.validate().map_err(Failure::new)",
@@ -166,7 +166,8 @@ fn checked(known: &Known<'_, '_>) -> &'static str {
 
 /// Writes the exported functions that every library has.
 fn write_exports(text: &mut String, known: &Known<'_, '_>) {
-    let (prefix, kind, number, m) = (known.prefix, known.kind(), known.number(), known.model);
+    let (prefix, kind, number, m) =
+        (known.prefix, known.struct_type(), known.scalar_type_name(), known.model);
     let _ = write!(
         text,
         "/// Names, shapes, units and documentation, as JSON.
@@ -216,7 +217,8 @@ fn write_exports(text: &mut String, known: &Known<'_, '_>) {
 
 /// Writes the exported functions for simulations and rollouts.
 fn write_motions(text: &mut String, known: &Known<'_, '_>) {
-    let (prefix, kind, number, m) = (known.prefix, known.kind(), known.number(), known.model);
+    let (prefix, kind, number, m) =
+        (known.prefix, known.struct_type(), known.scalar_type_name(), known.model);
     let [nq, nv, nu] = [m.nq(), m.nv(), m.nu()];
     let _ = write!(
         text,
@@ -260,7 +262,7 @@ fn write_motions(text: &mut String, known: &Known<'_, '_>) {
 
 /// Writes the exported function for the parameters of a robot file.
 fn write_defaults(text: &mut String, known: &Known<'_, '_>) {
-    let (prefix, number, m) = (known.prefix, known.number(), known.model);
+    let (prefix, number, m) = (known.prefix, known.scalar_type_name(), known.model);
     let of_file = known.source.mechanism.shell.file_fields.is_empty();
     let values: String = match of_file {
         true => format!("[{number}::NAN; {}]", m.parameters.len()),

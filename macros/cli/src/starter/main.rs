@@ -25,7 +25,7 @@ pub struct CartPole {
 }
 
 /// Returns a page that shows how the pole falls, and how a controller keeps it upright.
-pub fn page() -> Result<Page, Box<dyn std::error::Error>> {
+pub fn cart_pole_page() -> Result<Page, Box<dyn std::error::Error>> {
     let cart_pole = CartPole { pole_length: 1.0 };
     // Initial configuration q and velocity v, whose entries are named by `CartPole::CONFIGURATION` and
     // `CartPole::VELOCITIES`.
@@ -44,7 +44,7 @@ pub fn page() -> Result<Page, Box<dyn std::error::Error>> {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{}", CartPole::EQUATIONS);
-    page()?.write("motion.html")?;
+    cart_pole_page()?.write("motion.html")?;
     println!("Open motion.html in a browser.");
     Ok(())
 }

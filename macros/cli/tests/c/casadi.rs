@@ -1,11 +1,11 @@
 //! Exported functions in the form that CasADi and acados load.
 
-use crate::compiled::{compilers, export, folder};
+use crate::compiled::{c_compilers, export_c_code, test_folder};
 use std::path::Path;
 use std::process::Command;
 
 /// Returns a Python interpreter that has CasADi: that of `LINKWORK_PYTHON`, or the system's.
-fn python() -> Option<String> {
+fn python_with_casadi() -> Option<String> {
     let python = std::env::var("LINKWORK_PYTHON").unwrap_or_else(|_| "python3".to_string());
     let has =
         Command::new(&python).args(["-c", "import casadi, numpy"]).output().is_ok_and(|o| o.status.success());
@@ -16,22 +16,25 @@ fn python() -> Option<String> {
 /// consistent sizes.
 #[test]
 fn casadi_loads_functions_with_their_jacobians() {
-    let Some(compiler) = compilers().into_iter().next() else {
+    let Some(compiler) = c_compilers().into_iter().next() else {
         println!("skipped: there is no C compiler");
         return;
     };
-    let folder = folder("casadi");
+    let folder = test_folder("casadi");
     let fixed = ["cart_mass=1.2", "pole_mass=0.3", "pole_length=0.8", "rail_damping=0.4"];
     let set: Vec<&str> = fixed.iter().flat_map(|value| ["--set", value]).collect();
-    export(
+    export_c_code(
         &folder,
         &[&["../../models/src/cart_pole.rs", "--prefix", "fixed", "--casadi"], &set[..]].concat(),
     );
-    export(
+    export_c_code(
         &folder,
         &["../../models/src/cart_pole.rs", "--prefix", "open", "--casadi", "--set", "cart_mass=1.2"],
     );
-    export(&folder, &["tests/mechanisms/mod.rs", "--struct", "Balloon", "--prefix", "timed", "--casadi"]);
+    export_c_code(
+        &folder,
+        &["tests/mechanisms/mod.rs", "--struct", "Balloon", "--prefix", "timed", "--casadi"],
+    );
     for prefix in ["fixed", "open", "timed"] {
         let done = Command::new(compiler)
             .current_dir(&folder)
@@ -46,7 +49,7 @@ fn casadi_loads_functions_with_their_jacobians() {
             .expect("the compiler starts");
         assert!(done.status.success(), "{prefix}: {}", String::from_utf8_lossy(&done.stderr));
     }
-    let Some(python) = python() else {
+    let Some(python) = python_with_casadi() else {
         println!("skipped: there is no CasADi (LINKWORK_PYTHON names a Python that has it)");
         return;
     };
@@ -68,7 +71,7 @@ fn what_casadi_cannot_have_is_reported() {
             .args(["export", "c", "../../models/src/cart_pole.rs", "--casadi"])
             .args(arguments)
             .arg("--out")
-            .arg(folder("refused"))
+            .arg(test_folder("refused"))
             .output()
             .expect("the command starts");
         let stderr = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -29,7 +29,7 @@ pub struct Case {
 }
 
 /// Returns a C program that prints the results of all calls, one line per call.
-pub fn program(case: &Case, scalar: &str) -> String {
+pub fn c_program(case: &Case, scalar: &str) -> String {
     let p = case.prefix;
     let format_number_list = |numbers: &[f64]| {
         let texts: Vec<String> = numbers.iter().map(|x| format!("({scalar}){x:?}")).collect();
@@ -93,21 +93,21 @@ pub fn program(case: &Case, scalar: &str) -> String {
     text
 }
 
-pub fn compilers() -> Vec<&'static str> {
+pub fn c_compilers() -> Vec<&'static str> {
     let is_compiler_available =
         |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
     let known: Vec<&str> = ["gcc", "clang"].into_iter().filter(is_compiler_available).collect();
     if known.is_empty() { ["cc"].into_iter().filter(is_compiler_available).collect() } else { known }
 }
 
-pub fn folder(name: &str) -> PathBuf {
+pub fn test_folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c").join(name);
     std::fs::create_dir_all(&folder).expect("a folder of the tests'");
     folder
 }
 
 /// Runs `linkwork export c`.
-pub fn export(folder: &Path, arguments: &[&str]) {
+pub fn export_c_code(folder: &Path, arguments: &[&str]) {
     let output = Command::new(env!("CARGO_BIN_EXE_linkwork"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .args(["export", "c", "--out"])
@@ -119,7 +119,7 @@ pub fn export(folder: &Path, arguments: &[&str]) {
 }
 
 /// Compiles a program without warnings, runs it, and returns the numbers that it prints.
-pub fn printed(compiler: &str, folder: &Path, p: &str, main: &str, flags: &[&str]) -> Vec<Vec<f64>> {
+pub fn compile_and_run(compiler: &str, folder: &Path, p: &str, main: &str, flags: &[&str]) -> Vec<Vec<f64>> {
     let (source, executable) = (folder.join("main.c"), folder.join(format!("main_{compiler}")));
     std::fs::write(&source, main).expect("a file of the tests'");
     let strict = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror"];
@@ -142,7 +142,7 @@ pub fn printed(compiler: &str, folder: &Path, p: &str, main: &str, flags: &[&str
     text.lines().map(parse_numbers_of_line).collect()
 }
 
-pub fn compare(case: &Case, found: &[Vec<f64>], tolerance: f64) {
+pub fn compare_results(case: &Case, found: &[Vec<f64>], tolerance: f64) {
     assert_eq!(found.len(), case.entries.len(), "{}", case.prefix);
     for (entry, found) in case.entries.iter().zip(found) {
         let expected = entry.results.concat();
@@ -164,21 +164,21 @@ pub fn compare(case: &Case, found: &[Vec<f64>], tolerance: f64) {
 const LONG: u64 = 800_000;
 
 /// Exports, compiles and compares: without optimisation, and with optimisation for this processor.
-pub fn agrees(case: &Case, arguments: &[&str]) {
-    let compilers = compilers();
+pub fn check_exported_code(case: &Case, arguments: &[&str]) {
+    let compilers = c_compilers();
     if compilers.is_empty() {
         println!("skipped: there is no C compiler");
         return;
     }
-    let folder = folder(case.prefix);
-    export(&folder, &[&["--prefix", case.prefix], arguments].concat());
+    let folder = test_folder(case.prefix);
+    export_c_code(&folder, &[&["--prefix", case.prefix], arguments].concat());
     let source = folder.join(format!("{}.c", case.prefix));
     let is_long = std::fs::metadata(source).expect("it is written").len() > LONG;
     let ways = [&["-O0"][..], &["-O1", "-march=native"]];
     for compiler in compilers {
         for flags in ways.into_iter().take(if is_long { 1 } else { 2 }) {
-            let found = printed(compiler, &folder, case.prefix, &program(case, "double"), flags);
-            compare(case, &found, case.tolerance);
+            let found = compile_and_run(compiler, &folder, case.prefix, &c_program(case, "double"), flags);
+            compare_results(case, &found, case.tolerance);
         }
     }
 }

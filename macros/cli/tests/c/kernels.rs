@@ -1,6 +1,6 @@
 //! Tests of exported CUDA code: compiled as C++, the kernels run on the processor, one state after the other.
 
-use super::compiled::{Case, Entry, compare, folder};
+use super::compiled::{Case, Entry, compare_results, test_folder};
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
@@ -9,14 +9,14 @@ use std::process::Command;
 const STATES: usize = 3;
 
 /// Returns the C++ compilers.
-pub fn compilers() -> Vec<&'static str> {
+pub fn available_compilers() -> Vec<&'static str> {
     let is_compiler_available =
         |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|o| o.status.success());
     ["g++", "clang++"].into_iter().filter(is_compiler_available).collect()
 }
 
 /// Returns a C++ program that prints the results of all calls for the last state of a batch.
-fn program(case: &Case, scalar: &str) -> String {
+fn kernel_test_program(case: &Case, scalar: &str) -> String {
     let p = case.prefix;
     // Other states have other values.
     let format_batch_numbers = |numbers: &[f64]| {
@@ -64,7 +64,7 @@ fn program(case: &Case, scalar: &str) -> String {
     for k in 0..6 {
         let _ = writeln!(text, "    static number r{k}[{most} * {STATES}];\n    (void)r{k};");
     }
-    case.entries.iter().for_each(|entry| call(&mut text, entry, case, &own));
+    case.entries.iter().for_each(|entry| write_kernel_call(&mut text, entry, case, &own));
     text.push_str("    return failed;\n}\n");
     text
 }
@@ -75,7 +75,7 @@ fn split_tables(tables: &str) -> Vec<String> {
     parts.map(|part| format!("{{{{{}", part.trim_end_matches(", "))).collect()
 }
 
-fn call(text: &mut String, entry: &Entry, case: &Case, own: &str) {
+fn write_kernel_call(text: &mut String, entry: &Entry, case: &Case, own: &str) {
     let p = case.prefix;
     let (name, frame) = match entry.name.split_once(' ') {
         Some((name, "0")) => (name, "0, ".to_string()),
@@ -100,7 +100,7 @@ fn call(text: &mut String, entry: &Entry, case: &Case, own: &str) {
 }
 
 /// Compiles a program without warnings, runs it, and returns the numbers that it prints.
-fn printed(compiler: &str, folder: &Path, p: &str, main: &str) -> Vec<Vec<f64>> {
+fn compile_and_run(compiler: &str, folder: &Path, p: &str, main: &str) -> Vec<Vec<f64>> {
     let (source, executable) = (folder.join("main.cpp"), folder.join(format!("main_{compiler}")));
     std::fs::write(&source, main).expect("a file of the tests'");
     let compiled = Command::new(compiler)
@@ -119,12 +119,12 @@ fn printed(compiler: &str, folder: &Path, p: &str, main: &str) -> Vec<Vec<f64>> 
 }
 
 /// Exports kernels, compiles them for the processor and compares.
-pub fn agrees(case: &Case, scalar: &str, arguments: &[&str]) {
-    let Some(compiler) = compilers().into_iter().next() else {
+pub fn check_exported_kernels(case: &Case, scalar: &str, arguments: &[&str]) {
+    let Some(compiler) = available_compilers().into_iter().next() else {
         println!("skipped: there is no C++ compiler");
         return;
     };
-    let folder = folder(&format!("cuda_{}_{scalar}", case.prefix));
+    let folder = test_folder(&format!("cuda_{}_{scalar}", case.prefix));
     let output = Command::new(env!("CARGO_BIN_EXE_linkwork"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .args(["export", "cuda", "--prefix", case.prefix, "--scalar", scalar, "--out"])
@@ -133,6 +133,6 @@ pub fn agrees(case: &Case, scalar: &str, arguments: &[&str]) {
         .output()
         .expect("the command starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let found = printed(compiler, &folder, case.prefix, &program(case, scalar));
-    compare(case, &found, case.tolerance);
+    let found = compile_and_run(compiler, &folder, case.prefix, &kernel_test_program(case, scalar));
+    compare_results(case, &found, case.tolerance);
 }

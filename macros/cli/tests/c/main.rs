@@ -7,13 +7,16 @@ mod kernels;
 #[path = "../mechanisms/mod.rs"]
 mod mechanisms;
 
-use compiled::{Case, Entry, agrees, compare, compilers, export, folder, printed, program};
+use compiled::{
+    Case, Entry, c_compilers, c_program, check_exported_code, compare_results, compile_and_run,
+    export_c_code, test_folder,
+};
 use linkwork::prelude::*;
 use linkwork::{Frames, discrete};
 use linkwork_models::{AnymalB, CartPole, FourBar, FurutaPendulum, PandaArm, SimpleHumanoid, Solo12, Ur5};
 use mechanisms::{Awkward, Balloon, Wing};
 
-fn numbers(n: usize, seed: f64) -> Vec<f64> {
+fn deterministic_numbers(n: usize, seed: f64) -> Vec<f64> {
     (0..n).map(|k| (seed + 1.7 * k as f64).sin()).collect()
 }
 
@@ -81,17 +84,18 @@ macro_rules! case {
     ($prefix:literal, $kind:ident, $m:expr, [$($p:expr),*], time($($t:ident = $time:expr)?), $functions:ident) => {{
         let m = &$m;
         $(let $t: f64 = $time;)?
-        let sample_numbers = |n: usize, seed: f64| numbers(n, seed);
-        let q = m.integrate(&m.neutral(), &vector::<{ $kind::NV }>(&sample_numbers($kind::NV, 0.3)));
-        let v = vector::<{ $kind::NV }>(&sample_numbers($kind::NV, 1.1));
-        let a = vector::<{ $kind::NV }>(&sample_numbers($kind::NV, 2.2));
-        let tau = vector::<{ $kind::NV }>(&sample_numbers($kind::NV, 0.7)) * 10.0;
-        let u = vector::<{ $kind::NU }>(&sample_numbers($kind::NU, 0.9));
+        let sample_numbers = |n: usize, seed: f64| deterministic_numbers(n, seed);
+        let displacement = vector_from_slice::<{ $kind::NV }>(&sample_numbers($kind::NV, 0.3));
+        let q = m.integrate(&m.neutral(), &displacement);
+        let v = vector_from_slice::<{ $kind::NV }>(&sample_numbers($kind::NV, 1.1));
+        let a = vector_from_slice::<{ $kind::NV }>(&sample_numbers($kind::NV, 2.2));
+        let tau = vector_from_slice::<{ $kind::NV }>(&sample_numbers($kind::NV, 0.7)) * 10.0;
+        let u = vector_from_slice::<{ $kind::NU }>(&sample_numbers($kind::NU, 0.9));
         let moved = m.integrate(&q, &a);
         let mut entries = functions!(m($($t)?), q, v, a, tau);
         entries.extend($functions!(m($($t)?), q, v, a, tau, u));
         let time: Option<f64> = [$($t)?].first().copied();
-        entries.extend(frames(m, time, q, v, a));
+        entries.extend(frame_calls(m, time, q, v, a));
         let _ = (&u, &tau);
         Case {
             prefix: $prefix,
@@ -140,7 +144,8 @@ macro_rules! steps {
         const NX: usize = 2 * $kind::NV;
         let (m, state) = (&$m, &$case.given);
         let t = $case.time.unwrap_or(0.0);
-        let (q, v, u) = (vector(&state[0].1), vector(&state[1].1), vector(&state[4].1));
+        let (q, v, u) =
+            (vector_from_slice(&state[0].1), vector_from_slice(&state[1].1), vector_from_slice(&state[4].1));
         let mut entries = Vec::new();
         macro_rules! by {
             ($method:ident, $step:literal, $transition:literal) => {{
@@ -168,7 +173,8 @@ macro_rules! steps {
 macro_rules! products {
     ($kind:ident, $m:expr, $case:ident $(, $t:expr)?) => {{
         let (m, state) = (&$m, &$case.given);
-        let (q, v, a, tau) = (vector(&state[0].1), vector(&state[1].1), vector(&state[2].1), vector(&state[3].1));
+        let (q, v) = (vector_from_slice(&state[0].1), vector_from_slice(&state[1].1));
+        let (a, tau) = (vector_from_slice(&state[2].1), vector_from_slice(&state[3].1));
         let w: SVector<f64, { $kind::NV }> = a;
         let (by_q, by_v) = m.inverse_dynamics_derivatives($($t,)? &q, &v, &a);
         let by_a = m.mass_matrix($($t,)? &q);
@@ -198,12 +204,12 @@ macro_rules! nothing {
     };
 }
 
-fn vector<const N: usize>(numbers: &[f64]) -> linkwork::nalgebra::SVector<f64, N> {
+fn vector_from_slice<const N: usize>(numbers: &[f64]) -> linkwork::nalgebra::SVector<f64, N> {
     linkwork::nalgebra::SVector::from_fn(|k, _| numbers[k])
 }
 
 /// Returns calls for the first and the last frame.
-fn frames<M, const NQ: usize, const NV: usize>(
+fn frame_calls<M, const NQ: usize, const NV: usize>(
     m: &M,
     time: Option<f64>,
     q: linkwork::nalgebra::SVector<f64, NQ>,
@@ -246,9 +252,9 @@ where
 fn arms() {
     let mut case = case!("arm", Ur5, Ur5, [], time(), of_trees);
     case.entries.extend(steps!(Ur5, Ur5, case));
-    agrees(&case, &["../../models/urdf/ur5.urdf"]);
+    check_exported_code(&case, &["../../models/urdf/ur5.urdf"]);
     let case = case!("panda_arm", PandaArm, PandaArm, [], time(), of_trees);
-    agrees(&case, &["../../models/src/arm7.rs", "--struct", "PandaArm"]);
+    check_exported_code(&case, &["../../models/src/arm7.rs", "--struct", "PandaArm"]);
 }
 
 /// Compares the kernels of mechanisms with plain and curved configuration spaces, parameters and time.
@@ -257,41 +263,45 @@ fn kernels_of_trees() {
     let mut case = case!("arm", Ur5, Ur5, [], time(), of_trees);
     case.entries.extend(steps!(Ur5, Ur5, case));
     case.entries.extend(products!(Ur5, Ur5, case));
-    kernels::agrees(&case, "double", &["../../models/urdf/ur5.urdf"]);
+    kernels::check_exported_kernels(&case, "double", &["../../models/urdf/ur5.urdf"]);
     case.tolerance = 2e-3;
-    kernels::agrees(&case, "float", &["../../models/urdf/ur5.urdf"]);
+    kernels::check_exported_kernels(&case, "float", &["../../models/urdf/ur5.urdf"]);
     let mut case = case!("solo12", Solo12, Solo12, [], time(), of_trees);
     case.entries.extend(products!(Solo12, Solo12, case));
-    kernels::agrees(&case, "double", &["../../models/urdf/solo12.urdf", "--with", "base = free"]);
+    kernels::check_exported_kernels(
+        &case,
+        "double",
+        &["../../models/urdf/solo12.urdf", "--with", "base = free"],
+    );
     let m = Balloon { mass: 3.0, buoyancy: 2.5 };
     let mut case = case!("balloon", Balloon, m, [3.0, 2.5], time(t = 0.7), of_trees);
     case.entries.extend(steps!(Balloon, m, case));
     case.entries.extend(products!(Balloon, m, case, 0.7));
-    kernels::agrees(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Balloon"]);
+    kernels::check_exported_kernels(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Balloon"]);
     let m = Awkward { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
     let mut case = case!("awkward", Awkward, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
     case.entries.extend(products!(Awkward, m, case));
-    kernels::agrees(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Awkward"]);
-    let ([drag], [lift], [moment]) = tables(true, true);
+    kernels::check_exported_kernels(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Awkward"]);
+    let ([drag], [lift], [moment]) = wing_tables(true, true);
     let m = Wing { mass: 2.0, lift, drag, moment };
     let mut case = case!("wing", Wing, m, [2.0], time(), of_trees);
     case.tables = [ARRAYS, TABLES[3]];
-    kernels::agrees(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Wing"]);
+    kernels::check_exported_kernels(&case, "double", &["tests/mechanisms/mod.rs", "--struct", "Wing"]);
 }
 
 #[test]
 fn quadrupeds() {
     let mut case = case!("solo12", Solo12, Solo12, [], time(), of_trees);
     case.entries.extend(steps!(Solo12, Solo12, case));
-    agrees(&case, &["../../models/urdf/solo12.urdf", "--with", "base = free"]);
+    check_exported_code(&case, &["../../models/urdf/solo12.urdf", "--with", "base = free"]);
     let case = case!("anymal", AnymalB, AnymalB, [], time(), of_trees);
-    agrees(&case, &["../../models/src/quadruped.rs", "--struct", "AnymalB"]);
+    check_exported_code(&case, &["../../models/src/quadruped.rs", "--struct", "AnymalB"]);
 }
 
 #[test]
 fn a_humanoid() {
     let case = case!("humanoid", SimpleHumanoid, SimpleHumanoid, [], time(), of_trees);
-    agrees(&Case { tolerance: 1e-9, ..case }, &["../../models/src/humanoid.rs"]);
+    check_exported_code(&Case { tolerance: 1e-9, ..case }, &["../../models/src/humanoid.rs"]);
 }
 
 #[test]
@@ -299,10 +309,10 @@ fn declared_mechanisms() {
     let m = CartPole { cart_mass: 1.2, pole_mass: 0.3, pole_length: 0.8, rail_damping: 0.4 };
     let mut case = case!("cart_pole", CartPole, m, [1.2, 0.3, 0.8, 0.4], time(), of_trees);
     case.entries.extend(steps!(CartPole, m, case));
-    agrees(&case, &["../../models/src/cart_pole.rs"]);
+    check_exported_code(&case, &["../../models/src/cart_pole.rs"]);
     let m = FurutaPendulum { g: 9.8, arm_mass: 0.7, arm_length: 0.5, mass: 0.3, length: 0.9 };
     let case = case!("furuta", FurutaPendulum, m, [9.8, 0.7, 0.5, 0.3, 0.9], time(), nothing);
-    agrees(&case, &["../../models/src/furuta_pendulum.rs"]);
+    check_exported_code(&case, &["../../models/src/furuta_pendulum.rs"]);
 }
 
 #[test]
@@ -313,9 +323,12 @@ fn names_that_c_does_not_have() {
         let (_, numbers) = case.given.iter().find(|(known, _)| *known == name).expect("an argument");
         numbers.clone()
     };
-    let (q, v, a) =
-        (vector(&argument_values("q")), vector(&argument_values("v")), vector(&argument_values("a")));
-    let (tau, u) = (vector(&argument_values("tau")), vector(&argument_values("u")));
+    let (q, v, a) = (
+        vector_from_slice(&argument_values("q")),
+        vector_from_slice(&argument_values("v")),
+        vector_from_slice(&argument_values("a")),
+    );
+    let (tau, u) = (vector_from_slice(&argument_values("tau")), vector_from_slice(&argument_values("u")));
     let (qq, qv, vv, qa) = m.inverse_dynamics_second_derivatives(&q, &v, &a, &tau);
     case.entries.extend([
         scalar!("short", "q", m.short(&q)),
@@ -328,7 +341,7 @@ fn names_that_c_does_not_have() {
         entry!("inverse_dynamics_second_derivatives", "q, v, a, tau", qq, qv, vv, qa),
     ]);
     case.entries.extend(steps!(Awkward, m, case));
-    agrees(&case, &["tests/mechanisms/mod.rs", "--struct", "Awkward"]);
+    check_exported_code(&case, &["tests/mechanisms/mod.rs", "--struct", "Awkward"]);
 }
 
 #[test]
@@ -336,18 +349,18 @@ fn what_is_driven_in_time() {
     let m = Balloon { mass: 3.0, buoyancy: 2.5 };
     let mut case = case!("balloon", Balloon, m, [3.0, 2.5], time(t = 0.7), of_trees);
     case.entries.extend(steps!(Balloon, m, case));
-    agrees(&case, &["tests/mechanisms/mod.rs", "--struct", "Balloon"]);
+    check_exported_code(&case, &["tests/mechanisms/mod.rs", "--struct", "Balloon"]);
 }
 
 /// Returns tables of [`Wing`]; `ARRAYS` has the same values in C.
-fn tables(smooth: bool, extrapolated: bool) -> ([Table<1>; 1], [Table<2>; 1], [Table<3>; 1]) {
+fn wing_tables(smooth: bool, extrapolated: bool) -> ([Table<1>; 1], [Table<2>; 1], [Table<3>; 1]) {
     let drag = Table::new([&[-1.0, 0.2, 0.5, 2.0]], &[0.3, -0.1, 0.4, 0.2]);
     let lift = Table::new([&[-0.2, 0.1, 0.5], &[-1.0, 1.0]], &[0.1, 0.2, 0.7, -0.3, 0.4, 0.9]);
     let moment = Table::new(
         [&[0.0, 1.0], &[-1.0, 0.0, 1.5], &[0.0, 0.3]],
         &[0.1, 0.2, 0.7, -0.3, 0.4, 0.9, 0.15, 0.25, 0.75, -0.35, 0.45, 0.95],
     );
-    fn shaped<const N: usize>(
+    fn with_table_options<const N: usize>(
         table: Result<Table<N>, linkwork::TableError>,
         smooth: bool,
         on: bool,
@@ -357,9 +370,9 @@ fn tables(smooth: bool, extrapolated: bool) -> ([Table<1>; 1], [Table<2>; 1], [T
         [if on { table.extrapolated() } else { table }]
     }
     (
-        shaped(drag, smooth, extrapolated),
-        shaped(lift, smooth, extrapolated),
-        shaped(moment, smooth, extrapolated),
+        with_table_options(drag, smooth, extrapolated),
+        with_table_options(lift, smooth, extrapolated),
+        with_table_options(moment, smooth, extrapolated),
     )
 }
 
@@ -387,7 +400,7 @@ fn tables_are_looked_up_alike() {
     for (k, (prefix, c)) in
         ["wing", "wing_on", "wing_smooth", "wing_smooth_on"].into_iter().zip(TABLES).enumerate()
     {
-        let ([drag], [lift], [moment]) = tables(k > 1, k % 2 == 1);
+        let ([drag], [lift], [moment]) = wing_tables(k > 1, k % 2 == 1);
         let m = Wing { mass: 2.0, lift, drag, moment };
         let mut case = case!("wing", Wing, m, [2.0], time(), of_trees);
         case.prefix = prefix;
@@ -396,7 +409,7 @@ fn tables_are_looked_up_alike() {
         // the slope of a table is discontinuous.
         case.tolerance = 1e-9;
         case.entries.extend(steps!(Wing, m, case));
-        agrees(&case, &["tests/mechanisms/mod.rs", "--struct", "Wing"]);
+        check_exported_code(&case, &["tests/mechanisms/mod.rs", "--struct", "Wing"]);
     }
 }
 
@@ -406,12 +419,12 @@ fn tables_are_looked_up_alike() {
 fn closed_loops_keep_what_needs_no_solution() {
     let m = FourBar { g: 9.8, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
     let mut case = case!("four_bar", FourBar, m, [9.8, 1.0, 1.0, 2.0, 2.5, 3.0], time(), nothing);
-    let q = vector(&case.given[0].1);
+    let q = vector_from_slice(&case.given[0].1);
     case.entries.push(entry!("constraint_jacobian", "q", m.constraint_jacobian(&q)));
     case.entries.push(entry!("constraint_residuals", "q", m.constraint_residuals(&q)));
-    agrees(&case, &["../../models/src/four_bar.rs"]);
-    if !compilers().is_empty() {
-        let header = std::fs::read_to_string(folder("four_bar").join("four_bar.h")).expect("the header");
+    check_exported_code(&case, &["../../models/src/four_bar.rs"]);
+    if !c_compilers().is_empty() {
+        let header = std::fs::read_to_string(test_folder("four_bar").join("four_bar.h")).expect("the header");
         assert!(header.contains("Not in C:") && !header.contains("four_bar_forward_dynamics("), "{header}");
     }
 }
@@ -419,26 +432,26 @@ fn closed_loops_keep_what_needs_no_solution() {
 #[test]
 fn in_single_precision() {
     let case = case!("single", Ur5, Ur5, [], time(), of_trees);
-    let Some(compiler) = compilers().into_iter().next() else {
+    let Some(compiler) = c_compilers().into_iter().next() else {
         println!("skipped: there is no C compiler");
         return;
     };
-    let folder = folder("single");
-    export(&folder, &["--prefix", "single", "--scalar", "float", "../../models/urdf/ur5.urdf"]);
+    let folder = test_folder("single");
+    export_c_code(&folder, &["--prefix", "single", "--scalar", "float", "../../models/urdf/ur5.urdf"]);
     let flags = ["-O2", "-Wdouble-promotion", "-Wfloat-conversion"];
-    let found = printed(compiler, &folder, "single", &program(&case, "float"), &flags);
-    compare(&case, &found, 2e-3);
+    let found = compile_and_run(compiler, &folder, "single", &c_program(&case, "float"), &flags);
+    compare_results(&case, &found, 2e-3);
 }
 
 /// Checks that the generated code compiles for mechanisms whose names are those of helper functions, header
 /// functions, arguments or types.
 #[test]
 fn any_name_of_a_mechanism_compiles() {
-    let Some(compiler) = compilers().into_iter().next() else {
+    let Some(compiler) = c_compilers().into_iter().next() else {
         println!("skipped: there is no C compiler");
         return;
     };
-    let folder = folder("names");
+    let folder = test_folder("names");
     // Some names once clashed with helper functions of the generated code.
     for (k, name) in [
         "Ball", "Free", "SinCos", "MulAdd", "Lw", "LwBall", "Which", "Given", "Product", "Arg", "Q", "W",
@@ -455,7 +468,7 @@ fn any_name_of_a_mechanism_compiles() {
              #[joint(ground -> stone)]\n    flight: {joint},\n}}\n"
         );
         std::fs::write(&source, text).expect("a file of the tests'");
-        export(&folder, &[source.to_str().expect("a path"), "--casadi"]);
+        export_c_code(&folder, &[source.to_str().expect("a path"), "--casadi"]);
         let files =
             std::fs::read_dir(&folder).expect("the folder").map(|entry| entry.expect("an entry").path());
         for file in files.filter(|path| path.extension().is_some_and(|end| end == "c")) {

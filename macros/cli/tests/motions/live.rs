@@ -1,6 +1,6 @@
 //! Tests of live pages: trajectories equal those of the command, and closed forms of contacts.
 
-use super::{folder, linkwork, rows};
+use super::{rows_of_log, run_linkwork, test_folder};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -22,7 +22,7 @@ Simulation.open({ ...motion.simulated, module: motion.module }).then(sim => {
 "#;
 
 /// Returns the first of these programs on the path.
-fn program(names: &[&str]) -> Option<PathBuf> {
+fn first_program_on_path(names: &[&str]) -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     std::env::split_paths(&path)
         .flat_map(|folder| names.iter().map(move |name| folder.join(name)))
@@ -31,10 +31,11 @@ fn program(names: &[&str]) -> Option<PathBuf> {
 
 /// Writes the page of a mechanism, and returns its state and energies after some seconds; `None` without
 /// Node.
-fn simulated(here: &Path, given: &[&str], seconds: &str, tolerance: &str) -> Option<Vec<f64>> {
-    let (status, _, stderr) = linkwork(here, &[&["view", "--live", "--out", "page.html"], given].concat());
+fn simulate_page(here: &Path, given: &[&str], seconds: &str, tolerance: &str) -> Option<Vec<f64>> {
+    let (status, _, stderr) =
+        run_linkwork(here, &[&["view", "--live", "--out", "page.html"], given].concat());
     assert_eq!(status, 0, "{stderr}");
-    let Some(node) = program(&["node"]) else {
+    let Some(node) = first_program_on_path(&["node"]) else {
         println!("skipped: no Node on the path");
         return None;
     };
@@ -53,7 +54,7 @@ const MODELS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models");
 /// order, and of a robot.
 #[test]
 fn pages_and_the_command_compute_the_same_trajectories() {
-    let here = folder("live");
+    let here = test_folder("live");
     let model_path = |file: &str| format!("{MODELS}/{file}");
     let [loop_, disk, rotor, arm] =
         ["src/four_bar.rs", "src/rolling_disk.rs", "src/quadrotor.rs", "urdf/ur5.urdf"].map(model_path);
@@ -72,11 +73,11 @@ fn pages_and_the_command_compute_the_same_trajectories() {
     for (file, values) in cases {
         let set: Vec<&str> = values.split(' ').flat_map(|value| ["--set", value]).collect();
         let given = [&[file], &set[..]].concat();
-        let Some(found) = simulated(&here, &given, "0.5", "1e-12") else { return };
+        let Some(found) = simulate_page(&here, &given, "0.5", "1e-12") else { return };
         let times = ["--duration", "0.5", "--every", "0.5", "--tolerance", "1e-13"];
-        let (status, log, stderr) = linkwork(&here, &[&["simulate"], &given[..], &times].concat());
+        let (status, log, stderr) = run_linkwork(&here, &[&["simulate"], &given[..], &times].concat());
         assert_eq!(status, 0, "{stderr}");
-        let rows = rows(&log);
+        let rows = rows_of_log(&log);
         // The command prints inputs behind the state; the page prints energies.
         let expected = &rows.last().unwrap()[1..];
         let states = found.len() - 3;
@@ -92,7 +93,7 @@ fn pages_and_the_command_compute_the_same_trajectories() {
 /// its kinetic energy is `m (5/7 v)² (1 + 2/5) / 2`. All of them come to rest on the floor, not in it.
 #[test]
 fn contacts_of_pages_have_their_closed_forms() {
-    let here = folder("live_contacts");
+    let here = test_folder("live_contacts");
     let text = "#[mechanism(gravity = -9.81 * z)]
         struct Bouncing {
             #[body(mass = 1, inertia = sphere(1, 0.1))] ball: Body,
@@ -114,7 +115,7 @@ fn contacts_of_pages_have_their_closed_forms() {
     std::fs::write(here.join("contacts.rs"), text).unwrap();
     let simulate_with_values = |name: &str, values: &[&str], seconds: f64| {
         let set: Vec<&str> = values.iter().flat_map(|value| ["--set", value]).collect();
-        simulated(
+        simulate_page(
             &here,
             &[&["contacts.rs", "--struct", name], &set[..]].concat(),
             &seconds.to_string(),
@@ -140,9 +141,9 @@ fn contacts_of_pages_have_their_closed_forms() {
 /// Checks that pages are self-contained, and the messages for mechanisms that a page cannot simulate.
 #[test]
 fn pages_that_simulate_need_nothing_else() {
-    let here = folder("live_page");
+    let here = test_folder("live_page");
     let disk = format!("{MODELS}/src/double_pendulum.rs");
-    let (status, _, stderr) = linkwork(&here, &["view", "--live", &disk, "--out", "page.html"]);
+    let (status, _, stderr) = run_linkwork(&here, &["view", "--live", &disk, "--out", "page.html"]);
     assert_eq!(
         (status, stderr.as_str()),
         (0, "linkwork: parameters without a value begin at g = 9.81, m1 = 1, m2 = 1, l1 = 1, l2 = 1\n")
@@ -155,7 +156,7 @@ fn pages_that_simulate_need_nothing_else() {
             && html.contains("<math>")
     );
     let fragment = ["view", "--live", "--fragment", &disk, "--out", "part.html"];
-    assert_eq!(linkwork(&here, &fragment).0, 0);
+    assert_eq!(run_linkwork(&here, &fragment).0, 0);
     let part = std::fs::read_to_string(here.join("part.html")).unwrap();
     // Markdown ends a block of HTML at an empty line, except in styles and scripts.
     let (_, element) = part.split_once("</style>\n").unwrap();
@@ -166,21 +167,22 @@ fn pages_that_simulate_need_nothing_else() {
          #[joint(ground -> rod, about = z)] pin: Pin }",
     )
     .unwrap();
-    let (status, _, stderr) = linkwork(&here, &["view", "--live", "still.rs"]);
+    let (status, _, stderr) = run_linkwork(&here, &["view", "--live", "still.rs"]);
     assert!(status == 2 && stderr.contains("no masses"), "{stderr}");
-    let (status, _, stderr) = linkwork(&here, &["view", "--live", &disk, "--duration", "2"]);
+    let (status, _, stderr) = run_linkwork(&here, &["view", "--live", &disk, "--duration", "2"]);
     assert!(status == 2 && stderr.contains("--duration"), "{stderr}");
 }
 
 /// Checks the page in a browser, if one is installed: it simulates, draws, and reports no error.
 #[test]
 fn a_browser_simulates_the_page() {
-    let here = folder("live_browser");
+    let here = test_folder("live_browser");
     let disk = format!("{MODELS}/src/double_pendulum.rs");
     let (status, _, stderr) =
-        linkwork(&here, &["view", "--live", &disk, "--set", "q.shoulder=1", "--out", "page.html"]);
+        run_linkwork(&here, &["view", "--live", &disk, "--set", "q.shoulder=1", "--out", "page.html"]);
     assert_eq!(status, 0, "{stderr}");
-    let Some(browser) = program(&["chromium", "chromium-browser", "google-chrome", "chrome"]) else {
+    let Some(browser) = first_program_on_path(&["chromium", "chromium-browser", "google-chrome", "chrome"])
+    else {
         println!("skipped: no Chromium on the path");
         return;
     };
@@ -208,18 +210,18 @@ fn a_browser_simulates_the_page() {
 /// Checks that each line of a list has a page and an entry of the index, and the message for a wrong line.
 #[test]
 fn a_gallery_has_an_index() {
-    let here = folder("gallery");
+    let here = test_folder("gallery");
     let list = "# two pages\n\ndouble.rs --set q.shoulder=1\n\
                 double.rs --set q.elbow=1 --with \"derivatives\"\n";
     std::fs::write(here.join("list.txt"), list).unwrap();
     std::fs::copy(format!("{MODELS}/src/double_pendulum.rs"), here.join("double.rs")).unwrap();
-    let (status, out, stderr) = linkwork(&here, &["gallery", "list.txt", "--out", "pages"]);
+    let (status, out, stderr) = run_linkwork(&here, &["gallery", "list.txt", "--out", "pages"]);
     assert_eq!((status, out.as_str()), (0, "pages/index.html\n"), "{stderr}");
     let index = std::fs::read_to_string(here.join("pages/index.html")).unwrap();
     for page in ["DoublePendulum.html", "DoublePendulum-4.html"] {
         assert!(index.contains(&format!("<a href=\"{page}\">")) && here.join("pages").join(page).is_file());
     }
     std::fs::write(here.join("bad.txt"), "double.rs --set q.elbw=1\n").unwrap();
-    let (status, _, stderr) = linkwork(&here, &["gallery", "bad.txt"]);
+    let (status, _, stderr) = run_linkwork(&here, &["gallery", "bad.txt"]);
     assert!(status == 2 && stderr.contains("bad.txt:1: `--set`: there is no `q.elbw`"), "{stderr}");
 }

@@ -26,13 +26,14 @@ pub enum FactorScope {
 }
 
 /// Extracts common factors from a sum and from the sums in its items.
-pub fn gathered(order: &Order, mut items: Vec<Item>, scope: FactorScope) -> Vec<Item> {
-    let kept = if scope == FactorScope::Kinds { order.rates.or(order.positions) } else { Monomial::ONE };
+pub fn factor_sum_and_items(order: &Order, mut items: Vec<Item>, scope: FactorScope) -> Vec<Item> {
+    let kept =
+        if scope == FactorScope::Kinds { order.rates.union_of_bits(order.positions) } else { Monomial::ONE };
     let rules = Rules { order, kept, room: NESTED };
     factor_sums(&rules, &mut items);
-    let degree_of_rates = |item: &Item| item.factor.only(order.rates).degree();
+    let degree_of_rates = |item: &Item| item.factor.restrict_to_mask(order.rates).degree();
     let mut kinds: Vec<u32> = match scope {
-        FactorScope::All => return gather(&rules, items),
+        FactorScope::All => return factor_sum(&rules, items),
         FactorScope::Kinds => items.iter().map(degree_of_rates).collect(),
         FactorScope::None => return items,
     };
@@ -41,7 +42,7 @@ pub fn gathered(order: &Order, mut items: Vec<Item>, scope: FactorScope) -> Vec<
     for n in kinds {
         let (alike, rest) = items.into_iter().partition(|item| degree_of_rates(item) == n);
         items = rest;
-        out.extend(if n == 0 { alike } else { gather(&rules, alike) });
+        out.extend(if n == 0 { alike } else { factor_sum(&rules, alike) });
     }
     out
 }
@@ -57,31 +58,31 @@ struct Rules<'a> {
 
 impl Rules<'_> {
     /// Returns the rules for a sum in parentheses, which may contain one level of parentheses less.
-    fn inner(&self) -> Self {
+    fn rules_in_parentheses(&self) -> Self {
         Rules { room: self.room.saturating_sub(1), ..*self }
     }
 }
 
 /// Extracts common factors from the sums within items.
 fn factor_sums(rules: &Rules<'_>, items: &mut [Item]) {
-    let inner = rules.inner();
+    let inner = rules.rules_in_parentheses();
     for item in items {
         for sum in item.sums.iter_mut().filter(|sum| sum.power == 1) {
             let mut items = std::mem::take(&mut sum.items);
             factor_sums(&inner, &mut items);
-            sum.items = gather(&inner, items);
+            sum.items = factor_sum(&inner, items);
         }
-        unwrap(item);
+        unwrap_single_sums(item);
     }
 }
 
 /// Merges sums of a single item into the item that they are a factor of.
-fn unwrap(item: &mut Item) {
+fn unwrap_single_sums(item: &mut Item) {
     for sum in std::mem::take(&mut item.sums) {
         match sum.items.as_slice() {
             [only]
                 if sum.power == 1
-                    && let Some(factor) = item.factor.times(only.factor) =>
+                    && let Some(factor) = item.factor.checked_product(only.factor) =>
             {
                 item.coefficient *= only.coefficient;
                 item.factor = factor;
@@ -94,14 +95,14 @@ fn unwrap(item: &mut Item) {
 
 /// Extracts common factors from a sum, except the atoms in `rules.kept`. In a short sum, every group is tried
 /// as the first one, and the shortest result is used.
-fn gather(rules: &Rules<'_>, items: Vec<Item>) -> Vec<Item> {
-    let mut best = greedily(rules, items.clone());
+fn factor_sum(rules: &Rules<'_>, items: Vec<Item>) -> Vec<Item> {
+    let mut best = factor_greedily(rules, items.clone());
     if items.len() > FEW {
         return best;
     }
-    for group in groups(rules, &items) {
-        let found = greedily(rules, replace_group(rules, items.clone(), group));
-        if rules.order.size(&found) < rules.order.size(&best) {
+    for group in shortening_groups(rules, &items) {
+        let found = factor_greedily(rules, replace_group(rules, items.clone(), group));
+        if rules.order.printed_length(&found) < rules.order.printed_length(&best) {
             best = found;
         }
     }
@@ -109,10 +110,10 @@ fn gather(rules: &Rules<'_>, items: Vec<Item>) -> Vec<Item> {
 }
 
 /// Repeatedly takes out the common factor that saves the most symbols.
-fn greedily(rules: &Rules<'_>, mut items: Vec<Item>) -> Vec<Item> {
+fn factor_greedily(rules: &Rules<'_>, mut items: Vec<Item>) -> Vec<Item> {
     while items.len() <= MOST {
         let mut best: Option<Group> = None;
-        for group in groups(rules, &items) {
+        for group in shortening_groups(rules, &items) {
             if best.as_ref().is_none_or(|best| group.saved > best.saved) {
                 best = Some(group);
             }
@@ -136,9 +137,9 @@ struct Group {
 fn replace_group(rules: &Rules<'_>, mut items: Vec<Item>, group: Group) -> Vec<Item> {
     let Group { members, mut whole, .. } = group;
     if let Some(last) = whole.sums.last_mut() {
-        last.items = greedily(&rules.inner(), std::mem::take(&mut last.items));
+        last.items = factor_greedily(&rules.rules_in_parentheses(), std::mem::take(&mut last.items));
     }
-    unwrap(&mut whole);
+    unwrap_single_sums(&mut whole);
     let (mut k, first) = (0, members.first().copied());
     items.retain(|_| {
         k += 1;
@@ -152,19 +153,19 @@ fn replace_group(rules: &Rules<'_>, mut items: Vec<Item>, group: Group) -> Vec<I
 
 /// Returns the groups of items whose factored form is shorter than their sum, within the allowed nesting
 /// depth.
-fn groups(rules: &Rules<'_>, items: &[Item]) -> Vec<Group> {
-    let size_of_items = |items: &[Item]| rules.order.size(items);
+fn shortening_groups(rules: &Rules<'_>, items: &[Item]) -> Vec<Group> {
+    let size_of_items = |items: &[Item]| rules.order.printed_length(items);
     let group_of_members = |members: Vec<usize>| {
         let before: Vec<Item> = members.iter().filter_map(|k| items.get(*k)).cloned().collect();
-        let whole = combined(rules, &before, members.len() == items.len())?;
+        let whole = combine_items(rules, &before, members.len() == items.len())?;
         let saved = size_of_items(&before).checked_sub(size_of_items(std::slice::from_ref(&whole)))?;
-        (saved > 0 && nested(&whole) <= rules.room).then_some(Group { members, whole, saved })
+        (saved > 0 && nesting_depth(&whole) <= rules.room).then_some(Group { members, whole, saved })
     };
-    candidates(rules, items).into_iter().filter_map(group_of_members).collect()
+    candidate_item_sets(rules, items).into_iter().filter_map(group_of_members).collect()
 }
 
 /// Returns the sets of at least two items that share an atom or a sum.
-fn candidates(rules: &Rules<'_>, items: &[Item]) -> Vec<Vec<usize>> {
+fn candidate_item_sets(rules: &Rules<'_>, items: &[Item]) -> Vec<Vec<usize>> {
     let mut found: Vec<Vec<usize>> = Vec::new();
     let mut add = |has: &dyn Fn(&Item) -> bool| {
         let members: Vec<usize> = (0..items.len()).filter(|k| has(&items[*k])).collect();
@@ -172,11 +173,13 @@ fn candidates(rules: &Rules<'_>, items: &[Item]) -> Vec<Vec<usize>> {
             found.push(members);
         }
     };
-    for atom in rules.order.atoms.iter().filter(|k| !Monomial::atom(**k).meets(rules.kept)) {
-        add(&|item| item.factor.power(*atom) > 0);
+    for atom in
+        rules.order.atoms.iter().filter(|k| !Monomial::first_power_of_atom(**k).intersects_mask(rules.kept))
+    {
+        add(&|item| item.factor.power_of_atom(*atom) > 0);
     }
     for sum in items.iter().flat_map(|item| &item.sums) {
-        add(&|item| item.sums.iter().any(|other| ratio(sum, other).is_some()));
+        add(&|item| item.sums.iter().any(|other| sign_ratio_of_sums(sum, other).is_some()));
     }
     found
 }
@@ -184,9 +187,12 @@ fn candidates(rules: &Rules<'_>, items: &[Item]) -> Vec<Vec<usize>> {
 /// Returns the sum of items as one item: their common factors times the sum of the quotients. The first
 /// summand in parentheses is positive. If the first summand is a negative multiple of an acceleration, and
 /// `items` are not the whole sum, the sign is taken out; otherwise a positive summand is moved to the front.
-fn combined(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item> {
+fn combine_items(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item> {
     let first = items.first()?;
-    let factor = items.iter().fold(first.factor, |m, item| m.common(item.factor)).cleared(rules.kept);
+    let factor = items
+        .iter()
+        .fold(first.factor, |m, item| m.greatest_common_divisor(item.factor))
+        .clear_mask(rules.kept);
     let mut sums: Vec<Sum> = Vec::new();
     let mut left: Vec<Item> = items
         .iter()
@@ -199,7 +205,9 @@ fn combined(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item> {
     for sum in &first.sums {
         let places: Option<Vec<(usize, f64)>> = left
             .iter()
-            .map(|item| item.sums.iter().enumerate().find_map(|(k, other)| Some((k, ratio(sum, other)?))))
+            .map(|item| {
+                item.sums.iter().enumerate().find_map(|(k, other)| Some((k, sign_ratio_of_sums(sum, other)?)))
+            })
             .collect();
         let Some(places) = places else { continue };
         for (item, (k, sign)) in left.iter_mut().zip(places) {
@@ -208,15 +216,15 @@ fn combined(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item> {
         }
         sums.push(sum.clone());
     }
-    let mut inner: Vec<Item> = left.into_iter().flat_map(opened).collect();
+    let mut inner: Vec<Item> = left.into_iter().flat_map(open_parentheses).collect();
     let mut number = common_number(inner.iter().map(|item| item.coefficient));
     let is_negative_acceleration_term =
-        |item: &Item| item.coefficient < 0.0 && item.factor.meets(rules.order.accelerations);
+        |item: &Item| item.coefficient < 0.0 && item.factor.intersects_mask(rules.order.accelerations);
     if !whole && inner.first().is_some_and(is_negative_acceleration_term) {
         number = -number.abs();
     }
     inner.iter_mut().for_each(|item| item.coefficient /= number);
-    let mut inner: Vec<Item> = inner.into_iter().flat_map(opened).collect();
+    let mut inner: Vec<Item> = inner.into_iter().flat_map(open_parentheses).collect();
     if let Some(positive) = inner.iter().position(|item| item.coefficient > 0.0) {
         inner[..=positive].rotate_right(1);
     }
@@ -225,7 +233,7 @@ fn combined(rules: &Rules<'_>, items: &[Item], whole: bool) -> Option<Item> {
 }
 
 /// Removes the parentheses of a sum whose only factor is a sign. Any other item is returned unchanged.
-fn opened(item: Item) -> Vec<Item> {
+fn open_parentheses(item: Item) -> Vec<Item> {
     match item.sums.as_slice() {
         [sum] if sum.power == 1 && item.factor == Monomial::ONE && is_close(item.coefficient.abs(), 1.0) => {
             let signed =
@@ -237,18 +245,19 @@ fn opened(item: Item) -> Vec<Item> {
 }
 
 /// Returns the nesting depth of the parentheses of an item.
-fn nested(item: &Item) -> usize {
-    let inner = item.sums.iter().flat_map(|sum| &sum.items).map(nested).max();
+fn nesting_depth(item: &Item) -> usize {
+    let inner = item.sums.iter().flat_map(|sum| &sum.items).map(nesting_depth).max();
     inner.map_or(0, |n| n + 1)
 }
 
 /// Returns one if two sums are equal, minus one if they are opposite. The order of their items does not
 /// matter.
-fn ratio(a: &Sum, b: &Sum) -> Option<f64> {
+fn sign_ratio_of_sums(a: &Sum, b: &Sum) -> Option<f64> {
     if a.power != b.power || a.items.len() != b.items.len() {
         return None;
     }
-    let are_equal_with_sign = |sign: f64| a.items.iter().all(|x| b.items.iter().any(|y| equal(x, y, sign)));
+    let are_equal_with_sign =
+        |sign: f64| a.items.iter().all(|x| b.items.iter().any(|y| is_equal_with_sign(x, y, sign)));
     match (are_equal_with_sign(1.0), are_equal_with_sign(-1.0)) {
         (true, _) => Some(1.0),
         (_, true) => Some(if a.power.is_multiple_of(2) { 1.0 } else { -1.0 }),
@@ -257,11 +266,11 @@ fn ratio(a: &Sum, b: &Sum) -> Option<f64> {
 }
 
 /// Returns whether the second item is the first one times this sign.
-fn equal(a: &Item, b: &Item, sign: f64) -> bool {
+fn is_equal_with_sign(a: &Item, b: &Item, sign: f64) -> bool {
     a.factor == b.factor
         && a.sums.len() == b.sums.len()
         && is_close(a.coefficient * sign, b.coefficient)
-        && a.sums.iter().zip(&b.sums).all(|(x, y)| ratio(x, y) == Some(1.0))
+        && a.sums.iter().zip(&b.sums).all(|(x, y)| sign_ratio_of_sums(x, y) == Some(1.0))
 }
 
 #[cfg(test)]

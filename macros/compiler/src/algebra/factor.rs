@@ -1,7 +1,7 @@
 //! Grouping of polynomials as in textbooks: by rates, then by functions of positions, with parameters as
 //! common factors. Decides the order in which terms and factors are printed, but produces no text.
 
-use super::common::{FactorScope, gathered};
+use super::common::{FactorScope, factor_sum_and_items};
 use super::item::{Item, Order, Sum, common_number, is_close};
 use super::polynomial::{Monomial, Polynomial, Rank, Ring, Term};
 
@@ -11,12 +11,12 @@ const NOISE: f64 = 1e-11;
 /// Removes terms that are rounding error: their coefficients are small relative to other terms with the same
 /// parameters and the same degrees in velocities and accelerations.
 pub fn without_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
-    let parameters = ring.mask(|_, rank| rank == Rank::Parameter);
-    let rates = ring.mask(|_, rank| rank >= Rank::Rate);
-    let accelerations = ring.mask(|_, rank| rank == Rank::Acceleration);
+    let parameters = ring.mask_of_atoms(|_, rank| rank == Rank::Parameter);
+    let rates = ring.mask_of_atoms(|_, rank| rank >= Rank::Rate);
+    let accelerations = ring.mask_of_atoms(|_, rank| rank == Rank::Acceleration);
     let kind_of_term = |t: &Term| {
-        let rates = t.monomial.only(rates);
-        (t.monomial.only(parameters), rates.degree(), rates.meets(accelerations))
+        let rates = t.monomial.restrict_to_mask(rates);
+        (t.monomial.restrict_to_mask(parameters), rates.degree(), rates.intersects_mask(accelerations))
     };
     let mut largest: Vec<((Monomial, u32, bool), f64)> = Vec::new();
     for term in &p.terms {
@@ -35,33 +35,33 @@ pub fn without_noise(ring: &Ring, p: &Polynomial) -> Polynomial {
 
 /// Returns the items of a polynomial in printing order. `scope` selects the items from which common factors
 /// are taken out.
-pub fn items(ring: &Ring, order: &Order, p: &Polynomial, scope: FactorScope) -> Vec<Item> {
+pub fn items_of_polynomial(ring: &Ring, order: &Order, p: &Polynomial, scope: FactorScope) -> Vec<Item> {
     let mut items = Vec::new();
-    let mut groups = grouped(&p.terms, order.rates);
+    let mut groups = group_by_mask(&p.terms, order.rates);
     order.sort_groups(ring, &mut groups);
     for (rates, terms) in groups {
         if rates != Monomial::ONE {
-            items.push(item(order, &terms));
+            items.push(factored_item(order, &terms));
             continue;
         }
-        let mut groups = grouped(&terms, order.functions);
+        let mut groups = group_by_mask(&terms, order.functions);
         order.sort_groups(ring, &mut groups);
         groups.sort_by_key(|(functions, _)| *functions != Monomial::ONE);
         for (functions, terms) in groups {
             match functions {
                 Monomial::ONE => plain_items(order, terms, &mut items),
-                _ => items.push(item(order, &terms)),
+                _ => items.push(factored_item(order, &terms)),
             }
         }
     }
-    gathered(order, items, scope)
+    factor_sum_and_items(order, items, scope)
 }
 
 /// Groups terms by the factors that are in a mask.
-fn grouped(terms: &[Term], mask: Monomial) -> Vec<(Monomial, Vec<Term>)> {
+fn group_by_mask(terms: &[Term], mask: Monomial) -> Vec<(Monomial, Vec<Term>)> {
     let mut groups: Vec<(Monomial, Vec<Term>)> = Vec::new();
     for term in terms {
-        let key = term.monomial.only(mask);
+        let key = term.monomial.restrict_to_mask(mask);
         match groups.iter_mut().find(|(k, _)| *k == key) {
             Some((_, group)) => group.push(*term),
             None => groups.push((key, vec![*term])),
@@ -73,57 +73,60 @@ fn grouped(terms: &[Term], mask: Monomial) -> Vec<(Monomial, Vec<Term>)> {
 /// Appends the items of terms in parameters and positions alone: first squares of linear forms, then groups
 /// with identical positions, then groups with any common factor.
 fn plain_items(order: &Order, mut terms: Vec<Term>, items: &mut Vec<Item>) {
-    order.sort(&mut terms);
-    while let Some(square) = terms.iter().find_map(|t| square(order, t, &terms)) {
-        let all = expanded(&square);
+    order.sort_terms(&mut terms);
+    while let Some(square) = terms.iter().find_map(|t| find_squared_sum(order, t, &terms)) {
+        let all = expand_square(&square);
         terms.retain(|t| !all.iter().any(|s| s.monomial == t.monomial));
         items.push(square);
     }
-    let (alike, mut terms): (Vec<_>, Vec<_>) = grouped(&terms, order.positions)
+    let (alike, mut terms): (Vec<_>, Vec<_>) = group_by_mask(&terms, order.positions)
         .into_iter()
         .partition(|(positions, group)| *positions != Monomial::ONE && group.len() > 1);
-    items.extend(alike.iter().map(|(_, group)| item(order, group)));
+    items.extend(alike.iter().map(|(_, group)| factored_item(order, group)));
     let mut terms: Vec<Term> = terms.drain(..).flat_map(|(_, group)| group).collect();
     while let Some(first) = terms.first().copied() {
-        let count_terms_with_atom = |k: usize| terms.iter().filter(|t| t.monomial.power(k) > 0).count();
-        let of_first = order.factors(first.monomial).into_iter().map(|(k, _)| k);
+        let count_terms_with_atom =
+            |k: usize| terms.iter().filter(|t| t.monomial.power_of_atom(k) > 0).count();
+        let of_first = order.factors_in_order(first.monomial).into_iter().map(|(k, _)| k);
         let best = of_first.rev().max_by_key(|k| count_terms_with_atom(*k));
-        let (group, rest) =
-            terms.iter().copied().partition(|t| *t == first || best.is_some_and(|k| t.monomial.power(k) > 0));
+        let (group, rest) = terms
+            .iter()
+            .copied()
+            .partition(|t| *t == first || best.is_some_and(|k| t.monomial.power_of_atom(k) > 0));
         let group: Vec<Term> = group;
-        items.push(item(order, &group));
+        items.push(factored_item(order, &group));
         terms = rest;
     }
 }
 
 /// Returns the square of a sum whose first summand is the squared position in `leading`, if all terms of the
 /// expanded square are among `terms`.
-fn square(order: &Order, leading: &Term, terms: &[Term]) -> Option<Item> {
-    let positions = leading.monomial.only(order.positions);
-    let (x, _) = positions.factors().find(|(_, power)| *power == 2)?;
-    let rest = leading.monomial.quotient(Monomial::atom(x));
-    let mut sum = vec![Item::single(1.0, Monomial::atom(x))];
-    for t in terms.iter().filter(|t| *t != leading && rest.divides(t.monomial)) {
+fn find_squared_sum(order: &Order, leading: &Term, terms: &[Term]) -> Option<Item> {
+    let positions = leading.monomial.restrict_to_mask(order.positions);
+    let (x, _) = positions.atoms_with_powers().find(|(_, power)| *power == 2)?;
+    let rest = leading.monomial.quotient(Monomial::first_power_of_atom(x));
+    let mut sum = vec![Item::item_without_sums(1.0, Monomial::first_power_of_atom(x))];
+    for t in terms.iter().filter(|t| *t != leading && rest.is_divisor_of(t.monomial)) {
         let coefficient = 0.5 * t.coefficient / leading.coefficient;
-        sum.push(Item::single(coefficient, t.monomial.quotient(rest)));
+        sum.push(Item::item_without_sums(coefficient, t.monomial.quotient(rest)));
     }
-    let factor = rest.quotient(Monomial::atom(x));
+    let factor = rest.quotient(Monomial::first_power_of_atom(x));
     let sums = vec![Sum { items: sum, power: 2 }];
     let square = Item { coefficient: leading.coefficient, factor, sums };
     let there =
         |s: &Term| terms.iter().any(|t| t.monomial == s.monomial && is_close(t.coefficient, s.coefficient));
     let several = square.sums.iter().all(|sum| sum.items.len() > 1);
-    (several && expanded(&square).iter().all(there)).then_some(square)
+    (several && expand_square(&square).iter().all(there)).then_some(square)
 }
 
 /// Expands the square of a sum of single terms.
-fn expanded(square: &Item) -> Vec<Term> {
+fn expand_square(square: &Item) -> Vec<Term> {
     let mut terms = Vec::new();
     let sum = square.sums.first().map_or(&[][..], |sum| &sum.items);
     for (i, a) in sum.iter().enumerate() {
         for (j, b) in sum.iter().enumerate().skip(i) {
             let twice = if i == j { 1.0 } else { 2.0 };
-            let product = a.factor.times(b.factor).and_then(|m| m.times(square.factor));
+            let product = a.factor.checked_product(b.factor).and_then(|m| m.checked_product(square.factor));
             if let Some(monomial) = product {
                 let coefficient = twice * square.coefficient * a.coefficient * b.coefficient;
                 terms.push(Term { monomial, coefficient });
@@ -135,24 +138,24 @@ fn expanded(square: &Item) -> Vec<Term> {
 
 /// Returns the common factor of all terms times the sum of the quotients, which is grouped by functions of
 /// positions once more.
-fn item(order: &Order, terms: &[Term]) -> Item {
+fn factored_item(order: &Order, terms: &[Term]) -> Item {
     let first = terms.first().map_or(Monomial::ONE, |t| t.monomial);
-    let factor = terms.iter().fold(first, |m, t| m.common(t.monomial));
+    let factor = terms.iter().fold(first, |m, t| m.greatest_common_divisor(t.monomial));
     if let [only] = terms {
-        return Item::single(only.coefficient, factor);
+        return Item::item_without_sums(only.coefficient, factor);
     }
     let mut terms = terms.to_vec();
-    order.sort(&mut terms);
+    order.sort_terms(&mut terms);
     let coefficient = common_number(terms.iter().map(|t| t.coefficient));
     for t in &mut terms {
         *t = Term { monomial: t.monomial.quotient(factor), coefficient: t.coefficient / coefficient };
     }
     let mut sum = Vec::new();
-    for (functions, group) in grouped(&terms, order.functions) {
+    for (functions, group) in group_by_mask(&terms, order.functions) {
         if functions != Monomial::ONE && group.len() < terms.len() {
-            sum.push(item(order, &group));
+            sum.push(factored_item(order, &group));
         } else {
-            sum.extend(group.iter().map(|t| Item::single(t.coefficient, t.monomial)));
+            sum.extend(group.iter().map(|t| Item::item_without_sums(t.coefficient, t.monomial)));
         }
     }
     // A sum in parentheses starts with a positive term.

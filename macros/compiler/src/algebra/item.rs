@@ -28,7 +28,7 @@ pub struct Sum {
 
 impl Item {
     /// Returns an item without sums.
-    pub fn single(coefficient: f64, factor: Monomial) -> Item {
+    pub fn item_without_sums(coefficient: f64, factor: Monomial) -> Item {
         Item { coefficient, factor, sums: Vec::new() }
     }
 }
@@ -52,7 +52,7 @@ pub struct Order {
 
 /// Returns the sort key of an atom: first its rank; then symbols before waves, which are sorted by angle,
 /// before all other atoms. The inverse of a single atom has the key of that atom.
-fn place(ring: &Ring, atom: usize) -> (Rank, u8, Vec<usize>) {
+fn sort_key_of_atom(ring: &Ring, atom: usize) -> (Rank, u8, Vec<usize>) {
     let rank = ring.ranks[atom];
     match &ring.atoms[atom] {
         Atom::Symbol(s) => (rank, 0, vec![s.0 as usize]),
@@ -63,7 +63,11 @@ fn place(ring: &Ring, atom: usize) -> (Rank, u8, Vec<usize>) {
             (rank, 1, angle.collect())
         }
         Atom::Inverse(p) => match p.terms.as_slice() {
-            [t] => t.monomial.factors().next().map_or((rank, 2, vec![atom]), |(k, _)| place(ring, k)),
+            [t] => t
+                .monomial
+                .atoms_with_powers()
+                .next()
+                .map_or((rank, 2, vec![atom]), |(k, _)| sort_key_of_atom(ring, k)),
             _ => (rank, 2, vec![atom]),
         },
         _ => (rank, 2, vec![atom]),
@@ -74,69 +78,71 @@ impl Order {
     /// Returns the order of the atoms of a ring.
     pub fn new(ring: &Ring) -> Order {
         let mut atoms: Vec<usize> = (0..ring.atoms.len()).collect();
-        atoms.sort_by_cached_key(|k| place(ring, *k));
+        atoms.sort_by_cached_key(|k| sort_key_of_atom(ring, *k));
         Order {
             atoms,
-            rates: ring.mask(|_, rank| rank >= Rank::Rate),
-            accelerations: ring.mask(|_, rank| rank == Rank::Acceleration),
-            functions: ring.mask(|_, rank| rank == Rank::Function),
-            positions: ring.mask(|_, rank| rank == Rank::Position),
-            parameters: ring.mask(|_, rank| rank == Rank::Parameter),
-            sizes: sizes(ring),
+            rates: ring.mask_of_atoms(|_, rank| rank >= Rank::Rate),
+            accelerations: ring.mask_of_atoms(|_, rank| rank == Rank::Acceleration),
+            functions: ring.mask_of_atoms(|_, rank| rank == Rank::Function),
+            positions: ring.mask_of_atoms(|_, rank| rank == Rank::Position),
+            parameters: ring.mask_of_atoms(|_, rank| rank == Rank::Parameter),
+            sizes: atom_lengths(ring),
         }
     }
 
     /// Returns true if a sum contains only parameters.
     pub fn is_constant(&self, items: &[Item]) -> bool {
         items.iter().all(|item| {
-            item.factor.cleared(self.parameters) == Monomial::ONE
+            item.factor.clear_mask(self.parameters) == Monomial::ONE
                 && item.sums.iter().all(|sum| self.is_constant(&sum.items))
         })
     }
 
     /// Returns the printed length of a sum: the number of names, numbers and functions. Signs, exponents and
     /// parentheses do not count.
-    pub fn size(&self, items: &[Item]) -> usize {
+    pub fn printed_length(&self, items: &[Item]) -> usize {
         items.iter().map(|item| self.size_of(item)).sum()
     }
 
     fn size_of(&self, item: &Item) -> usize {
-        let of_sums = item.sums.iter().map(|sum| self.size(&sum.items)).sum::<usize>();
+        let of_sums = item.sums.iter().map(|sum| self.printed_length(&sum.items)).sum::<usize>();
         let factors = size_of_monomial(&self.sizes, item.factor) + of_sums;
         factors + usize::from(factors == 0 || !is_close(item.coefficient.abs(), 1.0))
     }
 
     /// Returns the factors of a monomial, atom and power, in printing order.
-    pub fn factors(&self, m: Monomial) -> Vec<(usize, u8)> {
-        let powers = self.atoms.iter().map(|k| (*k, m.power(*k)));
+    pub fn factors_in_order(&self, m: Monomial) -> Vec<(usize, u8)> {
+        let powers = self.atoms.iter().map(|k| (*k, m.power_of_atom(*k)));
         powers.filter(|(_, n)| *n > 0).collect()
     }
 
     /// Returns the parameters of a monomial with their powers.
-    pub fn parameters(&self, m: Monomial) -> Monomial {
-        m.only(self.parameters)
+    pub fn parameters_of_monomial(&self, m: Monomial) -> Monomial {
+        m.restrict_to_mask(self.parameters)
     }
 
     /// Sorts terms: ascending degree in functions of positions, then by their factors, high powers first.
-    pub fn sort(&self, terms: &mut [Term]) {
+    pub fn sort_terms(&self, terms: &mut [Term]) {
         terms.sort_by_cached_key(|t| {
-            let powers: Vec<Reverse<u8>> = self.atoms.iter().map(|k| Reverse(t.monomial.power(*k))).collect();
-            (t.monomial.only(self.functions).degree(), powers)
+            let powers: Vec<Reverse<u8>> =
+                self.atoms.iter().map(|k| Reverse(t.monomial.power_of_atom(*k))).collect();
+            (t.monomial.restrict_to_mask(self.functions).degree(), powers)
         });
     }
 
     /// Sorts groups of terms: accelerations first, then rates, then positions, and high powers first.
     pub fn sort_groups(&self, ring: &Ring, groups: &mut [(Monomial, Vec<Term>)]) {
         groups.sort_by_cached_key(|(key, _)| {
-            let rank = key.factors().map(|(k, _)| ring.ranks[k]).max();
-            let powers: Vec<Reverse<u8>> = self.atoms.iter().map(|k| Reverse(key.power(*k))).collect();
-            (Reverse(rank), Reverse(key.only(self.rates).degree()), powers)
+            let rank = key.atoms_with_powers().map(|(k, _)| ring.ranks[k]).max();
+            let powers: Vec<Reverse<u8>> =
+                self.atoms.iter().map(|k| Reverse(key.power_of_atom(*k))).collect();
+            (Reverse(rank), Reverse(key.restrict_to_mask(self.rates).degree()), powers)
         });
     }
 }
 
 /// Returns the printed length of each atom: its number of names, numbers and functions.
-fn sizes(ring: &Ring) -> Vec<usize> {
+fn atom_lengths(ring: &Ring) -> Vec<usize> {
     let mut sizes = Vec::with_capacity(ring.atoms.len());
     for atom in &ring.atoms {
         let size_of_polynomial = |p: &Polynomial| -> usize {
@@ -162,7 +168,7 @@ fn sizes(ring: &Ring) -> Vec<usize> {
 }
 
 fn size_of_monomial(sizes: &[usize], m: Monomial) -> usize {
-    m.factors().map(|(k, _)| sizes.get(k).copied().unwrap_or(1)).sum()
+    m.atoms_with_powers().map(|(k, _)| sizes.get(k).copied().unwrap_or(1)).sum()
 }
 
 /// Returns true if two numbers differ by rounding error only.
@@ -180,7 +186,7 @@ pub fn common_number(coefficients: impl Iterator<Item = f64> + Clone) -> f64 {
     }
     let mut common: Option<(u32, u32)> = None;
     for c in coefficients {
-        let Some((p, q)) = fraction(c.abs()) else { return sign };
+        let Some((p, q)) = fraction_of_number(c.abs()) else { return sign };
         common = Some(common.map_or((p, q), |(a, b)| (gcd(a, p), gcd(b, q))));
     }
     sign * common.map_or(1.0, |(p, q)| f64::from(p) / f64::from(q))
@@ -193,7 +199,7 @@ pub fn gcd(a: u32, b: u32) -> u32 {
 
 /// Returns numerator and denominator of a positive number that is, up to rounding, a fraction with a
 /// denominator made up of factors two and three, at most 48. The numerator is below 1000.
-pub fn fraction(size: f64) -> Option<(u32, u32)> {
+pub fn fraction_of_number(size: f64) -> Option<(u32, u32)> {
     [1_u32, 2, 3, 4, 6, 8, 12, 16, 24, 48].into_iter().find_map(|q| {
         let p = size * f64::from(q);
         let whole = p.round();

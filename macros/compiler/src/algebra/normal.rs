@@ -37,14 +37,14 @@ impl<'g> Normal<'g> {
                 continue;
             }
             let before = todo.len();
-            self.graph.node(id).operands(|a| {
+            self.graph.node(id).visit_operands(|a| {
                 if self.known[a as usize] == UNKNOWN {
                     todo.push(a);
                 }
             });
             if todo.len() == before {
-                self.ring.spend(1)?;
-                let polynomial = self.rule(id)?;
+                self.ring.spend_steps(1)?;
+                let polynomial = self.expand_node(id)?;
                 self.known[id as usize] = self.polynomials.len() as u32;
                 self.polynomials.push(polynomial);
                 todo.pop();
@@ -53,25 +53,32 @@ impl<'g> Normal<'g> {
         Some(self.polynomials[self.known[e.id() as usize] as usize].clone())
     }
 
-    fn rule(&mut self, id: Id) -> Option<Polynomial> {
+    fn expand_node(&mut self, id: Id) -> Option<Polynomial> {
         let polynomial_of_node = |id: Id| &self.polynomials[self.known[id as usize] as usize];
         let atom = match self.graph.node(id) {
             // This constant only prevents NaN for the direction of a zero-length vector. The equations do not
             // contain it.
             Node::Const(c) if c == TINY => return Some(Polynomial::default()),
-            Node::Const(c) => return c.is_finite().then(|| Polynomial::number(c)),
-            Node::Neg(a) => return Some(polynomial_of_node(a).scaled(-1.0)),
-            Node::Add(a, b) => return self.ring.plus(polynomial_of_node(a), polynomial_of_node(b)),
-            Node::Sub(a, b) => {
-                return self.ring.plus(polynomial_of_node(a), &polynomial_of_node(b).scaled(-1.0));
+            Node::Const(c) => return c.is_finite().then(|| Polynomial::from_number(c)),
+            Node::Neg(a) => return Some(polynomial_of_node(a).multiplied_by_number(-1.0)),
+            Node::Add(a, b) => {
+                return self.ring.add_within_limits(polynomial_of_node(a), polynomial_of_node(b));
             }
-            Node::Mul(a, b) => return self.ring.times(polynomial_of_node(a), polynomial_of_node(b)),
+            Node::Sub(a, b) => {
+                return self.ring.add_within_limits(
+                    polynomial_of_node(a),
+                    &polynomial_of_node(b).multiplied_by_number(-1.0),
+                );
+            }
+            Node::Mul(a, b) => {
+                return self.ring.multiply_and_reduce(polynomial_of_node(a), polynomial_of_node(b));
+            }
             Node::Div(a, b) => {
                 let inverse = inverse(&mut self.ring, polynomial_of_node(b))?;
-                return self.ring.times(polynomial_of_node(a), &inverse);
+                return self.ring.multiply_and_reduce(polynomial_of_node(a), &inverse);
             }
-            Node::Call(Function::Sin, a) => return wave(&mut self.ring, polynomial_of_node(a), false),
-            Node::Call(Function::Cos, a) => return wave(&mut self.ring, polynomial_of_node(a), true),
+            Node::Call(Function::Sin, a) => return expand_wave(&mut self.ring, polynomial_of_node(a), false),
+            Node::Call(Function::Cos, a) => return expand_wave(&mut self.ring, polynomial_of_node(a), true),
             Node::Symbol(s) => Atom::Symbol(s),
             Node::Call(f, a) => Atom::Call(f, polynomial_of_node(a).clone()),
             Node::Atan2(a, b) => Atom::Atan2(polynomial_of_node(a).clone(), polynomial_of_node(b).clone()),
@@ -79,7 +86,7 @@ impl<'g> Normal<'g> {
                 Atom::Extreme(f, polynomial_of_node(a).clone(), polynomial_of_node(b).clone())
             }
             Node::Table(lookup, a, b, c) => {
-                let arguments = [a, b, c].into_iter().take(lookup.variables());
+                let arguments = [a, b, c].into_iter().take(lookup.variable_count());
                 Atom::Table(
                     self.graph.table_name(lookup),
                     lookup,
@@ -91,25 +98,28 @@ impl<'g> Normal<'g> {
                 return None;
             }
         };
-        Some(Polynomial::single(self.ring.atom(atom)?, 1.0))
+        Some(Polynomial::single_term(self.ring.monomial_of_atom(atom)?, 1.0))
     }
 }
 
 /// Expands the sine or cosine of a sum of angles: rotates a point on the unit circle by one angle after
 /// another.
-fn wave(ring: &mut Ring, argument: &Polynomial, cosine: bool) -> Option<Polynomial> {
-    let (mut cos, mut sin) = (Polynomial::number(1.0), Polynomial::default());
+fn expand_wave(ring: &mut Ring, argument: &Polynomial, cosine: bool) -> Option<Polynomial> {
+    let (mut cos, mut sin) = (Polynomial::from_number(1.0), Polynomial::default());
     for term in &argument.terms {
         let size = term.coefficient.abs();
         let whole = size.fract() == 0.0 && size <= MULTIPLE && term.monomial != Monomial::ONE;
         let (scale, times) = if whole { (1.0, size as usize) } else { (size, 1) };
-        let angle = ring.angle(Term { coefficient: scale, ..*term })?;
-        let c = Polynomial::single(ring.circle(angle, true)?, 1.0);
-        let s = Polynomial::single(ring.circle(angle, false)?, term.coefficient.signum());
+        let angle = ring.index_of_angle(Term { coefficient: scale, ..*term })?;
+        let c = Polynomial::single_term(ring.sine_or_cosine(angle, true)?, 1.0);
+        let s = Polynomial::single_term(ring.sine_or_cosine(angle, false)?, term.coefficient.signum());
         for _ in 0..times {
-            let (cc, ss) = (ring.times(&cos, &c)?, ring.times(&sin, &s)?);
-            let (cs, sc) = (ring.times(&cos, &s)?, ring.times(&sin, &c)?);
-            (cos, sin) = (ring.plus(&cc, &ss.scaled(-1.0))?, ring.plus(&cs, &sc)?);
+            let (cc, ss) = (ring.multiply_and_reduce(&cos, &c)?, ring.multiply_and_reduce(&sin, &s)?);
+            let (cs, sc) = (ring.multiply_and_reduce(&cos, &s)?, ring.multiply_and_reduce(&sin, &c)?);
+            (cos, sin) = (
+                ring.add_within_limits(&cc, &ss.multiplied_by_number(-1.0))?,
+                ring.add_within_limits(&cs, &sc)?,
+            );
         }
     }
     Some(if cosine { cos } else { sin })
@@ -119,12 +129,12 @@ fn wave(ring: &mut Ring, argument: &Polynomial, cosine: bool) -> Option<Polynomi
 /// that, the inverse of their sum is one atom.
 pub fn inverse(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
     let first = *p.terms.first()?;
-    let common = p.terms.iter().fold(first.monomial, |m, t| m.common(t.monomial));
+    let common = p.terms.iter().fold(first.monomial, |m, t| m.greatest_common_divisor(t.monomial));
     let mut product = Monomial::ONE;
-    for (atom, power) in common.factors() {
+    for (atom, power) in common.atoms_with_powers() {
         let inverse = inverse_atom(ring, atom)?;
         for _ in 0..power {
-            product = product.times(inverse)?;
+            product = product.checked_product(inverse)?;
         }
     }
     if p.terms.len() > 1 {
@@ -133,9 +143,9 @@ pub fn inverse(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
             coefficient: t.coefficient / first.coefficient,
         });
         let rest = Polynomial { terms: rest.collect() };
-        product = product.times(ring.atom(Atom::Inverse(rest))?)?;
+        product = product.checked_product(ring.monomial_of_atom(Atom::Inverse(rest))?)?;
     }
-    Some(Polynomial::single(product, 1.0 / first.coefficient))
+    Some(Polynomial::single_term(product, 1.0 / first.coefficient))
 }
 
 fn inverse_atom(ring: &mut Ring, atom: usize) -> Option<Monomial> {
@@ -144,5 +154,5 @@ fn inverse_atom(ring: &mut Ring, atom: usize) -> Option<Monomial> {
     {
         return Some(term.monomial);
     }
-    ring.atom(Atom::Inverse(Polynomial::single(Monomial::atom(atom), 1.0)))
+    ring.monomial_of_atom(Atom::Inverse(Polynomial::single_term(Monomial::first_power_of_atom(atom), 1.0)))
 }

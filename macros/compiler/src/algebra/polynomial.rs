@@ -11,7 +11,7 @@ mod monomial;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub use expression::expression;
+pub use expression::polynomial_to_expression;
 pub use monomial::{ATOMS, Monomial};
 
 /// Maximum number of terms of a polynomial.
@@ -108,18 +108,18 @@ pub struct Ring {
 
 impl Polynomial {
     /// Returns a constant polynomial.
-    pub fn number(value: f64) -> Polynomial {
-        Polynomial::single(Monomial::ONE, value)
+    pub fn from_number(value: f64) -> Polynomial {
+        Polynomial::single_term(Monomial::ONE, value)
     }
 
     /// Returns the polynomial of one term; it is zero if the coefficient is zero.
-    pub fn single(monomial: Monomial, coefficient: f64) -> Polynomial {
+    pub fn single_term(monomial: Monomial, coefficient: f64) -> Polynomial {
         let terms = if coefficient == 0.0 { Vec::new() } else { vec![Term { monomial, coefficient }] };
         Polynomial { terms }
     }
 
     /// Adds terms in any order; terms with equal monomials are merged.
-    pub fn sum(mut terms: Vec<Term>) -> Polynomial {
+    pub fn sum_of_terms(mut terms: Vec<Term>) -> Polynomial {
         terms.sort_by_key(|t| t.monomial);
         let mut sum: Vec<Term> = Vec::with_capacity(terms.len());
         for term in terms {
@@ -161,17 +161,17 @@ impl Polynomial {
     }
 
     /// Multiplies a polynomial by a number.
-    pub fn scaled(&self, factor: f64) -> Polynomial {
+    pub fn multiplied_by_number(&self, factor: f64) -> Polynomial {
         let scale_term = |t: &Term| Term { coefficient: t.coefficient * factor, ..*t };
         Polynomial { terms: self.terms.iter().map(scale_term).collect() }
     }
 
     /// Multiplies a polynomial by one term. This preserves the order of the monomials. `None` if a power
     /// overflows.
-    fn times(&self, factor: &Term) -> Option<Polynomial> {
+    fn multiply_by_term(&self, factor: &Term) -> Option<Polynomial> {
         let mut terms = Vec::with_capacity(self.terms.len());
         for t in &self.terms {
-            let monomial = t.monomial.times(factor.monomial)?;
+            let monomial = t.monomial.checked_product(factor.monomial)?;
             terms.push(Term { monomial, coefficient: t.coefficient * factor.coefficient });
         }
         Some(Polynomial { terms })
@@ -208,20 +208,20 @@ impl Ring {
     }
 
     /// Subtracts steps from the remaining work. `None` if fewer remain.
-    pub fn spend(&mut self, steps: usize) -> Option<()> {
+    pub fn spend_steps(&mut self, steps: usize) -> Option<()> {
         self.work = self.work.checked_sub(steps)?;
         Some(())
     }
 
     /// Returns an atom as a monomial and adds the atom to the ring if it is new. `None` beyond the maximum
     /// number of atoms.
-    pub fn atom(&mut self, atom: Atom) -> Option<Monomial> {
+    pub fn monomial_of_atom(&mut self, atom: Atom) -> Option<Monomial> {
         let known = self.atoms.iter().position(|a| *a == atom);
         let index = match known {
             Some(index) => index,
             None => self.add_atom(atom)?,
         };
-        Some(Monomial::atom(index))
+        Some(Monomial::first_power_of_atom(index))
     }
 
     fn add_atom(&mut self, atom: Atom) -> Option<usize> {
@@ -231,11 +231,11 @@ impl Ring {
         }
         if let Atom::Call(Function::Sqrt, radicand) = &atom {
             self.squares.push((index, radicand.clone()));
-            self.squared = self.squared.or(Monomial::above_one(index));
+            self.squared = self.squared.union_of_bits(Monomial::above_one(index));
         }
         if let Atom::Inverse(p) = &atom
             && let [term] = p.terms.as_slice()
-            && let Some(inverse) = term.monomial.factors().next()
+            && let Some(inverse) = term.monomial.atoms_with_powers().next()
         {
             self.inverses.push((inverse.0, index));
             if let Some(Atom::Wave(wave)) = self.atoms.get(inverse.0)
@@ -255,7 +255,8 @@ impl Ring {
     /// Returns the number of terms of a polynomial in printed form. Terms in the arguments of functions, also
     /// nested ones, are counted at each occurrence. The count saturates.
     pub fn written_terms(&self, p: &Polynomial) -> usize {
-        let nested = p.terms.iter().flat_map(|t| t.monomial.factors()).map(|(k, _)| self.written[k]);
+        let nested =
+            p.terms.iter().flat_map(|t| t.monomial.atoms_with_powers()).map(|(k, _)| self.written[k]);
         nested.fold(p.terms.len(), usize::saturating_add)
     }
 
@@ -273,7 +274,7 @@ impl Ring {
     }
 
     fn rank_of(&self, atom: &Atom) -> Rank {
-        let of_monomial = |m: Monomial| m.factors().map(|(k, _)| self.ranks[k]).max();
+        let of_monomial = |m: Monomial| m.atoms_with_powers().map(|(k, _)| self.ranks[k]).max();
         let rank_of_polynomial =
             |p: &Polynomial| p.terms.iter().filter_map(|t| of_monomial(t.monomial)).max();
         let argument = match atom {
@@ -298,7 +299,7 @@ impl Ring {
 
     /// Returns the index of an angle. A new angle is added to the ring with its sine and cosine; `None`
     /// beyond the maximum number of angles.
-    pub fn angle(&mut self, angle: Term) -> Option<usize> {
+    pub fn index_of_angle(&mut self, angle: Term) -> Option<usize> {
         if let Some(index) = self.angles.iter().position(|a| *a == angle) {
             return Some(index);
         }
@@ -307,51 +308,51 @@ impl Ring {
             return None;
         }
         self.angles.push(angle);
-        let sine = self.circle(index, false)?;
-        let cosine = self.circle(index, true)?;
-        let (sine, _) = sine.factors().next()?;
-        let rest = Polynomial::sum(vec![
+        let sine = self.sine_or_cosine(index, false)?;
+        let cosine = self.sine_or_cosine(index, true)?;
+        let (sine, _) = sine.atoms_with_powers().next()?;
+        let rest = Polynomial::sum_of_terms(vec![
             Term { monomial: Monomial::ONE, coefficient: 1.0 },
-            Term { monomial: cosine.times(cosine)?, coefficient: -1.0 },
+            Term { monomial: cosine.checked_product(cosine)?, coefficient: -1.0 },
         ]);
         self.squares.push((sine, rest));
-        self.squared = self.squared.or(Monomial::above_one(sine));
+        self.squared = self.squared.union_of_bits(Monomial::above_one(sine));
         Some(index)
     }
 
     /// Returns the sine or cosine of the angle with this index as a monomial.
-    pub fn circle(&mut self, index: usize, cosine: bool) -> Option<Monomial> {
+    pub fn sine_or_cosine(&mut self, index: usize, cosine: bool) -> Option<Monomial> {
         let mut angle = [0; ANGLES];
         angle[index] = 1;
-        self.atom(Atom::Wave(Wave { angle, cosine }))
+        self.monomial_of_atom(Atom::Wave(Wave { angle, cosine }))
     }
 
     /// Adds two polynomials. `None` if the sum exceeds the limits.
-    pub fn plus(&mut self, a: &Polynomial, b: &Polynomial) -> Option<Polynomial> {
-        self.spend(a.terms.len() + b.terms.len())?;
+    pub fn add_within_limits(&mut self, a: &Polynomial, b: &Polynomial) -> Option<Polynomial> {
+        self.spend_steps(a.terms.len() + b.terms.len())?;
         let sum = a.plus(b);
         (sum.terms.len() <= self.terms).then_some(sum)
     }
 
     /// Multiplies two polynomials and reduces the product. `None` beyond the limits.
-    pub fn times(&mut self, a: &Polynomial, b: &Polynomial) -> Option<Polynomial> {
+    pub fn multiply_and_reduce(&mut self, a: &Polynomial, b: &Polynomial) -> Option<Polynomial> {
         let (few, many) = if a.terms.len() < b.terms.len() { (a, b) } else { (b, a) };
         let mut product = Polynomial::default();
         for (k, term) in few.terms.iter().enumerate() {
-            self.spend(many.terms.len())?;
-            let row = many.times(term)?;
-            product = if k == 0 { row } else { self.plus(&product, &row)? };
+            self.spend_steps(many.terms.len())?;
+            let row = many.multiply_by_term(term)?;
+            product = if k == 0 { row } else { self.add_within_limits(&product, &row)? };
         }
-        self.reduced(product)
+        self.reduce_powers(product)
     }
 
     /// Replaces squares of sines and square roots, and products of an atom and its inverse, until none is
     /// left.
-    fn reduced(&mut self, mut p: Polynomial) -> Option<Polynomial> {
+    fn reduce_powers(&mut self, mut p: Polynomial) -> Option<Polynomial> {
         loop {
             let is_reducible_term = |t: &Term| {
-                t.monomial.meets(self.squared)
-                    || self.cancels(t.monomial).is_some()
+                t.monomial.intersects_mask(self.squared)
+                    || self.cancelling_factor(t.monomial).is_some()
                     || self.over_sine(t.monomial).is_some()
             };
             if !p.terms.iter().any(is_reducible_term) {
@@ -359,16 +360,16 @@ impl Ring {
             }
             let mut terms = Vec::with_capacity(p.terms.len() + 4);
             for term in &p.terms {
-                terms.extend(self.rewritten(term)?.terms);
+                terms.extend(self.rewrite_term(term)?.terms);
             }
-            self.spend(4 * terms.len())?;
-            p = Polynomial::sum(terms);
+            self.spend_steps(4 * terms.len())?;
+            p = Polynomial::sum_of_terms(terms);
         }
     }
 
-    fn cancels(&self, m: Monomial) -> Option<Monomial> {
-        let pair = self.inverses.iter().find(|(a, b)| m.power(*a) > 0 && m.power(*b) > 0)?;
-        Monomial::atom(pair.0).times(Monomial::atom(pair.1))
+    fn cancelling_factor(&self, m: Monomial) -> Option<Monomial> {
+        let pair = self.inverses.iter().find(|(a, b)| m.power_of_atom(*a) > 0 && m.power_of_atom(*b) > 0)?;
+        Monomial::first_power_of_atom(pair.0).checked_product(Monomial::first_power_of_atom(pair.1))
     }
 
     /// Returns the cosecant, cosine and sine atoms of a factor `cos² / sin` in `m`, which equals
@@ -377,70 +378,78 @@ impl Ring {
     fn over_sine(&self, m: Monomial) -> Option<[usize; 3]> {
         self.cosecants
             .iter()
-            .find(|[inverse, cosine, _]| m.power(*inverse) > 0 && m.power(*cosine) > 1)
+            .find(|[inverse, cosine, _]| m.power_of_atom(*inverse) > 0 && m.power_of_atom(*cosine) > 1)
             .copied()
     }
 
     /// Applies one rewrite rule to a term. Returns the term unchanged if no rule applies.
-    fn rewritten(&self, term: &Term) -> Option<Polynomial> {
+    fn rewrite_term(&self, term: &Term) -> Option<Polynomial> {
         let Term { monomial, coefficient } = *term;
-        if let Some(one) = self.cancels(monomial) {
-            return Some(Polynomial::single(monomial.quotient(one), coefficient));
+        if let Some(one) = self.cancelling_factor(monomial) {
+            return Some(Polynomial::single_term(monomial.quotient(one), coefficient));
         }
         if let Some([inverse, cosine, sine]) = self.over_sine(monomial) {
-            let square = Monomial::atom(cosine).times(Monomial::atom(cosine))?;
+            let square = Monomial::first_power_of_atom(cosine)
+                .checked_product(Monomial::first_power_of_atom(cosine))?;
             let one = monomial.quotient(square);
-            let rest = one.quotient(Monomial::atom(inverse)).times(Monomial::atom(sine))?;
-            return Some(Polynomial::sum(vec![
+            let rest = one
+                .quotient(Monomial::first_power_of_atom(inverse))
+                .checked_product(Monomial::first_power_of_atom(sine))?;
+            return Some(Polynomial::sum_of_terms(vec![
                 Term { monomial: one, coefficient },
                 Term { monomial: rest, coefficient: -coefficient },
             ]));
         }
-        match self.squares.iter().find(|(atom, _)| monomial.power(*atom) > 1) {
+        match self.squares.iter().find(|(atom, _)| monomial.power_of_atom(*atom) > 1) {
             Some((atom, square)) => {
-                let atom = Monomial::atom(*atom);
-                square.times(&Term { monomial: monomial.quotient(atom.times(atom)?), coefficient })
+                let atom = Monomial::first_power_of_atom(*atom);
+                square.multiply_by_term(&Term {
+                    monomial: monomial.quotient(atom.checked_product(atom)?),
+                    coefficient,
+                })
             }
             None => Some(Polynomial { terms: vec![*term] }),
         }
     }
 
     /// Returns a mask with all bits of the powers of the atoms for which `holds` is true.
-    pub fn mask(&self, holds: impl Fn(&Atom, Rank) -> bool) -> Monomial {
+    pub fn mask_of_atoms(&self, holds: impl Fn(&Atom, Rank) -> bool) -> Monomial {
         let atoms = self.atoms.iter().zip(&self.ranks).enumerate();
-        atoms.filter(|(_, (a, r))| holds(a, **r)).fold(Monomial::ONE, |m, (k, _)| m.or(Monomial::all_of(k)))
+        atoms
+            .filter(|(_, (a, r))| holds(a, **r))
+            .fold(Monomial::ONE, |m, (k, _)| m.union_of_bits(Monomial::all_of(k)))
     }
 
     /// Evaluates a polynomial at the given values of the symbols.
-    pub fn evaluate(&self, p: &Polynomial, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
+    pub fn evaluate_polynomial(&self, p: &Polynomial, symbol: &dyn Fn(Symbol) -> f64) -> f64 {
         let mut values: Vec<f64> = Vec::with_capacity(self.atoms.len());
         for atom in &self.atoms {
-            let value_of = |p: &Polynomial| value(p, &values);
+            let value_of = |p: &Polynomial| value_at_atoms(p, &values);
             values.push(match atom {
                 Atom::Symbol(s) => symbol(*s),
                 Atom::Wave(w) => {
                     let angles = self.angles.iter().zip(w.angle).filter(|(_, n)| *n != 0);
                     let angle = angles.map(|(a, n)| f64::from(n) * term_value(a, &values)).sum::<f64>();
-                    if w.cosine { angle.cos() } else { angle.sin() }
+                    if w.cosine { libm::cos(angle) } else { libm::sin(angle) }
                 }
                 Atom::Inverse(p) => 1.0 / value_of(p),
-                Atom::Call(f, p) => f.apply(value_of(p)),
-                Atom::Atan2(y, x) => value_of(y).atan2(value_of(x)),
-                Atom::Power(a, b) => value_of(a).powf(value_of(b)),
-                Atom::Extreme(f, a, b) => f.apply(value_of(a), value_of(b)),
+                Atom::Call(f, p) => f.evaluate_at(value_of(p)),
+                Atom::Atan2(y, x) => libm::atan2(value_of(y), value_of(x)),
+                Atom::Power(a, b) => libm::pow(value_of(a), value_of(b)),
+                Atom::Extreme(f, a, b) => f.evaluate_extreme(value_of(a), value_of(b)),
                 Atom::Table(_, lookup, x) => {
-                    lookup.apply(std::array::from_fn(|k| x.get(k).map_or(0.0, value_of)))
+                    lookup.evaluate_surrogate(std::array::from_fn(|k| x.get(k).map_or(0.0, value_of)))
                 }
             });
         }
-        value(p, &values)
+        value_at_atoms(p, &values)
     }
 }
 
-fn value(p: &Polynomial, atoms: &[f64]) -> f64 {
+fn value_at_atoms(p: &Polynomial, atoms: &[f64]) -> f64 {
     p.terms.iter().map(|t| term_value(t, atoms)).sum()
 }
 
 fn term_value(t: &Term, atoms: &[f64]) -> f64 {
-    t.monomial.factors().fold(t.coefficient, |v, (k, n)| v * atoms[k].powi(i32::from(n)))
+    t.monomial.atoms_with_powers().fold(t.coefficient, |v, (k, n)| (0..n).fold(v, |v, _| v * atoms[k]))
 }

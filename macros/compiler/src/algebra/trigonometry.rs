@@ -23,36 +23,36 @@ struct Product {
 }
 
 /// Returns the shortest form found of a polynomial. `None` if the limits of the ring are exceeded.
-pub fn simplified(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
-    let mask = ring.mask(|atom, _| matches!(atom, Atom::Wave(_)));
+pub fn simplify_trigonometry(ring: &mut Ring, p: &Polynomial) -> Option<Polynomial> {
+    let mask = ring.mask_of_atoms(|atom, _| matches!(atom, Atom::Wave(_)));
     let mut terms = p.terms.clone();
-    terms.sort_by_key(|t| t.monomial.cleared(mask));
+    terms.sort_by_key(|t| t.monomial.clear_mask(mask));
     let mut out = Vec::with_capacity(terms.len());
-    for group in terms.chunk_by(|a, b| a.monomial.cleared(mask) == b.monomial.cleared(mask)) {
+    for group in terms.chunk_by(|a, b| a.monomial.clear_mask(mask) == b.monomial.clear_mask(mask)) {
         if group.len() == 1 || group.len() > MAX_TERMS {
             out.extend_from_slice(group);
             continue;
         }
-        for product in shortest(ring, group, mask)? {
-            let mut monomial = group[0].monomial.cleared(mask);
+        for product in shortest_products(ring, group, mask)? {
+            let mut monomial = group[0].monomial.clear_mask(mask);
             for wave in product.waves {
-                monomial = monomial.times(ring.atom(Atom::Wave(wave))?)?;
+                monomial = monomial.checked_product(ring.monomial_of_atom(Atom::Wave(wave))?)?;
             }
             out.push(Term { monomial, coefficient: product.coefficient });
         }
     }
-    Some(Polynomial::sum(out))
+    Some(Polynomial::sum_of_terms(out))
 }
 
-fn shortest(ring: &mut Ring, terms: &[Term], mask: Monomial) -> Option<Vec<Product>> {
-    let products: Vec<Product> = terms.iter().map(|t| product(ring, t, mask)).collect();
-    let degree = terms.iter().map(|t| t.monomial.only(mask).degree()).max();
-    let mut best = merged(ring, products.clone())?;
+fn shortest_products(ring: &mut Ring, terms: &[Term], mask: Monomial) -> Option<Vec<Product>> {
+    let products: Vec<Product> = terms.iter().map(|t| split_term_into_waves(ring, t, mask)).collect();
+    let degree = terms.iter().map(|t| t.monomial.restrict_to_mask(mask).degree()).max();
+    let mut best = merge_product_pairs(ring, products.clone())?;
     if degree <= Some(DEGREE) {
-        let sum = fourier(ring, &products)?;
-        let sum = merged(ring, sum)?.into_iter().map(unfolded).collect();
+        let sum = fourier_sum(ring, &products)?;
+        let sum = merge_product_pairs(ring, sum)?.into_iter().map(unfold_double_angle).collect();
         let sines = in_sines(ring, products)?;
-        let sines = merged(ring, sines)?;
+        let sines = merge_product_pairs(ring, sines)?;
         best = [sum, sines].into_iter().fold(best, |a, b| if length(&b) < length(&a) { b } else { a });
     }
     Some(best)
@@ -62,10 +62,10 @@ fn shortest(ring: &mut Ring, terms: &[Term], mask: Monomial) -> Option<Vec<Produ
 fn in_sines(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>> {
     let mut sum = Vec::new();
     while let Some(mut product) = products.pop() {
-        ring.spend(1 + sum.len())?;
+        ring.spend_steps(1 + sum.len())?;
         let waves = &product.waves;
         match (1..waves.len()).find(|k| waves[*k].cosine && waves[*k] == waves[k - 1]) {
-            None => collect(&mut sum, product),
+            None => collect_product(&mut sum, product),
             Some(k) => {
                 let mut squared = product.clone();
                 product.waves.drain(k - 1..=k);
@@ -80,9 +80,9 @@ fn in_sines(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>>
     Some(sum)
 }
 
-fn product(ring: &Ring, term: &Term, mask: Monomial) -> Product {
+fn split_term_into_waves(ring: &Ring, term: &Term, mask: Monomial) -> Product {
     let mut waves = Vec::new();
-    for (atom, power) in term.monomial.only(mask).factors() {
+    for (atom, power) in term.monomial.restrict_to_mask(mask).atoms_with_powers() {
         if let Atom::Wave(wave) = &ring.atoms[atom] {
             waves.extend((0..power).map(|_| *wave));
         }
@@ -100,12 +100,12 @@ fn length(products: &[Product]) -> (usize, usize, usize) {
 }
 
 /// Merges pairs of products until no two of them can be merged.
-fn merged(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>> {
+fn merge_product_pairs(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>> {
     'again: loop {
         for j in 1..products.len() {
             for i in 0..j {
-                ring.spend(1)?;
-                let Some(both) = combined(&products[i], &products[j]) else { continue };
+                ring.spend_steps(1)?;
+                let Some(both) = combine_products(&products[i], &products[j]) else { continue };
                 products.remove(j);
                 products.remove(i);
                 if both.coefficient != 0.0 {
@@ -119,7 +119,7 @@ fn merged(ring: &mut Ring, mut products: Vec<Product>) -> Option<Vec<Product>> {
 }
 
 /// Returns the sum of two products if it is a single product.
-fn combined(a: &Product, b: &Product) -> Option<Product> {
+fn combine_products(a: &Product, b: &Product) -> Option<Product> {
     let ratio = b.coefficient / a.coefficient;
     if a.waves == b.waves {
         let coefficient = if is_close(ratio, -1.0) { 0.0 } else { a.coefficient + b.coefficient };
@@ -128,11 +128,11 @@ fn combined(a: &Product, b: &Product) -> Option<Product> {
     if ![1.0, -1.0, -2.0, -0.5].iter().any(|r| is_close(ratio, *r)) {
         return None;
     }
-    let (mut common, x, y) = split(&a.waves, &b.waves)?;
-    let (sum, coefficient) = match rule(&x, &y, ratio) {
+    let (mut common, x, y) = split_common_waves(&a.waves, &b.waves)?;
+    let (sum, coefficient) = match apply_sum_rule(&x, &y, ratio) {
         Some((sum, factor)) => (sum, factor * a.coefficient),
         None => {
-            let (sum, factor) = rule(&y, &x, 1.0 / ratio)?;
+            let (sum, factor) = apply_sum_rule(&y, &x, 1.0 / ratio)?;
             (sum, factor * b.coefficient)
         }
     };
@@ -147,7 +147,7 @@ fn is_close(a: f64, b: f64) -> bool {
 
 /// Splits two products into their common waves and the remaining waves of each. `None` if more than two waves
 /// of either remain.
-fn split(a: &[Wave], b: &[Wave]) -> Option<(Vec<Wave>, Vec<Wave>, Vec<Wave>)> {
+fn split_common_waves(a: &[Wave], b: &[Wave]) -> Option<(Vec<Wave>, Vec<Wave>, Vec<Wave>)> {
     let (mut common, mut x, mut y) = (Vec::new(), Vec::new(), b.to_vec());
     for wave in a {
         match y.iter().position(|w| w == wave) {
@@ -159,7 +159,7 @@ fn split(a: &[Wave], b: &[Wave]) -> Option<(Vec<Wave>, Vec<Wave>, Vec<Wave>)> {
 }
 
 /// Returns `x + ratio y` as a product of waves and a factor, if a rule covers it.
-fn rule(x: &[Wave], y: &[Wave], ratio: f64) -> Option<(Vec<Wave>, f64)> {
+fn apply_sum_rule(x: &[Wave], y: &[Wave], ratio: f64) -> Option<(Vec<Wave>, f64)> {
     let has_coefficient_ratio = |r: f64| is_close(ratio, r);
     match (x, y) {
         ([], [a, b]) if a == b && has_coefficient_ratio(-1.0) => {
@@ -167,10 +167,10 @@ fn rule(x: &[Wave], y: &[Wave], ratio: f64) -> Option<(Vec<Wave>, f64)> {
         }
         ([], [a, b]) if a == b && has_coefficient_ratio(-2.0) => {
             let sign = if a.cosine { -1.0 } else { 1.0 };
-            Some(made(true, sum(a, b, 1), sign))
+            Some(normalised_wave(true, combine_angles(a, b, 1), sign))
         }
-        ([], [a]) if a.cosine => halves(&Wave { angle: [0; ANGLES], cosine: true }, a, ratio),
-        ([a], [b]) if a.cosine == b.cosine => halves(a, b, ratio),
+        ([], [a]) if a.cosine => apply_half_angle_rule(&Wave { angle: [0; ANGLES], cosine: true }, a, ratio),
+        ([a], [b]) if a.cosine == b.cosine => apply_half_angle_rule(a, b, ratio),
         ([a, b], [c, d]) => angle_sum([a, b], [c, d], ratio),
         _ => None,
     }
@@ -185,9 +185,9 @@ fn angle_sum([a, b]: [&Wave; 2], [c, d]: [&Wave; 2], ratio: f64) -> Option<(Vec<
         return None;
     }
     match (a.cosine, b.cosine) {
-        (true, true) => Some(made(true, sum(a, b, -sign), 1.0)),
-        (false, true) => Some(made(false, sum(a, b, sign), 1.0)),
-        (true, false) => Some(made(false, sum(b, a, sign), 1.0)),
+        (true, true) => Some(normalised_wave(true, combine_angles(a, b, -sign), 1.0)),
+        (false, true) => Some(normalised_wave(false, combine_angles(a, b, sign), 1.0)),
+        (true, false) => Some(normalised_wave(false, combine_angles(b, a, sign), 1.0)),
         // With two sines first, `combined` applies the rule with the products exchanged.
         (false, false) => None,
     }
@@ -195,9 +195,9 @@ fn angle_sum([a, b]: [&Wave; 2], [c, d]: [&Wave; 2], ratio: f64) -> Option<(Vec<
 
 /// Applies `cos a + cos b = 2 cos((a+b)/2) cos((a−b)/2)` or the corresponding rules for differences and
 /// sines. `None` if the half angles are not integer multiples.
-fn halves(a: &Wave, b: &Wave, ratio: f64) -> Option<(Vec<Wave>, f64)> {
+fn apply_half_angle_rule(a: &Wave, b: &Wave, ratio: f64) -> Option<(Vec<Wave>, f64)> {
     let sign = [1, -1].into_iter().find(|s| is_close(ratio, f64::from(*s)))?;
-    let (up, down) = (sum(a, b, 1), sum(a, b, -1));
+    let (up, down) = (combine_angles(a, b, 1), combine_angles(a, b, -1));
     if up.iter().any(|n| n % 2 != 0) {
         return None;
     }
@@ -208,15 +208,15 @@ fn halves(a: &Wave, b: &Wave, ratio: f64) -> Option<(Vec<Wave>, f64)> {
         (false, 1) => ((false, up), (true, down), 2.0),
         (false, _) => ((true, up), (false, down), 2.0),
     };
-    let (mut waves, f) = made(first, half_of_angle(up), factor);
-    let (more, f) = made(second, half_of_angle(down), f);
+    let (mut waves, f) = normalised_wave(first, half_of_angle(up), factor);
+    let (more, f) = normalised_wave(second, half_of_angle(down), f);
     waves.extend(more);
     waves.sort_unstable();
     Some((waves, f))
 }
 
 /// Replaces `sin 2a` by `2 sin a cos a`, which can be combined with `sin² a` and `cos² a`.
-fn unfolded(mut product: Product) -> Product {
+fn unfold_double_angle(mut product: Product) -> Product {
     let is_sine_of_even_angle = |w: &Wave| !w.cosine && w.angle.iter().all(|n| n % 2 == 0);
     while let Some(k) = product.waves.iter().position(is_sine_of_even_angle) {
         let angle = product.waves.remove(k).angle.map(|n| n / 2);
@@ -227,13 +227,13 @@ fn unfolded(mut product: Product) -> Product {
 }
 
 /// Returns the sum or difference of the angles of two waves.
-fn sum(a: &Wave, b: &Wave, sign: i8) -> [i8; ANGLES] {
+fn combine_angles(a: &Wave, b: &Wave, sign: i8) -> [i8; ANGLES] {
     std::array::from_fn(|k| a.angle[k].saturating_add(sign * b.angle[k]))
 }
 
 /// Returns a wave with a factor, with the sign of the angle normalised so that its first multiple is
 /// positive. A zero angle gives no wave, with the factor for the cosine and zero for the sine.
-fn made(cosine: bool, angle: [i8; ANGLES], factor: f64) -> (Vec<Wave>, f64) {
+fn normalised_wave(cosine: bool, angle: [i8; ANGLES], factor: f64) -> (Vec<Wave>, f64) {
     match angle.iter().find(|n| **n != 0) {
         None => (Vec::new(), if cosine { factor } else { 0.0 }),
         Some(n) if *n > 0 => (vec![Wave { angle, cosine }], factor),
@@ -242,24 +242,24 @@ fn made(cosine: bool, angle: [i8; ANGLES], factor: f64) -> (Vec<Wave>, f64) {
 }
 
 /// Converts a sum of products to a Fourier sum, in which each product has at most one wave.
-fn fourier(ring: &mut Ring, products: &[Product]) -> Option<Vec<Product>> {
+fn fourier_sum(ring: &mut Ring, products: &[Product]) -> Option<Vec<Product>> {
     let mut sum: Vec<Product> = Vec::new();
     for product in products {
         let mut parts = vec![Product { waves: Vec::new(), coefficient: product.coefficient }];
         for wave in &product.waves {
-            parts = parts.iter().flat_map(|p| times(p, wave)).collect();
+            parts = parts.iter().flat_map(|p| multiply_by_wave(p, wave)).collect();
         }
-        ring.spend(parts.len())?;
+        ring.spend_steps(parts.len())?;
         for part in parts {
-            collect(&mut sum, part);
+            collect_product(&mut sum, part);
         }
-        ring.spend(sum.len())?;
+        ring.spend_steps(sum.len())?;
     }
     sum.retain(|p| p.coefficient != 0.0);
     Some(sum)
 }
 
-fn collect(sum: &mut Vec<Product>, part: Product) {
+fn collect_product(sum: &mut Vec<Product>, part: Product) {
     match sum.iter_mut().find(|p| p.waves == part.waves) {
         Some(p) if is_close(p.coefficient, -part.coefficient) => p.coefficient = 0.0,
         Some(p) => p.coefficient += part.coefficient,
@@ -269,17 +269,17 @@ fn collect(sum: &mut Vec<Product>, part: Product) {
 
 /// Multiplies a product of at most one wave by another wave: returns half the waves of the sum and the
 /// difference of their angles.
-fn times(p: &Product, b: &Wave) -> Vec<Product> {
+fn multiply_by_wave(p: &Product, b: &Wave) -> Vec<Product> {
     let Some(a) = p.waves.first() else {
         return vec![Product { waves: vec![*b], coefficient: p.coefficient }];
     };
-    let (up, down) = (sum(a, b, 1), sum(a, b, -1));
+    let (up, down) = (combine_angles(a, b, 1), combine_angles(a, b, -1));
     let half = p.coefficient * 0.5;
     let parts = match (a.cosine, b.cosine) {
-        (true, true) => [made(true, up, half), made(true, down, half)],
-        (false, false) => [made(true, up, -half), made(true, down, half)],
-        (false, true) => [made(false, up, half), made(false, down, half)],
-        (true, false) => [made(false, up, half), made(false, down, -half)],
+        (true, true) => [normalised_wave(true, up, half), normalised_wave(true, down, half)],
+        (false, false) => [normalised_wave(true, up, -half), normalised_wave(true, down, half)],
+        (false, true) => [normalised_wave(false, up, half), normalised_wave(false, down, half)],
+        (true, false) => [normalised_wave(false, up, half), normalised_wave(false, down, -half)],
     };
     let product_of_waves = |(waves, coefficient)| Product { waves, coefficient };
     parts.into_iter().map(product_of_waves).filter(|p| p.coefficient != 0.0).collect()

@@ -16,19 +16,22 @@ pub fn on_unit_sphere(ring: &mut Ring, p: &Polynomial, symbols: &[Symbol]) -> Op
     let Some(atoms) = symbols.iter().map(index_of_symbol_atom).collect::<Option<Vec<usize>>>() else {
         return Some(p.clone());
     };
-    let squares: Option<Vec<Monomial>> =
-        atoms.iter().map(|k| Monomial::atom(*k).times(Monomial::atom(*k))).collect();
+    let squares: Option<Vec<Monomial>> = atoms
+        .iter()
+        .map(|k| Monomial::first_power_of_atom(*k).checked_product(Monomial::first_power_of_atom(*k)))
+        .collect();
     let (squares, mut terms) = (squares?, p.terms.clone());
     loop {
-        let heads = terms
-            .iter()
-            .flat_map(|t| squares.iter().filter(|s| s.divides(t.monomial)).map(|s| t.monomial.quotient(*s)));
+        let heads = terms.iter().flat_map(|t| {
+            squares.iter().filter(|s| s.is_divisor_of(t.monomial)).map(|s| t.monomial.quotient(*s))
+        });
         let mut heads: Vec<Monomial> = heads.collect();
         heads.sort_unstable();
         heads.dedup();
-        ring.spend(heads.len() * terms.len())?;
-        let Some(shorter) = heads.iter().find_map(|head| shorter(&terms, *head, &squares)) else {
-            return Some(Polynomial::sum(terms));
+        ring.spend_steps(heads.len() * terms.len())?;
+        let Some(shorter) = heads.iter().find_map(|head| shorten_by_unit_norm(&terms, *head, &squares))
+        else {
+            return Some(Polynomial::sum_of_terms(terms));
         };
         terms = shorter;
     }
@@ -36,8 +39,9 @@ pub fn on_unit_sphere(ring: &mut Ring, p: &Polynomial, symbols: &[Symbol]) -> Op
 
 /// Returns the terms with a multiple of `h (1 − x² − y² − …)` added, where `h` is `head`, if that leaves
 /// fewer terms. The terms affected are `a h x² + b h y² + … + c h`.
-fn shorter(terms: &[Term], head: Monomial, squares: &[Monomial]) -> Option<Vec<Term>> {
-    let places: Vec<Monomial> = squares.iter().filter_map(|s| head.times(*s)).chain([head]).collect();
+fn shorten_by_unit_norm(terms: &[Term], head: Monomial, squares: &[Monomial]) -> Option<Vec<Term>> {
+    let places: Vec<Monomial> =
+        squares.iter().filter_map(|s| head.checked_product(*s)).chain([head]).collect();
     let coefficient = |m: &Monomial| terms.iter().find(|t| t.monomial == *m).map_or(0.0, |t| t.coefficient);
     let before: Vec<f64> = places.iter().map(coefficient).collect();
     let count_nonzero = |list: &[f64]| list.iter().filter(|c| **c != 0.0).count();
@@ -68,12 +72,12 @@ mod tests {
     fn squares_of_a_unit_quaternion_vanish() {
         let mut ring = Ring::new(|_| Rank::Position);
         let symbols = [0, 1, 2, 3].map(Symbol);
-        let q = symbols.map(|s| ring.atom(Atom::Symbol(s)).unwrap());
+        let q = symbols.map(|s| ring.monomial_of_atom(Atom::Symbol(s)).unwrap());
         let quaternion_monomial =
-            |list: &[usize]| list.iter().try_fold(Monomial::ONE, |m, k| m.times(q[*k])).unwrap();
+            |list: &[usize]| list.iter().try_fold(Monomial::ONE, |m, k| m.checked_product(q[*k])).unwrap();
         let quaternion_polynomial = |list: &[(f64, &[usize])]| {
             let terms = list.iter().map(|(c, m)| Term { monomial: quaternion_monomial(m), coefficient: *c });
-            Polynomial::sum(terms.collect())
+            Polynomial::sum_of_terms(terms.collect())
         };
         for (from, to) in [
             (

@@ -42,7 +42,7 @@ pub fn is_constant(name: &str) -> bool {
 
 /// Returns the constants that a mechanism with these facts lacks because of a need.
 pub fn absent_constants(need: Need, facts: &Facts) -> Vec<&'static str> {
-    let first_unmet_need = |needs: &[Need]| needs.iter().copied().find(|need| !facts.meet(*need));
+    let first_unmet_need = |needs: &[Need]| needs.iter().copied().find(|need| !facts.meets_need(*need));
     CONSTANTS
         .iter()
         .filter(|(_, needs)| first_unmet_need(needs) == Some(need))

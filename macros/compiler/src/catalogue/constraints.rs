@@ -10,16 +10,18 @@ const SOLVED: &[Need] = &[Need::Constraints, Need::Inertia];
 
 /// Rows of the functions of mechanisms with constraints that are derived from equations.
 pub const ROWS: &[Row] = &[
-    Row::derived(Id::ConstraintResiduals, "constraint_residuals", &[Need::Constraints], |f| Declaration {
-        arguments: vec![Q],
-        shape: Shape::Vector(constraint_facts(f).holonomic),
-        docs: vec![
-            "Residuals `φ(q)` of the holonomic constraints, m and rad: zero if the constraints are \
+    Row::derived_row(Id::ConstraintResiduals, "constraint_residuals", &[Need::Constraints], |f| {
+        Declaration {
+            arguments: vec![Q],
+            shape: Shape::Vector(constraint_facts(f).holonomic),
+            docs: vec![
+                "Residuals `φ(q)` of the holonomic constraints, m and rad: zero if the constraints are \
              satisfied.",
-        ],
-        ..Declaration::default()
+            ],
+            ..Declaration::default()
+        }
     }),
-    Row::derived(Id::ConstraintRates, "constraint_rates", &[Need::Constraints], |f| Declaration {
+    Row::derived_row(Id::ConstraintRates, "constraint_rates", &[Need::Constraints], |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(constraint_facts(f).all),
         docs: vec![
@@ -28,7 +30,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::ConstraintJacobian, "constraint_jacobian", &[Need::Constraints], |f| Declaration {
+    Row::derived_row(Id::ConstraintJacobian, "constraint_jacobian", &[Need::Constraints], |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Matrix(constraint_facts(f).all, f.nv),
         docs: vec![
@@ -37,7 +39,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::ConstraintBias, "constraint_bias", &[Need::Constraints], |f| Declaration {
+    Row::derived_row(Id::ConstraintBias, "constraint_bias", &[Need::Constraints], |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(constraint_facts(f).all),
         docs: vec![
@@ -46,53 +48,53 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::ConstraintResponse, "__constraint_correction", SOLVED, |f| Declaration {
-        arguments: vec![Q, force(f), bias(f)],
-        shape: solution(f),
+    Row::derived_row(Id::ConstraintResponse, "__constraint_correction", SOLVED, |f| Declaration {
+        arguments: vec![Q, force_argument(f), bias_argument(f)],
+        shape: constrained_solution_shape(f),
         ..Declaration::default()
     })
-    .unbatched(),
-    Row::derived(Id::ConstrainedDynamics, "__constrained_dynamics", SOLVED, |f| Declaration {
-        arguments: [vec![Q, V, Tau], sides(f)].concat(),
-        shape: solution(f),
+    .without_batch(),
+    Row::derived_row(Id::ConstrainedDynamics, "__constrained_dynamics", SOLVED, |f| Declaration {
+        arguments: [vec![Q, V, Tau], sliding_signs_argument(f)].concat(),
+        shape: constrained_solution_shape(f),
         ..Declaration::default()
     })
-    .unbatched(),
-    Row::derived(
+    .without_batch(),
+    Row::derived_row(
         Id::SlippingResponse,
         "__slipping_response",
         &[Need::Constraints, Need::Inertia, Need::Slipping],
         |f| Declaration {
-            arguments: [vec![Q, V, force(f), bias(f)], sides(f)].concat(),
-            shape: solution(f),
+            arguments: [vec![Q, V, force_argument(f), bias_argument(f)], sliding_signs_argument(f)].concat(),
+            shape: constrained_solution_shape(f),
             ..Declaration::default()
         },
     )
-    .unbatched(),
+    .without_batch(),
 ];
 
 fn constraint_facts(f: &Facts) -> ConstraintFacts {
     f.constraints.unwrap_or_default()
 }
 
-fn force(f: &Facts) -> Argument {
+fn force_argument(f: &Facts) -> Argument {
     Argument::Given("force", Supplied::Force, f.nv)
 }
 
-fn bias(f: &Facts) -> Argument {
+fn bias_argument(f: &Facts) -> Argument {
     Argument::Given("bias", Supplied::Bias, constraint_facts(f).all)
 }
 
 /// Returns the argument with the signs of the normal forces of sliding contacts; the list is empty without
 /// such contacts.
-fn sides(f: &Facts) -> Vec<Argument> {
+fn sliding_signs_argument(f: &Facts) -> Vec<Argument> {
     let slipping = constraint_facts(f).slipping;
     if slipping > 0 { vec![Argument::Given("sides", Supplied::Side, slipping)] } else { Vec::new() }
 }
 
 /// Returns the shape of the constrained dynamics: accelerations and multipliers with measures of their
 /// reliability, or for redundant constraints the quantities from which the runtime solves for them.
-fn solution(f: &Facts) -> Shape {
+fn constrained_solution_shape(f: &Facts) -> Shape {
     let (nv, nc) = (f.nv, constraint_facts(f).all);
     Shape::Record(match constraint_facts(f).overdetermined {
         true => Record::Responses(nv, nc),

@@ -11,7 +11,7 @@ const TOUCHING: &[Need] = &[Need::Contacts];
 
 /// Rows of the functions of mechanisms with contacts.
 pub const ROWS: &[Row] = &[
-    Row::derived(Id::ContactGaps, "contact_gaps", TOUCHING, |f| Declaration {
+    Row::derived_row(Id::ContactGaps, "contact_gaps", TOUCHING, |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Vector(f.contacts.count),
         docs: vec![
@@ -21,7 +21,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::ContactRates, "contact_rates", TOUCHING, |f| Declaration {
+    Row::derived_row(Id::ContactRates, "contact_rates", TOUCHING, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.contacts.rates),
         docs: vec![
@@ -32,7 +32,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::ContactJacobian, "contact_jacobian", TOUCHING, |f| Declaration {
+    Row::derived_row(Id::ContactJacobian, "contact_jacobian", TOUCHING, |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Matrix(f.contacts.rates, f.nv),
         docs: vec![
@@ -42,7 +42,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::ContactBias, "contact_bias", TOUCHING, |f| Declaration {
+    Row::derived_row(Id::ContactBias, "contact_bias", TOUCHING, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.contacts.rates),
         docs: vec![
@@ -51,13 +51,13 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::ContactLaws, "__contact_laws", TOUCHING, |f| Declaration {
+    Row::derived_row(Id::ContactLaws, "__contact_laws", TOUCHING, |f| Declaration {
         timeless: true,
         shape: Shape::Array(3 * f.contacts.count),
         ..Declaration::default()
     })
-    .unbatched(),
-    Row::derived(
+    .without_batch(),
+    Row::derived_row(
         Id::ContactResponses,
         "__contact_responses",
         &[Need::Contacts, Need::Inertia, Need::FewContacts],
@@ -67,8 +67,8 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     )
-    .unbatched(),
-    Row::derived(
+    .without_batch(),
+    Row::derived_row(
         Id::ContactDerivatives,
         "__contact_derivatives",
         &[Need::Contacts, Need::Inertia, Need::Asks(Word::Derivatives)],
@@ -78,7 +78,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     )
-    .unbatched(),
+    .without_batch(),
 ];
 
 /// Returns the argument with the forces of all contacts.

@@ -18,7 +18,7 @@ const CONSTRAINED: &[Need] = &[Need::Inertia, Need::Asks(Word::Derivatives), Nee
 
 /// Rows of the catalogue for the first derivatives of the dynamics.
 pub const ROWS: &[Row] = &[
-    Row::derived(
+    Row::derived_row(
         Id::MassMatrixInverse,
         "mass_matrix_inverse",
         &[Need::Inertia, Need::Asks(Word::Derivatives), Need::RegularMass],
@@ -32,7 +32,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
-    Row::derived(Id::CoriolisMatrix, "coriolis_matrix", ASKED, |f| Declaration {
+    Row::derived_row(Id::CoriolisMatrix, "coriolis_matrix", ASKED, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Square(f.nv),
         docs: vec![
@@ -42,21 +42,23 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::InverseDynamicsDerivatives, "inverse_dynamics_derivatives", ASKED, |f| Declaration {
-        arguments: vec![Q, V, A],
-        shape: Shape::Pair(f.nv),
-        docs: vec![
-            "`(∂τ/∂q, ∂τ/∂v)` of [`inverse_dynamics`](Self::inverse_dynamics); `∂τ/∂a` is the mass matrix.",
-            TANGENT,
-            "Singh, Russell and Wensing, *Efficient analytical derivatives of rigid-body dynamics using \
+    Row::derived_row(Id::InverseDynamicsDerivatives, "inverse_dynamics_derivatives", ASKED, |f| {
+        Declaration {
+            arguments: vec![Q, V, A],
+            shape: Shape::Pair(f.nv),
+            docs: vec![
+                "`(∂τ/∂q, ∂τ/∂v)` of [`inverse_dynamics`](Self::inverse_dynamics); `∂τ/∂a` is the mass matrix.",
+                TANGENT,
+                "Singh, Russell and Wensing, *Efficient analytical derivatives of rigid-body dynamics using \
              spatial vector algebra* (2022).",
-        ],
-        ..Declaration::default()
+            ],
+            ..Declaration::default()
+        }
     }),
-    Row::derived(Id::ForwardDynamicsDerivatives, "forward_dynamics_derivatives", UNCONSTRAINED, |f| {
+    Row::derived_row(Id::ForwardDynamicsDerivatives, "forward_dynamics_derivatives", UNCONSTRAINED, |f| {
         Declaration {
             arguments: vec![Q, V, Tau],
-            shape: forward(f),
+            shape: forward_dynamics_shape(f),
             docs: vec![
                 "`(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Self::forward_dynamics); the last is \
                  `M⁻¹`.",
@@ -71,7 +73,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         }
     }),
-    Row::derived(Id::Linearize, "linearize", UNCONSTRAINED, |f| Declaration {
+    Row::derived_row(Id::Linearize, "linearize", UNCONSTRAINED, |f| Declaration {
         arguments: vec![Q, V, U],
         shape: if f.calls_linear { Shape::CalledLinear(f.nv, f.nu) } else { Shape::Linear(f.nv, f.nu) },
         docs: vec![
@@ -82,7 +84,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(
+    Row::derived_row(
         Id::AccelerationsAndInverse,
         "__accelerations_and_inverse",
         &[Need::Inertia, Need::Asks(Word::Derivatives), Need::NoConstraints, Need::Calls],
@@ -92,7 +94,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
-    Row::derived(Id::InverseDynamicsDerivativesInto, "inverse_dynamics_derivatives_into", ASKED, |f| {
+    Row::derived_row(Id::InverseDynamicsDerivativesInto, "inverse_dynamics_derivatives_into", ASKED, |f| {
         Declaration {
             arguments: vec![Q, V, A, Argument::Into("by_q", f.nv), Argument::Into("by_v", f.nv)],
             shape: Shape::Pair(f.nv),
@@ -104,7 +106,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         }
     }),
-    Row::derived(
+    Row::derived_row(
         Id::ForwardDynamicsDerivativesInto,
         "forward_dynamics_derivatives_into",
         &[Need::Inertia, Need::NoConstraints, Need::Asks(Word::Derivatives)],
@@ -114,7 +116,7 @@ pub const ROWS: &[Row] = &[
                 ["by_q", "by_v", "inverse"].map(|name| Argument::Into(name, f.nv)).to_vec(),
             ]
             .concat(),
-            shape: forward(f),
+            shape: forward_dynamics_shape(f),
             docs: vec![
                 "Writes [`forward_dynamics_derivatives`](Self::forward_dynamics_derivatives) to `by_q`, \
                  `by_v` and `inverse`, `NV` by `NV` each. Returns the accelerations, which equal \
@@ -124,18 +126,18 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
-    Row::derived(Id::MotionDerivatives, "__motion_derivatives", CONSTRAINED, |f| {
-        let nc = constraints(f);
+    Row::derived_row(Id::MotionDerivatives, "__motion_derivatives", CONSTRAINED, |f| {
+        let nc = constraint_row_count(f);
         Declaration {
             arguments: vec![Q, V, A, Argument::Given("lambda", Supplied::Multiplier, nc)],
             shape: Shape::Record(Record::MotionDerivatives(f.nv, nc)),
             ..Declaration::default()
         }
     })
-    .unbatched(),
-    Row::derived(
+    .without_batch(),
+    Row::derived_row(
         Id::PassiveDerivatives,
-        Called::PassiveDerivatives.function(),
+        Called::PassiveDerivatives.function_name(),
         &[Need::Inertia, Need::Asks(Word::Derivatives), Need::PassiveCalls],
         |f| Declaration {
             arguments: vec![Q, V],
@@ -143,19 +145,19 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
-    Row::derived(Id::InputDerivatives, "__input_derivatives", ASKED, |f| Declaration {
+    Row::derived_row(Id::InputDerivatives, "__input_derivatives", ASKED, |f| Declaration {
         arguments: vec![Q, V, U],
         shape: Shape::Record(Record::InputDerivatives(f.nv, f.nu)),
         ..Declaration::default()
     })
-    .unbatched(),
+    .without_batch(),
 ];
 
 const MOMENTA: &[Need] = &[Need::Inertia, Need::Asks(Word::MomentumDerivatives)];
 
 /// Rows of the catalogue for the derivatives of momenta.
 pub const MOMENTUM_ROWS: &[Row] = &[
-    Row::derived(Id::GeneralizedMomentumDerivatives, "generalized_momentum_derivatives", MOMENTA, |f| {
+    Row::derived_row(Id::GeneralizedMomentumDerivatives, "generalized_momentum_derivatives", MOMENTA, |f| {
         Declaration {
             arguments: vec![Q, V],
             shape: Shape::Square(f.nv),
@@ -167,7 +169,7 @@ pub const MOMENTUM_ROWS: &[Row] = &[
             ..Declaration::default()
         }
     }),
-    Row::derived(Id::MomentumRateDerivatives, "momentum_rate_derivatives", MOMENTA, |f| Declaration {
+    Row::derived_row(Id::MomentumRateDerivatives, "momentum_rate_derivatives", MOMENTA, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Pair(f.nv),
         docs: vec![
@@ -186,8 +188,11 @@ const SYMMETRIC: &str = "Along `q ⊕ ε dq` the function changes by `½ ε² dq
 
 /// Rows of the catalogue for the second derivatives of the dynamics.
 pub const SECOND_ROWS: &[Row] = &[
-    Row::derived(Id::InverseDynamicsSecondDerivatives, "inverse_dynamics_second_derivatives", SECOND, |f| {
-        Declaration {
+    Row::derived_row(
+        Id::InverseDynamicsSecondDerivatives,
+        "inverse_dynamics_second_derivatives",
+        SECOND,
+        |f| Declaration {
             arguments: vec![Q, V, A, Argument::Factors(f.nv)],
             shape: Shape::Hessian(f.nv),
             docs: vec![
@@ -199,9 +204,9 @@ pub const SECOND_ROWS: &[Row] = &[
                  axes (Singh, Russell and Wensing, *Second-order derivatives of rigid-body dynamics*, 2023).",
             ],
             ..Declaration::default()
-        }
-    }),
-    Row::derived(
+        },
+    ),
+    Row::derived_row(
         Id::GeneralizedForcesSecondDerivatives,
         "generalized_forces_second_derivatives",
         SECOND,
@@ -217,12 +222,12 @@ pub const SECOND_ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
-    Row::derived(
+    Row::derived_row(
         Id::ConstraintCurvature,
         "__constraint_curvature",
         &[Need::Inertia, Need::Asks(Word::SecondDerivatives), Need::Constraints, Need::NoSlipping],
         |f| {
-            let nc = constraints(f);
+            let nc = constraint_row_count(f);
             Declaration {
                 arguments: vec![
                     Q,
@@ -238,13 +243,13 @@ pub const SECOND_ROWS: &[Row] = &[
             }
         },
     )
-    .unbatched(),
+    .without_batch(),
 ];
 
-fn constraints(f: &Facts) -> usize {
+fn constraint_row_count(f: &Facts) -> usize {
     f.constraints.map(|c| c.all).unwrap_or_default()
 }
 
-fn forward(f: &Facts) -> Shape {
+fn forward_dynamics_shape(f: &Facts) -> Shape {
     if f.calls { Shape::CalledForward(f.nv) } else { Shape::Forward(f.nv) }
 }

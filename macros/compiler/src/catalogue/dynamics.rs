@@ -11,34 +11,34 @@ const INERTIA: &[Need] = &[Need::Inertia];
 
 /// Rows of the equations of motion, energies and powers, and of total mass, centre of mass and momentum.
 pub const ROWS: &[Row] = &[
-    Row::derived(Id::Neutral, "neutral", &[], |f| Declaration {
+    Row::derived_row(Id::Neutral, "neutral", &[], |f| Declaration {
         timeless: true,
         shape: Shape::Vector(f.nq),
         docs: vec!["The configuration with zero coordinates and identity quaternions."],
         ..Declaration::default()
     })
-    .unbatched(),
-    Row::derived(Id::Limits, "__limits", &[Need::Limits], |f| Declaration {
+    .without_batch(),
+    Row::derived_row(Id::Limits, "__limits", &[Need::Limits], |f| Declaration {
         timeless: true,
         shape: Shape::Array(f.limits),
         ..Declaration::default()
     })
-    .unbatched(),
-    Row::derived(Id::Drawing, "drawing_numbers", &[Need::Asks(Word::Drawing)], |f| Declaration {
+    .without_batch(),
+    Row::derived_row(Id::Drawing, "drawing_numbers", &[Need::Asks(Word::Drawing)], |f| Declaration {
         timeless: true,
         shape: Shape::Array(f.drawing),
         docs: vec!["The numbers of [`DRAWING`](Self::DRAWING), m and rad, for the current parameters."],
         ..Declaration::default()
     })
-    .unbatched(),
-    Row::derived(Id::Heights, "__drawing_heights", &[Need::Asks(Word::Drawing), Need::Terrain], |f| Declaration {
+    .without_batch(),
+    Row::derived_row(Id::Heights, "__drawing_heights", &[Need::Asks(Word::Drawing), Need::Terrain], |f| Declaration {
         timeless: true,
         arguments: vec![Argument::Given("place", Supplied::Position, 2)],
         shape: Shape::Array(f.heights),
         ..Declaration::default()
     })
-    .unbatched(),
-    Row::derived(Id::MassMatrix, "mass_matrix", INERTIA, |f| Declaration {
+    .without_batch(),
+    Row::derived_row(Id::MassMatrix, "mass_matrix", INERTIA, |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Square(f.nv),
         docs: vec![
@@ -60,7 +60,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .of_trait(&[Q]),
-    Row::derived(Id::BiasForces, "bias_forces", INERTIA, |f| Declaration {
+    Row::derived_row(Id::BiasForces, "bias_forces", INERTIA, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.nv),
         docs: vec![
@@ -71,7 +71,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .of_trait(&[Q, V]),
-    Row::derived(Id::InverseDynamics, "inverse_dynamics", INERTIA, |f| Declaration {
+    Row::derived_row(Id::InverseDynamics, "inverse_dynamics", INERTIA, |f| Declaration {
         arguments: vec![Q, V, A],
         shape: Shape::Vector(f.nv),
         docs: vec![
@@ -86,7 +86,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .of_trait(&[Q, V, A]),
-    Row::derived(Id::ForwardDynamics, "forward_dynamics", &[Need::Inertia, Need::NoConstraints], |f| Declaration {
+    Row::derived_row(Id::ForwardDynamics, "forward_dynamics", &[Need::Inertia, Need::NoConstraints], |f| Declaration {
         arguments: vec![Q, V, Tau],
         shape: Shape::Vector(f.nv),
         docs: match f.acceleration_forces {
@@ -107,7 +107,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .of_trait(&[Q, V, Tau]),
-    Row::derived(Id::GeneralizedForces, "generalized_forces", &[], |f| Declaration {
+    Row::derived_row(Id::GeneralizedForces, "generalized_forces", &[], |f| Declaration {
         arguments: if f.velocity_inputs { vec![Q, V, U] } else { vec![Q, U] },
         shape: Shape::Vector(f.nv),
         docs: vec![
@@ -117,7 +117,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .of_trait(&[Q, V, U]),
-    Row::derived(Id::KineticEnergy, "kinetic_energy", INERTIA, |f| Declaration {
+    Row::derived_row(Id::KineticEnergy, "kinetic_energy", INERTIA, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Scalar,
         docs: vec![match f.time {
@@ -130,14 +130,14 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .of_trait(&[Q, V]),
-    Row::derived(Id::PotentialEnergy, "potential_energy", INERTIA, |_| Declaration {
+    Row::derived_row(Id::PotentialEnergy, "potential_energy", INERTIA, |_| Declaration {
         arguments: vec![Q],
         shape: Shape::Scalar,
         docs: vec!["Potential energy `U(q)` of gravity (zero at the ground's origin) and springs, J."],
         ..Declaration::default()
     })
     .of_trait(&[Q]),
-    Row::derived(Id::GeneralizedMomentum, "generalized_momentum", INERTIA, |f| Declaration {
+    Row::derived_row(Id::GeneralizedMomentum, "generalized_momentum", INERTIA, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.nv),
         docs: vec![match f.time {
@@ -150,7 +150,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .of_trait(&[Q, V]),
-    Row::derived(Id::MomentumRate, "momentum_rate", INERTIA, |f| Declaration {
+    Row::derived_row(Id::MomentumRate, "momentum_rate", INERTIA, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.nv),
         docs: vec![
@@ -165,7 +165,7 @@ pub const ROWS: &[Row] = &[
         ..Declaration::default()
     })
     .of_trait(&[Q, V]),
-    Row::derived(Id::DissipatedPower, "dissipated_power", INERTIA, |_| power(
+    Row::derived_row(Id::DissipatedPower, "dissipated_power", INERTIA, |_| power_declaration(
         vec![Q, V],
         vec![
             "Power dissipated by dashpots, friction and dissipation functions, W.",
@@ -173,10 +173,10 @@ pub const ROWS: &[Row] = &[
              dissipated_power`.",
         ],
     )),
-    Row::derived(Id::ControlPower, "control_power", INERTIA, |_| {
-        power(vec![Q, V, U], vec!["Power of the inputs `u`, W."])
+    Row::derived_row(Id::ControlPower, "control_power", INERTIA, |_| {
+        power_declaration(vec![Q, V, U], vec!["Power of the inputs `u`, W."])
     }),
-    Row::derived(Id::DisturbancePower, "disturbance_power", INERTIA, |f| power(
+    Row::derived_row(Id::DisturbancePower, "disturbance_power", INERTIA, |f| power_declaration(
         vec![Q, V],
         vec![match f.acceleration_forces {
             true => "Power of applied forces that are neither conservative nor dissipative nor inputs, W, \
@@ -184,20 +184,20 @@ pub const ROWS: &[Row] = &[
             false => "Power of applied forces that are neither conservative nor dissipative nor inputs, W.",
         }],
     )),
-    Row::derived(Id::TotalMass, "total_mass", INERTIA, |_| Declaration {
+    Row::derived_row(Id::TotalMass, "total_mass", INERTIA, |_| Declaration {
         timeless: true,
         shape: Shape::Scalar,
         docs: vec!["Mass of everything that moves, kg."],
         ..Declaration::default()
     })
-    .unbatched(),
-    Row::derived(Id::CenterOfMass, "center_of_mass", INERTIA, |_| Declaration {
+    .without_batch(),
+    Row::derived_row(Id::CenterOfMass, "center_of_mass", INERTIA, |_| Declaration {
         arguments: vec![Q],
         shape: Shape::Vector(3),
         docs: vec!["Centre of mass of everything that moves, m, from the ground's origin in ground axes."],
         ..Declaration::default()
     }),
-    Row::derived(Id::Momentum, "momentum", INERTIA, |_| Declaration {
+    Row::derived_row(Id::Momentum, "momentum", INERTIA, |_| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(6),
         docs: vec![
@@ -205,9 +205,9 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(
+    Row::derived_row(
         Id::PassiveForces,
-        Called::PassiveForces.function(),
+        Called::PassiveForces.function_name(),
         &[Need::Inertia, Need::PassiveCalls],
         |f| Declaration {
             arguments: vec![Q, V],
@@ -217,6 +217,6 @@ pub const ROWS: &[Row] = &[
     ),
 ];
 
-fn power(arguments: Vec<super::Argument>, docs: Vec<&'static str>) -> Declaration {
+fn power_declaration(arguments: Vec<super::Argument>, docs: Vec<&'static str>) -> Declaration {
     Declaration { arguments, shape: Shape::Scalar, docs, ..Declaration::default() }
 }

@@ -49,7 +49,7 @@ pub enum Need {
 
 impl Need {
     /// Returns all needs, in the order in which they are reported as reasons.
-    pub fn all() -> impl Iterator<Item = Need> {
+    pub fn all_needs() -> impl Iterator<Item = Need> {
         let rest = [
             Need::NoConstraints,
             Need::RegularMass,
@@ -74,12 +74,12 @@ impl Need {
 
     /// Returns the name of the runtime's trait that expresses the need in error messages, `None` for needs of
     /// hidden functions.
-    pub fn reason(self) -> Option<&'static str> {
+    pub fn trait_of_need(self) -> Option<&'static str> {
         Some(match self {
             Need::Inertia => "HasInertia",
             Need::Constraints => "HasConstraints",
             Need::NoConstraints => "HasNoConstraints",
-            Need::Asks(word) => word.reason(),
+            Need::Asks(word) => word.trait_for_missing_option(),
             Need::RegularMass => "HasRegularMass",
             Need::Speeds => "HasSpeeds",
             Need::NoSpeeds => "HasNoSpeeds",
@@ -187,7 +187,7 @@ impl Facts {
     pub fn from_model(model: &Model<'_>, requests: Requests) -> Facts {
         let constraints = (!model.constraints.is_empty()).then(|| ConstraintFacts {
             all: model.constraints.len(),
-            holonomic: model.holonomic(),
+            holonomic: model.holonomic_count(),
             slipping: model.constraints.iter().filter(|c| !c.friction.is_empty()).count(),
             overdetermined: model.is_overdetermined(),
             determining: model.constraints.iter().any(|c| c.determines),
@@ -208,19 +208,19 @@ impl Facts {
             equilibria: model.equilibria.len(),
             drawing: model.drawing_numbers().len(),
             heights: model.heights.len(),
-            figures: model.figures().len(),
+            figures: model.requirement_values().len(),
             parameters: model.parameters.len(),
             ..Facts::default()
         }
     }
 
     /// Returns true if the mechanism meets a need.
-    pub fn meet(&self, need: Need) -> bool {
+    pub fn meets_need(&self, need: Need) -> bool {
         match need {
             Need::Inertia => !self.kinematic,
             Need::Constraints => self.constraints.is_some(),
             Need::NoConstraints => self.constraints.is_none(),
-            Need::Asks(word) => self.requests.has(word),
+            Need::Asks(word) => self.requests.has_option(word),
             Need::RegularMass => self.constraints.is_none_or(|c| !c.determining),
             Need::Slipping => self.constraints.is_some_and(|c| c.slipping > 0),
             Need::NoSlipping => self.constraints.is_none_or(|c| c.slipping == 0),

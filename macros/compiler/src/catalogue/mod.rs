@@ -19,7 +19,10 @@ mod written;
 
 pub use constants::{absent_constants, is_constant};
 pub use facts::{ConstraintFacts, ContactSizes, Facts, Need};
-pub use outputs::{BY_PARAMETERS, DERIVATIVES, JACOBIAN, REACTION, TOUCHED, output, reaction, touched};
+pub use outputs::{
+    BY_PARAMETERS, DERIVATIVES, JACOBIAN, REACTION, TOUCHED, contact_force_function, output_functions,
+    reaction_function,
+};
 pub use row::{Declaration, Declared, Id, Made, Row};
 pub use shape::{Argument, Called, InverseForm, Record, RecordField, Shape, Structure};
 
@@ -45,14 +48,14 @@ const TABLES: [&[Row]; 13] = [
 const BEFORE_OUTPUTS: usize = 5;
 
 /// Returns all rows of the catalogue.
-pub fn rows() -> impl Iterator<Item = &'static Row> {
+pub fn catalogue_rows() -> impl Iterator<Item = &'static Row> {
     TABLES.into_iter().flatten()
 }
 
-fn declared(tables: &[&'static [Row]], facts: &Facts) -> Vec<Declared> {
-    let present = tables.iter().copied().flatten().filter(|row| row.lacks(facts).is_none());
+fn declared_functions(tables: &[&'static [Row]], facts: &Facts) -> Vec<Declared> {
+    let present = tables.iter().copied().flatten().filter(|row| row.first_unmet_need(facts).is_none());
     let derived = present.filter_map(|row| match row.made {
-        Made::Derived(id) => Some(row.declared(id, facts)),
+        Made::Derived(id) => Some(row.declare_function(id, facts)),
         Made::Written => None,
     });
     derived.collect()
@@ -60,12 +63,12 @@ fn declared(tables: &[&'static [Row]], facts: &Facts) -> Vec<Declared> {
 
 /// Returns the functions of a mechanism that are derived from equations and generated before its outputs.
 pub fn before_outputs(facts: &Facts) -> Vec<Declared> {
-    declared(&TABLES[..BEFORE_OUTPUTS], facts)
+    declared_functions(&TABLES[..BEFORE_OUTPUTS], facts)
 }
 
 /// Returns the functions of a mechanism that are derived from equations and generated after its outputs.
 pub fn after_outputs(facts: &Facts) -> Vec<Declared> {
-    declared(&TABLES[BEFORE_OUTPUTS..], facts)
+    declared_functions(&TABLES[BEFORE_OUTPUTS..], facts)
 }
 
 /// Returns the state-dependent functions of the runtime's mechanism trait, with their arguments in the trait.
@@ -75,11 +78,13 @@ pub fn of_trait() -> impl Iterator<Item = (&'static Row, &'static [Argument])> {
 
 /// Returns the functions that a mechanism with these facts lacks, grouped by the first need that is not met,
 /// in the order of the needs.
-pub fn absent(facts: &Facts) -> Vec<(Need, Vec<&'static Row>)> {
+pub fn absent_functions(facts: &Facts) -> Vec<(Need, Vec<&'static Row>)> {
     let rows_lacking = |need: Need| {
         // Another row of the same name may be present.
-        let is_there = |row: &Row| rows().any(|r| r.name == row.name && r.lacks(facts).is_none());
-        let all = rows().filter(|row| !row.is_hidden() && row.lacks(facts) == Some(need) && !is_there(row));
+        let is_there =
+            |row: &Row| catalogue_rows().any(|r| r.name == row.name && r.first_unmet_need(facts).is_none());
+        let all = catalogue_rows()
+            .filter(|row| !row.is_hidden() && row.first_unmet_need(facts) == Some(need) && !is_there(row));
         let mut found: Vec<&'static Row> = Vec::new();
         for row in all {
             if found.iter().all(|known| known.name != row.name) {
@@ -88,18 +93,18 @@ pub fn absent(facts: &Facts) -> Vec<(Need, Vec<&'static Row>)> {
         }
         (need, found)
     };
-    Need::all().map(rows_lacking).collect()
+    Need::all_needs().map(rows_lacking).collect()
 }
 
 /// Returns the names of the functions with handwritten bodies that also have a batched variant.
 pub fn written_in_lanes(facts: &Facts) -> impl Iterator<Item = &'static str> {
-    let written = rows().filter(|row| row.batched && matches!(row.made, Made::Written));
-    written.filter(|row| row.lacks(facts).is_none()).map(|row| row.name)
+    let written = catalogue_rows().filter(|row| row.batched && matches!(row.made, Made::Written));
+    written.filter(|row| row.first_unmet_need(facts).is_none()).map(|row| row.name)
 }
 
 /// Returns true if a mechanism with these facts has a function of this name that is not an output.
-pub fn has(name: &str, facts: &Facts) -> bool {
-    let mut present = rows().filter(|row| row.lacks(facts).is_none());
+pub fn has_function(name: &str, facts: &Facts) -> bool {
+    let mut present = catalogue_rows().filter(|row| row.first_unmet_need(facts).is_none());
     let one = name.strip_suffix("_lanes").filter(|_| facts.requests.batch);
     present.any(|row| row.name == name || (row.batched && Some(row.name) == one))
 }

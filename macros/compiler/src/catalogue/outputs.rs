@@ -32,7 +32,7 @@ fn of_size(size: usize) -> Shape {
     }
 }
 
-fn declared(
+fn declared_output(
     id: Id,
     name: String,
     arguments: &[Argument],
@@ -47,7 +47,7 @@ fn declared(
 /// Returns the functions of an output: its value, its Jacobian unless it depends on accelerations, and the
 /// requested derivatives. A matrix output has its value alone, since the derivatives of products with vectors
 /// serve the same purpose.
-pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
+pub fn output_functions(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
     let mut arguments = vec![Q];
     arguments.extend((uses.velocities || uses.accelerations).then_some(V));
     arguments.extend(uses.accelerations.then_some(A));
@@ -60,7 +60,7 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
         false => format!("The output `{name}`."),
     };
     let mut functions =
-        vec![declared(Id::Output, name.to_string(), &arguments, of_size(size), vec![about], f)];
+        vec![declared_output(Id::Output, name.to_string(), &arguments, of_size(size), vec![about], f)];
     if size == MATRIX {
         return functions;
     }
@@ -71,7 +71,14 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
         };
         let docs = vec![format!("Jacobian of the output `{name}`: {what}.")];
         let shape = Shape::Matrix(size, f.nv);
-        functions.push(declared(Id::OutputJacobian, format!("{name}{JACOBIAN}"), &arguments, shape, docs, f));
+        functions.push(declared_output(
+            Id::OutputJacobian,
+            format!("{name}{JACOBIAN}"),
+            &arguments,
+            shape,
+            docs,
+            f,
+        ));
     }
     if f.requests.derivatives {
         let docs = vec![
@@ -85,7 +92,7 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
         ];
         let shape = Shape::Jacobians(size, f.nv, f.nu);
         let name = format!("{name}{DERIVATIVES}");
-        functions.push(declared(Id::OutputDerivatives, name, &arguments, shape, docs, f));
+        functions.push(declared_output(Id::OutputDerivatives, name, &arguments, shape, docs, f));
     }
     if f.requests.sensitivities {
         let docs = vec![format!(
@@ -94,27 +101,27 @@ pub fn output(name: &str, size: usize, uses: Uses, f: &Facts) -> Vec<Declared> {
         )];
         let shape = Shape::Matrix(size, f.parameters);
         let name = format!("{name}{BY_PARAMETERS}");
-        functions.push(declared(Id::OutputByParameters, name, &arguments, shape, docs, f));
+        functions.push(declared_output(Id::OutputByParameters, name, &arguments, shape, docs, f));
     }
     functions
 }
 
 /// Returns the hidden function of an output that contains reactions. It takes the state, accelerations and
 /// multipliers of the motion, and for a free-body diagram also the contact forces.
-pub fn reaction(name: &str, size: usize, is_diagram: bool, f: &Facts) -> Declared {
+pub fn reaction_function(name: &str, size: usize, is_diagram: bool, f: &Facts) -> Declared {
     let mut arguments = vec![Q, V, A];
     arguments.extend((f.nu > 0).then_some(U));
     arguments.extend(f.constraints.map(|c| Argument::Given("lambda", Supplied::Multiplier, c.all)));
     let touched = is_diagram && f.contacts.count > 0;
     arguments.extend(touched.then_some(contact_forces(f)));
-    declared(Id::Reaction, format!("{REACTION}{name}"), &arguments, of_size(size), Vec::new(), f)
+    declared_output(Id::Reaction, format!("{REACTION}{name}"), &arguments, of_size(size), Vec::new(), f)
 }
 
 /// Returns the hidden function of an output that contains contact forces. It takes the state, the inputs and
 /// the forces of all contacts.
-pub fn touched(name: &str, size: usize, f: &Facts) -> Declared {
+pub fn contact_force_function(name: &str, size: usize, f: &Facts) -> Declared {
     let mut arguments = vec![Q, V];
     arguments.extend((f.nu > 0).then_some(U));
     arguments.push(contact_forces(f));
-    declared(Id::Touched, format!("{TOUCHED}{name}"), &arguments, of_size(size), Vec::new(), f)
+    declared_output(Id::Touched, format!("{TOUCHED}{name}"), &arguments, of_size(size), Vec::new(), f)
 }

@@ -19,7 +19,7 @@ const PACKED: &[Need] = &[Need::Inertia, Need::Asks(Word::Packed)];
 
 /// Rows of the functions of the option `centroidal`.
 pub const CENTROIDAL: &[Row] = &[
-    Row::derived(Id::CentroidalMomentumMatrix, "centroidal_momentum_matrix", CENTROIDAL_ASKED, |f| {
+    Row::derived_row(Id::CentroidalMomentumMatrix, "centroidal_momentum_matrix", CENTROIDAL_ASKED, |f| {
         Declaration {
             arguments: vec![Q],
             shape: Shape::Matrix(6, f.nv),
@@ -33,20 +33,22 @@ pub const CENTROIDAL: &[Row] = &[
             ..Declaration::default()
         }
     }),
-    Row::derived(Id::CentroidalMomentumBias, "centroidal_momentum_bias", CENTROIDAL_ASKED, |_| Declaration {
-        arguments: vec![Q, V],
-        shape: Shape::Vector(6),
-        docs: vec![
-            "`Ȧ v`: the rate of [`momentum`](Self::momentum) (N, then N·m about the centre of mass) at zero \
+    Row::derived_row(Id::CentroidalMomentumBias, "centroidal_momentum_bias", CENTROIDAL_ASKED, |_| {
+        Declaration {
+            arguments: vec![Q, V],
+            shape: Shape::Vector(6),
+            docs: vec![
+                "`Ȧ v`: the rate of [`momentum`](Self::momentum) (N, then N·m about the centre of mass) at zero \
              accelerations. In every motion the rate of the momentum is `A v̇ + Ȧ v`.",
-        ],
-        ..Declaration::default()
+            ],
+            ..Declaration::default()
+        }
     }),
 ];
 
 /// Rows of the functions of the options `hamilton`, `routh` and `conserved`.
 pub const CANONICAL: &[Row] = &[
-    Row::derived(Id::Hamiltonian, "hamiltonian", HAMILTON, |f| Declaration {
+    Row::derived_row(Id::Hamiltonian, "hamiltonian", HAMILTON, |f| Declaration {
         arguments: vec![Q, Argument::Momenta(f.nv)],
         shape: Shape::Scalar,
         docs: vec![match f.time {
@@ -62,7 +64,7 @@ pub const CANONICAL: &[Row] = &[
         }],
         ..Declaration::default()
     }),
-    Row::derived(Id::CanonicalVelocity, "canonical_velocity", HAMILTON, |f| Declaration {
+    Row::derived_row(Id::CanonicalVelocity, "canonical_velocity", HAMILTON, |f| Declaration {
         arguments: vec![Q, Argument::Momenta(f.nv)],
         shape: Shape::Vector(f.nv),
         docs: vec![
@@ -71,7 +73,7 @@ pub const CANONICAL: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::CanonicalMomentumRate, "canonical_momentum_rate", HAMILTON, |f| Declaration {
+    Row::derived_row(Id::CanonicalMomentumRate, "canonical_momentum_rate", HAMILTON, |f| Declaration {
         arguments: vec![Q, Argument::Momenta(f.nv), Tau],
         shape: Shape::Vector(f.nv),
         docs: vec![
@@ -81,7 +83,7 @@ pub const CANONICAL: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::Routhian, "routhian", ROUTH, |f| Declaration {
+    Row::derived_row(Id::Routhian, "routhian", ROUTH, |f| Declaration {
         arguments: vec![Q, V, Argument::Momenta(f.cyclic)],
         shape: Shape::Scalar,
         docs: vec![
@@ -93,7 +95,7 @@ pub const CANONICAL: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::CyclicVelocities, "cyclic_velocities", ROUTH, |f| Declaration {
+    Row::derived_row(Id::CyclicVelocities, "cyclic_velocities", ROUTH, |f| Declaration {
         arguments: vec![Q, V, Argument::Momenta(f.cyclic)],
         shape: Shape::Vector(f.cyclic),
         docs: vec![
@@ -102,7 +104,7 @@ pub const CANONICAL: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::ReducedAccelerations, "reduced_accelerations", ROUTH, |f| Declaration {
+    Row::derived_row(Id::ReducedAccelerations, "reduced_accelerations", ROUTH, |f| Declaration {
         arguments: vec![Q, V, Argument::Momenta(f.cyclic), Tau],
         shape: Shape::Vector(f.nv.saturating_sub(f.cyclic)),
         docs: vec![
@@ -113,7 +115,7 @@ pub const CANONICAL: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::Conserved, "conserved", CONSERVED, |f| Declaration {
+    Row::derived_row(Id::Conserved, "conserved", CONSERVED, |f| Declaration {
         arguments: vec![Q, V],
         shape: Shape::Vector(f.conserved),
         docs: vec![
@@ -127,7 +129,7 @@ pub const CANONICAL: &[Row] = &[
 /// Rows of the functions of the options `regressor`, `sensitivities` and `packed`, and of the checks of
 /// parameters.
 pub const ROWS: &[Row] = &[
-    Row::derived(Id::JointTorqueRegressor, "joint_torque_regressor", REGRESSOR, |f| Declaration {
+    Row::derived_row(Id::JointTorqueRegressor, "joint_torque_regressor", REGRESSOR, |f| Declaration {
         arguments: vec![Q, V, A],
         shape: Shape::Matrix(f.nv, STANDARD * f.bodies),
         docs: vec![
@@ -139,7 +141,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::StandardParameters, "standard_parameters", REGRESSOR, |f| Declaration {
+    Row::derived_row(Id::StandardParameters, "standard_parameters", REGRESSOR, |f| Declaration {
         timeless: true,
         shape: Shape::Vector(STANDARD * f.bodies),
         docs: vec![
@@ -149,8 +151,8 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     })
-    .unbatched(),
-    Row::derived(Id::BaseRegressor, "base_regressor", REGRESSOR, |f| Declaration {
+    .without_batch(),
+    Row::derived_row(Id::BaseRegressor, "base_regressor", REGRESSOR, |f| Declaration {
         arguments: vec![Q, V, A],
         shape: Shape::Matrix(f.nv, f.base),
         docs: vec![
@@ -160,7 +162,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::BaseParameters, "base_parameters", REGRESSOR, |f| Declaration {
+    Row::derived_row(Id::BaseParameters, "base_parameters", REGRESSOR, |f| Declaration {
         timeless: true,
         arguments: vec![Argument::Standard(STANDARD * f.bodies)],
         shape: Shape::Vector(f.base),
@@ -174,7 +176,7 @@ pub const ROWS: &[Row] = &[
              used.",
         ],
     }),
-    Row::derived(
+    Row::derived_row(
         Id::InverseDynamicsByParameters,
         "inverse_dynamics_by_parameters",
         &[Need::Inertia, Need::Asks(Word::Sensitivities)],
@@ -188,7 +190,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
-    Row::derived(
+    Row::derived_row(
         Id::ForwardDynamicsByParameters,
         "forward_dynamics_by_parameters",
         &[Need::Inertia, Need::Asks(Word::Sensitivities), Need::NoConstraints],
@@ -203,7 +205,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
-    Row::derived(
+    Row::derived_row(
         Id::GeneralizedForcesByParameters,
         "generalized_forces_by_parameters",
         &[Need::Inertia, Need::Asks(Word::Sensitivities)],
@@ -217,7 +219,7 @@ pub const ROWS: &[Row] = &[
             ..Declaration::default()
         },
     ),
-    Row::derived(Id::MassMatrixPacked, "mass_matrix_packed", PACKED, |f| Declaration {
+    Row::derived_row(Id::MassMatrixPacked, "mass_matrix_packed", PACKED, |f| Declaration {
         arguments: vec![Q],
         shape: Shape::Vector(f.entries.len()),
         docs: vec![
@@ -226,7 +228,7 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::MassMatrixInto, "mass_matrix_into", PACKED, |f| Declaration {
+    Row::derived_row(Id::MassMatrixInto, "mass_matrix_into", PACKED, |f| Declaration {
         arguments: vec![Q, Argument::Into("m", f.nv)],
         shape: Shape::Symmetric(f.nv),
         docs: vec![
@@ -236,10 +238,10 @@ pub const ROWS: &[Row] = &[
         ],
         ..Declaration::default()
     }),
-    Row::derived(Id::Figures, "__figures", &[Need::Parameters], |f| Declaration {
+    Row::derived_row(Id::Figures, "__figures", &[Need::Parameters], |f| Declaration {
         timeless: true,
         shape: Shape::Array(f.figures),
         ..Declaration::default()
     })
-    .unbatched(),
+    .without_batch(),
 ];

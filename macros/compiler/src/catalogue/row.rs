@@ -152,7 +152,7 @@ pub struct Declared {
 
 impl Row {
     /// Creates a row of a function that is derived from equations and has a batched variant.
-    pub const fn derived(
+    pub const fn derived_row(
         id: Id,
         name: &'static str,
         needs: &'static [Need],
@@ -162,7 +162,7 @@ impl Row {
     }
 
     /// Creates the row of a handwritten function.
-    pub const fn written(name: &'static str, needs: &'static [Need]) -> Row {
+    pub const fn handwritten_row(name: &'static str, needs: &'static [Need]) -> Row {
         let empty_declaration = |_: &Facts| Declaration::default();
         Row { name, made: Made::Written, needs, declare: empty_declaration, in_trait: None, batched: false }
     }
@@ -173,7 +173,7 @@ impl Row {
     }
 
     /// Removes the batched variant: the function depends on no state, or is a helper.
-    pub const fn unbatched(self) -> Row {
+    pub const fn without_batch(self) -> Row {
         Row { batched: false, ..self }
     }
 
@@ -183,8 +183,8 @@ impl Row {
     }
 
     /// Returns the first need that a mechanism does not meet, `None` if it has the function.
-    pub fn lacks(&self, facts: &Facts) -> Option<Need> {
-        self.needs.iter().copied().find(|need| !facts.meet(*need))
+    pub fn first_unmet_need(&self, facts: &Facts) -> Option<Need> {
+        self.needs.iter().copied().find(|need| !facts.meets_need(*need))
     }
 
     /// Returns true for a function that only generated code calls.
@@ -193,7 +193,7 @@ impl Row {
     }
 
     /// Returns the function for a mechanism with these facts.
-    pub fn declared(&self, id: Id, facts: &Facts) -> Declared {
+    pub fn declare_function(&self, id: Id, facts: &Facts) -> Declared {
         let Declaration { arguments, timeless, shape, docs } = (self.declare)(facts);
         let time = (facts.time && !timeless).then_some(Argument::T);
         Declared {

@@ -45,7 +45,7 @@ impl Called {
     pub const ALL: [Called; 2] = [Called::PassiveForces, Called::PassiveDerivatives];
 
     /// Returns the name of the called function.
-    pub const fn function(self) -> &'static str {
+    pub const fn function_name(self) -> &'static str {
         match self {
             Called::PassiveForces => "__passive_forces",
             Called::PassiveDerivatives => "__passive_derivatives",
@@ -71,7 +71,7 @@ impl Argument {
     }
 
     /// Returns the name of the argument in the signature.
-    pub fn name(self) -> &'static str {
+    pub fn argument_name(self) -> &'static str {
         match self {
             Argument::T => "t",
             Argument::Q => "q",
@@ -164,7 +164,7 @@ pub enum Shape {
 impl Shape {
     /// Returns name, rows and columns of the arrays that a function writes outside of Rust; none for a single
     /// number and for results of hidden functions.
-    pub fn arrays(self) -> Vec<(&'static str, usize, usize)> {
+    pub fn result_arrays(self) -> Vec<(&'static str, usize, usize)> {
         match self {
             Shape::Record(Record::InputDerivatives(n, m)) => {
                 vec![("by_q", n, n), ("by_v", n, n), ("by_u", n, m)]
@@ -197,13 +197,13 @@ impl Shape {
     }
 
     /// Returns true for a result that is assembled from results of other functions.
-    pub fn calls(self) -> bool {
+    pub fn is_assembled_from_calls(self) -> bool {
         matches!(self, Shape::CalledForward(_) | Shape::CalledLinear(..))
     }
 
     /// Returns the number of outputs of a program for this result.
-    pub fn outputs(self, structure: &Structure) -> usize {
-        let border_entry_count = |n: usize| n * structure.inverse.width();
+    pub fn output_count(self, structure: &Structure) -> usize {
+        let border_entry_count = |n: usize| n * structure.inverse.values_per_velocity();
         match self {
             Shape::Scalar => 1,
             Shape::Vector(n) | Shape::Array(n) => n,
@@ -220,7 +220,7 @@ impl Shape {
             Shape::CalledForward(n) => n * structure.known.iter().map(Vec::len).sum::<usize>(),
             Shape::CalledLinear(n, m) => n + 3 * n * n + n * m,
             Shape::Symmetric(_) => structure.entries.len(),
-            Shape::Record(record) => record.fields().iter().map(|field| field.length()).sum(),
+            Shape::Record(record) => record.record_fields().iter().map(|field| field.length()).sum(),
         }
     }
 }
@@ -266,7 +266,7 @@ impl RecordField {
 
 impl Record {
     /// Returns the name of the struct and its two sizes.
-    pub fn name(self) -> (&'static str, [usize; 2]) {
+    pub fn struct_name_and_sizes(self) -> (&'static str, [usize; 2]) {
         match self {
             Record::Elimination(nv, nc) => ("Elimination", [nv, nc]),
             Record::Responses(nv, nc) => ("Responses", [nv, nc]),
@@ -278,7 +278,7 @@ impl Record {
     }
 
     /// Returns the fields in the order of the outputs.
-    pub fn fields(self) -> Vec<RecordField> {
+    pub fn record_fields(self) -> Vec<RecordField> {
         let vector_record_field = |name, rows| RecordField { name, rows, columns: None };
         let matrix_record_field = |name, rows, columns| RecordField { name, rows, columns: Some(columns) };
         match self {
@@ -348,7 +348,7 @@ pub enum InverseForm {
 impl InverseForm {
     /// Returns the number of values per velocity that the outputs contain in addition to the columns of the
     /// inverse: one for each velocity of the trunk.
-    fn width(&self) -> usize {
+    fn values_per_velocity(&self) -> usize {
         match self {
             InverseForm::Explicit => 0,
             InverseForm::LowRankUpdate(trunk) | InverseForm::BlockArrow { trunk, .. } => trunk.len(),

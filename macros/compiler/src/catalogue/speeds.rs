@@ -11,7 +11,7 @@ const SPEEDS: &[Need] = &[Need::Speeds];
 
 /// Rows of the conversions between generalized speeds and joint velocities.
 pub const ROWS: &[Row] = &[
-    Row::derived(Id::RatesOfSpeeds, "rates_of_speeds", SPEEDS, |f| Declaration {
+    Row::derived_row(Id::RatesOfSpeeds, "rates_of_speeds", SPEEDS, |f| Declaration {
         arguments: vec![Q, V],
         timeless: true,
         shape: Shape::Vector(f.nv),
@@ -23,7 +23,7 @@ pub const ROWS: &[Row] = &[
              joint velocities.",
         ],
     }),
-    Row::derived(Id::SpeedsOfRates, "speeds_of_rates", SPEEDS, |f| Declaration {
+    Row::derived_row(Id::SpeedsOfRates, "speeds_of_rates", SPEEDS, |f| Declaration {
         arguments: vec![Q, V],
         timeless: true,
         shape: Shape::Vector(f.nv),
@@ -32,38 +32,38 @@ pub const ROWS: &[Row] = &[
              [`rates_of_speeds`](Self::rates_of_speeds).",
         ],
     }),
-    Row::derived(Id::RateMatrix, "__rate_matrix", SPEEDS, |f| Declaration {
+    Row::derived_row(Id::RateMatrix, "__rate_matrix", SPEEDS, |f| Declaration {
         arguments: vec![Q],
         timeless: true,
         shape: Shape::Square(f.nv),
         ..Declaration::default()
     })
-    .unbatched(),
-    Row::derived(Id::SpeedMatrix, "__speed_matrix", SPEEDS, |f| Declaration {
+    .without_batch(),
+    Row::derived_row(Id::SpeedMatrix, "__speed_matrix", SPEEDS, |f| Declaration {
         arguments: vec![Q],
         timeless: true,
         shape: Shape::Square(f.nv),
         ..Declaration::default()
     })
-    .unbatched(),
-    Row::derived(Id::RateChanges, "__rate_changes", SPEEDS, |f| Declaration {
+    .without_batch(),
+    Row::derived_row(Id::RateChanges, "__rate_changes", SPEEDS, |f| Declaration {
         arguments: vec![Q, V],
         timeless: true,
         shape: Shape::Square(f.nv),
         ..Declaration::default()
     })
-    .unbatched(),
-    Row::derived(Id::RateAccelerations, "__rate_accelerations", SPEEDS, |f| Declaration {
+    .without_batch(),
+    Row::derived_row(Id::RateAccelerations, "__rate_accelerations", SPEEDS, |f| Declaration {
         arguments: vec![Q, V, A],
         timeless: true,
         shape: Shape::Vector(f.nv),
         ..Declaration::default()
     })
-    .unbatched(),
+    .without_batch(),
 ];
 
 /// Rows of the functions of the option `derivatives` for mechanisms with generalized speeds.
-pub const DERIVATIVES: &[Row] = &[Row::derived(
+pub const DERIVATIVES: &[Row] = &[Row::derived_row(
     Id::Turning,
     "__turning",
     &[Need::Inertia, Need::Asks(Word::Derivatives), Need::Speeds],
@@ -74,4 +74,4 @@ pub const DERIVATIVES: &[Row] = &[Row::derived(
         ..Declaration::default()
     },
 )
-.unbatched()];
+.without_batch()];

@@ -9,7 +9,7 @@ use crate::mechanics::derivatives::symbolic;
 use crate::mechanics::limb_contacts::LimbContacts;
 use crate::mechanism::{Model, Quantity};
 
-pub(super) use crate::mechanics::constraints::{biases, rates, residuals};
+pub(super) use crate::mechanics::constraints::{constraint_biases, constraint_velocities, residuals};
 
 /// Returns the constraint Jacobian column by column.
 pub(super) fn jacobian<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
@@ -29,7 +29,7 @@ pub(super) fn contact_gaps<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 
 /// Returns the time derivatives of the contact velocities at zero accelerations.
 pub(super) fn contact_biases<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    motion_rates(model.space(), &model.contact_rates(), false)
+    motion_rates(model.configuration_space(), &model.contact_rates(), false)
 }
 
 /// Returns the coefficients of friction, restitution and static friction of each contact.
@@ -50,14 +50,18 @@ pub(super) struct ContactDerivatives<'g> {
 impl<'g> ContactDerivatives<'g> {
     pub(super) fn new(model: &Model<'g>) -> ContactDerivatives<'g> {
         let rates = model.contact_rates();
-        let accelerations = motion_rates(model.space(), &rates, true);
-        let accelerations = symbolic::derivatives(model, &accelerations);
+        let accelerations = motion_rates(model.configuration_space(), &rates, true);
+        let accelerations = symbolic::force_derivatives(model, &accelerations);
         let of_rates = symbolic::by_configuration(model, &rates);
         ContactDerivatives { by_motion: [accelerations.by_q, accelerations.by_v, of_rates], rates }
     }
 
     /// Returns the derivatives of `Gᵀ f` with respect to `q` for some of the contact velocities.
-    fn forces(&self, model: &Model<'g>, numbers: impl Iterator<Item = usize>) -> Matrix<'g> {
+    fn contact_force_derivatives(
+        &self,
+        model: &Model<'g>,
+        numbers: impl Iterator<Item = usize>,
+    ) -> Matrix<'g> {
         let g = model.graph;
         // Reverse differentiation of the power of the forces transforms each force only once to the axes of
         // the links that it acts on.
@@ -67,8 +71,8 @@ impl<'g> ContactDerivatives<'g> {
         symbolic::by_configuration(model, &gradient(power, &velocities))
     }
 
-    pub(super) fn outputs(&self, model: &Model<'g>) -> Vec<Expr<'g>> {
-        let forces = self.forces(model, 0..self.rates.len());
+    pub(super) fn contact_derivative_outputs(&self, model: &Model<'g>) -> Vec<Expr<'g>> {
+        let forces = self.contact_force_derivatives(model, 0..self.rates.len());
         [&forces].into_iter().chain(&self.by_motion).flat_map(|rows| by_columns(model, rows)).collect()
     }
 
@@ -79,13 +83,14 @@ impl<'g> ContactDerivatives<'g> {
         model: &Model<'g>,
         contacts: &mut LimbContacts<'_, 'g>,
     ) -> Option<Vec<Expr<'g>>> {
-        let forces_of_limb = |numbers: &Vec<usize>| self.forces(model, numbers.iter().copied());
+        let forces_of_limb =
+            |numbers: &Vec<usize>| self.contact_force_derivatives(model, numbers.iter().copied());
         let of_limbs: Vec<Vec<Matrix<'g>>> =
             contacts.of_limbs().map(|limbs| limbs.iter().map(forces_of_limb).collect()).collect();
-        let forces = contacts.sum(&of_limbs)?;
+        let forces = contacts.sum_limb_matrices(&of_limbs)?;
         let mut outputs = by_columns(model, &forces);
         for rows in &self.by_motion {
-            outputs.extend(by_columns(model, &contacts.rows(rows)?));
+            outputs.extend(by_columns(model, &contacts.merge_rows(rows)?));
         }
         Some(outputs)
     }

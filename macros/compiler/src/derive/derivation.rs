@@ -83,10 +83,10 @@ impl<'a, 'g> Derivation<'a, 'g> {
     /// programs are reused.
     pub(super) fn derive(&self, declared: Vec<Declared>, mut done: Vec<Function>) -> Vec<Function> {
         for declared in declared {
-            pipeline::begin(&declared.name);
+            pipeline::begin_function(&declared.name);
             let (program, structure) = match self.model.graph.is_full() {
                 true => Default::default(),
-                false => self.program(&declared, &done),
+                false => self.program_of_function(&declared, &done),
             };
             done.push(Function::new(declared, program, structure));
         }
@@ -103,7 +103,10 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 
     /// Returns a function of the option `derivatives`, whose data exist if such a function is declared.
-    fn derivative(&self, function: impl FnOnce(&Derivatives<'a, 'g>) -> Program) -> (Program, Structure) {
+    fn derivative_program(
+        &self,
+        function: impl FnOnce(&Derivatives<'a, 'g>) -> Program,
+    ) -> (Program, Structure) {
         self.structured_derivative(|derivatives| (function(derivatives), Structure::default()))
     }
 
@@ -122,20 +125,22 @@ impl<'a, 'g> Derivation<'a, 'g> {
 
     /// Returns the program of a contact function from its values, one for each contact velocity.
     fn of_contacts(&self, values: &[Expr<'g>]) -> Program {
-        self.with_limb_contacts(self.specialisation.program(values), |contacts| contacts.values(values))
+        self.with_limb_contacts(self.specialisation.lower_to_program(values), |contacts| {
+            contacts.merge_values(values)
+        })
     }
 
     fn contact_jacobian(&self) -> Program {
         let rows = constraints::contact_rows(self.model);
-        let plain = self.specialisation.program(&constraints::by_columns(self.model, &rows));
+        let plain = self.specialisation.lower_to_program(&constraints::by_columns(self.model, &rows));
         self.with_limb_contacts(plain, |contacts| {
-            Some(constraints::by_columns(self.model, &contacts.rows(&rows)?))
+            Some(constraints::by_columns(self.model, &contacts.merge_rows(&rows)?))
         })
     }
 
     fn contact_derivatives(&self) -> Program {
         let found = constraints::ContactDerivatives::new(self.model);
-        let plain = self.specialisation.program(&found.outputs(self.model));
+        let plain = self.specialisation.lower_to_program(&found.contact_derivative_outputs(self.model));
         self.with_limb_contacts(plain, |contacts| found.outputs_in_lanes(self.model, contacts))
     }
 
@@ -155,14 +160,14 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 
     /// Returns the conserved quantities, for the option `conserved`.
-    fn conserved(&self) -> Vec<Expr<'g>> {
+    fn conserved_quantities(&self) -> Vec<Expr<'g>> {
         let kept = self.extras.and_then(|extras| extras.conserved.as_ref());
         kept.map_or_else(Vec::new, |kept| kept.iter().map(|c| c.value).collect())
     }
 
     /// Returns the outputs of a function of the option `regressor`, whose data exist if such a function is
     /// declared.
-    pub(super) fn identified(
+    pub(super) fn regressor_outputs(
         &self,
         outputs: impl FnOnce(&Identification<'a, 'g>) -> Vec<Expr<'g>>,
     ) -> Vec<Expr<'g>> {
@@ -170,24 +175,27 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 
     /// Returns the outputs of a function of the option `hamilton`.
-    pub(super) fn canonical(&self, outputs: impl FnOnce(&Hamilton<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+    pub(super) fn hamilton_outputs(
+        &self,
+        outputs: impl FnOnce(&Hamilton<'g>) -> Vec<Expr<'g>>,
+    ) -> Vec<Expr<'g>> {
         self.extras.and_then(|extras| extras.hamilton.as_ref()).map(outputs).unwrap_or_default()
     }
 
     /// Returns the outputs of a function of the option `routh`.
-    fn routh(&self, outputs: impl FnOnce(&Routh<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+    fn routh_outputs(&self, outputs: impl FnOnce(&Routh<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         self.extras.and_then(|extras| extras.routh.as_ref()).map(outputs).unwrap_or_default()
     }
 
     /// Returns the outputs of a function of the passive forces, if they have functions of their own.
-    fn passive(&self, outputs: fn(&PassiveForces<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+    fn passive_force_outputs(&self, outputs: fn(&PassiveForces<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         self.model.passive.as_deref().map_or_else(Vec::new, outputs)
     }
 
-    fn program(&self, declared: &Declared, done: &[Function]) -> (Program, Structure) {
+    fn program_of_function(&self, declared: &Declared, done: &[Function]) -> (Program, Structure) {
         let program_without_structure = |program: Program| (program, Structure::default());
         let program_of_outputs =
-            |outputs: &[Expr<'g>]| program_without_structure(self.specialisation.program(outputs));
+            |outputs: &[Expr<'g>]| program_without_structure(self.specialisation.lower_to_program(outputs));
         let (model, joints) = (self.model, self.joints);
         let find_function_by_id = |id: Id| done.iter().find(|f| f.id == id);
         if let Some(outputs) = self.speeds.and_then(|speeds| self.in_speeds(speeds, declared)) {
@@ -198,11 +206,11 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::Limits => program_of_outputs(&model.limit_values()),
             Id::Drawing => program_of_outputs(&model.drawing_numbers()),
             Id::Heights => program_of_outputs(&model.heights),
-            Id::Figures => program_of_outputs(&model.figures()),
+            Id::Figures => program_of_outputs(&model.requirement_values()),
             Id::GeneralizedForces => program_of_outputs(&forces::generalized_forces(model, joints)),
-            Id::DissipatedPower => program_of_outputs(&[power::dissipated(model)]),
-            Id::ControlPower => program_of_outputs(&[power::control(model, joints)]),
-            Id::DisturbancePower => program_of_outputs(&[power::disturbance(model)]),
+            Id::DissipatedPower => program_of_outputs(&[power::dissipated_power(model)]),
+            Id::ControlPower => program_of_outputs(&[power::control_power(model, joints)]),
+            Id::DisturbancePower => program_of_outputs(&[power::disturbance_power(model)]),
             Id::TotalMass => program_of_outputs(&[energy::mass_and_moment(model, joints).0]),
             Id::MassMatrix => program_without_structure(self.dynamics().mass_matrix()),
             Id::InverseDynamics => program_without_structure(self.dynamics().inverse_dynamics()),
@@ -220,17 +228,19 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::CentroidalMomentumBias => {
                 program_without_structure(self.dynamics().centroidal_momentum_bias())
             }
-            Id::Hamiltonian => program_of_outputs(&self.canonical(|h| vec![h.hamiltonian])),
-            Id::CanonicalVelocity => program_of_outputs(&self.canonical(|h| h.velocity.clone())),
-            Id::CanonicalMomentumRate => program_of_outputs(&self.canonical(|h| h.momentum_rate.clone())),
-            Id::Routhian => program_of_outputs(&self.routh(|r| vec![r.routhian])),
-            Id::CyclicVelocities => program_of_outputs(&self.routh(|r| r.velocity.clone())),
-            Id::ReducedAccelerations => program_of_outputs(&self.routh(|r| r.acceleration.clone())),
-            Id::Conserved => program_of_outputs(&self.conserved()),
+            Id::Hamiltonian => program_of_outputs(&self.hamilton_outputs(|h| vec![h.hamiltonian])),
+            Id::CanonicalVelocity => program_of_outputs(&self.hamilton_outputs(|h| h.velocity.clone())),
+            Id::CanonicalMomentumRate => {
+                program_of_outputs(&self.hamilton_outputs(|h| h.momentum_rate.clone()))
+            }
+            Id::Routhian => program_of_outputs(&self.routh_outputs(|r| vec![r.routhian])),
+            Id::CyclicVelocities => program_of_outputs(&self.routh_outputs(|r| r.velocity.clone())),
+            Id::ReducedAccelerations => program_of_outputs(&self.routh_outputs(|r| r.acceleration.clone())),
+            Id::Conserved => program_of_outputs(&self.conserved_quantities()),
             Id::ConstraintResiduals => program_of_outputs(&constraints::residuals(model)),
-            Id::ConstraintRates => program_of_outputs(&constraints::rates(model)),
+            Id::ConstraintRates => program_of_outputs(&constraints::constraint_velocities(model)),
             Id::ConstraintJacobian => program_of_outputs(&constraints::jacobian(model)),
-            Id::ConstraintBias => program_of_outputs(&constraints::biases(model)),
+            Id::ConstraintBias => program_of_outputs(&constraints::constraint_biases(model)),
             Id::ContactGaps => program_of_outputs(&constraints::contact_gaps(model)),
             Id::ContactRates => program_without_structure(self.of_contacts(&model.contact_rates())),
             Id::ContactJacobian => program_without_structure(self.contact_jacobian()),
@@ -248,36 +258,40 @@ impl<'a, 'g> Derivation<'a, 'g> {
             | Id::OutputDerivatives
             | Id::OutputByParameters
             | Id::Reaction
-            | Id::Touched => program_of_outputs(&outputs::values(model, declared)),
+            | Id::Touched => program_of_outputs(&outputs::output_function_values(model, declared)),
             Id::MassMatrixInverse => self.structured_derivative(Derivatives::mass_matrix_inverse),
-            Id::CoriolisMatrix => self.derivative(Derivatives::coriolis_matrix),
-            Id::InverseDynamicsDerivatives => self.derivative(Derivatives::inverse_dynamics_derivatives),
-            Id::GeneralizedMomentumDerivatives => self.derivative(Derivatives::momentum_derivatives),
-            Id::MomentumRateDerivatives => self.derivative(Derivatives::momentum_rate_derivatives),
+            Id::CoriolisMatrix => self.derivative_program(Derivatives::coriolis_matrix),
+            Id::InverseDynamicsDerivatives => {
+                self.derivative_program(Derivatives::inverse_dynamics_derivatives)
+            }
+            Id::GeneralizedMomentumDerivatives => self.derivative_program(Derivatives::momentum_derivatives),
+            Id::MomentumRateDerivatives => self.derivative_program(Derivatives::momentum_rate_derivatives),
             Id::ForwardDynamicsDerivatives => self.structured_derivative(|d| {
                 d.forward_dynamics_derivatives(find_function_by_id(Id::InverseDynamicsDerivatives))
             }),
-            Id::Linearize => self.derivative(Derivatives::linearize),
+            Id::Linearize => self.derivative_program(Derivatives::linearize),
             Id::AccelerationsAndInverse => self.structured_derivative(Derivatives::accelerations_and_inverse),
-            Id::MotionDerivatives => self.derivative(Derivatives::motion_derivatives),
-            Id::InputDerivatives => self.derivative(Derivatives::input_derivatives),
+            Id::MotionDerivatives => self.derivative_program(Derivatives::motion_derivatives),
+            Id::InputDerivatives => self.derivative_program(Derivatives::input_derivatives),
             Id::InverseDynamicsDerivativesInto => as_of(find_function_by_id(Id::InverseDynamicsDerivatives)),
             Id::ForwardDynamicsDerivativesInto => as_of(find_function_by_id(Id::ForwardDynamicsDerivatives)),
             Id::InverseDynamicsSecondDerivatives => {
-                self.derivative(Derivatives::inverse_dynamics_second_derivatives)
+                self.derivative_program(Derivatives::inverse_dynamics_second_derivatives)
             }
             Id::GeneralizedForcesSecondDerivatives => {
-                self.derivative(Derivatives::generalized_forces_second_derivatives)
+                self.derivative_program(Derivatives::generalized_forces_second_derivatives)
             }
-            Id::ConstraintCurvature => self.derivative(Derivatives::constraint_curvature),
+            Id::ConstraintCurvature => self.derivative_program(Derivatives::constraint_curvature),
             Id::JointTorqueRegressor => {
-                program_of_outputs(&self.identified(|i| i.joint_torque_regressor(joints)))
+                program_of_outputs(&self.regressor_outputs(|i| i.joint_torque_regressor(joints)))
             }
             Id::StandardParameters => {
-                program_of_outputs(&self.identified(Identification::standard_parameters))
+                program_of_outputs(&self.regressor_outputs(Identification::standard_parameters))
             }
-            Id::BaseRegressor => program_of_outputs(&self.identified(Identification::base_regressor)),
-            Id::BaseParameters => program_of_outputs(&self.identified(Identification::base_parameters)),
+            Id::BaseRegressor => program_of_outputs(&self.regressor_outputs(Identification::base_regressor)),
+            Id::BaseParameters => {
+                program_of_outputs(&self.regressor_outputs(Identification::base_parameters))
+            }
             Id::InverseDynamicsByParameters => {
                 program_without_structure(self.sensitivities().inverse_dynamics())
             }
@@ -287,10 +301,12 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::GeneralizedForcesByParameters => {
                 program_of_outputs(&parameters::generalized_forces(model, joints).concat())
             }
-            Id::MassMatrixPacked | Id::MassMatrixInto => self.packed(declared.id),
-            Id::PassiveForces => program_of_outputs(&self.passive(|passive| passive.forces.clone())),
+            Id::MassMatrixPacked | Id::MassMatrixInto => self.packed_mass_matrix(declared.id),
+            Id::PassiveForces => {
+                program_of_outputs(&self.passive_force_outputs(|passive| passive.forces.clone()))
+            }
             Id::PassiveDerivatives => {
-                program_of_outputs(&self.passive(|passive| passive.derivatives.clone()))
+                program_of_outputs(&self.passive_force_outputs(|passive| passive.derivatives.clone()))
             }
             // Functions that exist only for mechanisms with speeds, which `in_speeds` has already handled.
             Id::RatesOfSpeeds
@@ -305,7 +321,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 
     /// Returns the program of the entries of the mass matrix that are not identically zero.
-    fn packed(&self, id: Id) -> (Program, Structure) {
+    fn packed_mass_matrix(&self, id: Id) -> (Program, Structure) {
         let entries = &self.facts.entries;
         let at: Vec<usize> = entries.iter().map(|(i, j)| j * self.model.nv() + i).collect();
         let entries = if id == Id::MassMatrixInto { entries.clone() } else { Vec::new() };

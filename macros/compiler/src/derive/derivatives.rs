@@ -10,11 +10,11 @@ use crate::kinematics::{self, Joint};
 use crate::lower::{Operand, Program, lower};
 use crate::machine::{DERIVATIVES_COMPARED, DERIVATIVES_WRITTEN_OUT, INVERSE_WRITTEN_OUT};
 use crate::mechanics::derivatives::{
-    self, DerivationMethod, Factor, ForceDerivatives, Inverse, Linearized, Trunk, analytic, divided,
-    invariance, symbolic,
+    self, DerivationMethod, Factor, ForceDerivatives, Inverse, Linearized, Trunk, analytic,
+    divided_inverse_terms, invariance, symbolic,
 };
 use crate::mechanics::passive::passive_forces;
-use crate::mechanics::speeds::commutators;
+use crate::mechanics::speeds::displacement_commutators;
 use crate::mechanics::{self, added_mass, constraints, crba, forces, momentum, rnea};
 use crate::mechanism::{Model, Quantity};
 use crate::passes::{self, Passes, Variant};
@@ -24,10 +24,10 @@ use crate::vectorise::{self, Limbs};
 pub(super) const DIFFERENTIATE: usize = 6;
 
 /// Returns the variants of the model that are compared.
-pub(super) fn variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>> {
-    let mut variants = passes::variants(model, passes);
+pub(super) fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>> {
+    let mut variants = passes::model_variants(model, passes);
     if passes.frames && model.nv() <= DERIVATIVES_COMPARED {
-        variants.extend(passes::variants(model, Passes { frames: false, ..passes }));
+        variants.extend(passes::model_variants(model, Passes { frames: false, ..passes }));
     }
     variants.retain(|variant| !variant.for_inverse_dynamics);
     if model.nv() > DERIVATIVES_COMPARED {
@@ -64,20 +64,20 @@ impl<'a, 'g> Derivatives<'a, 'g> {
                 ..Parts::new(variant, specialisation)
             }));
         }
-        let mut parts = parts.into_iter().min_by_key(Parts::cost)?;
+        let mut parts = parts.into_iter().min_by_key(Parts::operation_cost)?;
         if parts.model.acceleration_forces.is_empty() {
             parts.known = invariance::invariant_columns(parts.model, &parts.joints);
         }
         if derivatives::is_analytic(parts.model) {
-            parts.wide = passes.wide(model.nv());
+            parts.wide = passes.tried_lane_counts(model.nv());
             parts.take_apart(passes.lanes && specialisation == Specialisation::None);
         }
-        let tau = forces::generalized_forces(model, &kinematics::joints(model));
+        let tau = forces::generalized_forces(model, &kinematics::joints_of_model(model));
         Some(Derivatives { parts, tau, constrained: !model.constraints.is_empty() })
     }
 
     /// Returns true if the derivatives of forward dynamics call other generated functions.
-    pub(super) fn calls(&self) -> bool {
+    pub(super) fn calls_other_functions(&self) -> bool {
         !self.constrained && self.parts.is_large()
     }
 
@@ -104,14 +104,14 @@ impl<'a, 'g> Derivatives<'a, 'g> {
 
     pub(super) fn momentum_derivatives(&self) -> Program {
         let Parts { model, joints, specialisation, .. } = &self.parts;
-        let p = momentum::generalized_momentum(model, joints, &mechanics::velocities(model));
-        specialisation.program(&columns(&symbolic::by_configuration(model, &p)))
+        let p = momentum::generalized_momentum(model, joints, &mechanics::velocity_symbols(model));
+        specialisation.lower_to_program(&entries_by_column(&symbolic::by_configuration(model, &p)))
     }
 
     pub(super) fn momentum_rate_derivatives(&self) -> Program {
         let Parts { model, joints, specialisation, .. } = &self.parts;
-        let rate = momentum::momentum_rate(model, joints, &mechanics::velocities(model));
-        specialisation.program(&force_columns(&symbolic::derivatives(model, &rate)))
+        let rate = momentum::momentum_rate(model, joints, &mechanics::velocity_symbols(model));
+        specialisation.lower_to_program(&force_columns(&symbolic::force_derivatives(model, &rate)))
     }
 
     /// Returns the derivatives of forward dynamics. `forces` are the derivatives of inverse dynamics, which
@@ -121,9 +121,9 @@ impl<'a, 'g> Derivatives<'a, 'g> {
         let is_zero_constant = |o: &Operand| *o == Operand::Const(0.0);
         let zeros =
             forces.map_or_else(Vec::new, |f| f.program.outputs.iter().map(is_zero_constant).collect());
-        let (inverse, known) = (parts.parted(), parts.known.indices());
-        let program = match (self.calls(), &parts.trunk) {
-            (true, _) => parts.specialisation.program(&parts.known.all()),
+        let (inverse, known) = (parts.form_of_inverse(), parts.known.known_column_indices());
+        let program = match (self.calls_other_functions(), &parts.trunk) {
+            (true, _) => parts.specialisation.lower_to_program(&parts.known.all_known_columns()),
             (false, Some(trunk)) => parts.forward_dynamics_in_parts(trunk),
             (false, None) => parts.forward_dynamics(),
         };
@@ -132,8 +132,8 @@ impl<'a, 'g> Derivatives<'a, 'g> {
 
     pub(super) fn linearize(&self) -> Program {
         match self.calls_linear() {
-            true => self.parts.inputs(&self.tau),
-            false => self.parts.linearization(&self.tau),
+            true => self.parts.input_force_program(&self.tau),
+            false => self.parts.linearization_program(&self.tau),
         }
     }
 
@@ -143,11 +143,11 @@ impl<'a, 'g> Derivatives<'a, 'g> {
     }
 
     pub(super) fn generalized_forces_second_derivatives(&self) -> Program {
-        second::inputs(self.parts.model, &self.tau, self.parts.specialisation)
+        second::input_power_hessian(self.parts.model, &self.tau, self.parts.specialisation)
     }
 
     pub(super) fn constraint_curvature(&self) -> Program {
-        second::constraints(self.parts.model, self.parts.specialisation)
+        second::constraint_hessian(self.parts.model, self.parts.specialisation)
     }
 
     pub(super) fn motion_derivatives(&self) -> Program {
@@ -192,7 +192,7 @@ impl<'a, 'g> Parts<'a, 'g> {
         Parts {
             model: &variant.model,
             joints: variant.joints.clone(),
-            effective: added_mass::effective(&variant.model, &mass),
+            effective: added_mass::effective_mass_matrix(&variant.model, &mass),
             mass,
             method: DerivationMethod::Recursion(1),
             specialisation,
@@ -205,13 +205,13 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     /// Finds groups of identical limbs, and the trunk that carries all limbs.
     fn take_apart(&mut self, lanes: bool) {
-        let groups = if lanes { vectorise::find(self.model, &self.joints) } else { Vec::new() };
+        let groups = if lanes { vectorise::find_limb_groups(self.model, &self.joints) } else { Vec::new() };
         let limbs = Limbs::new(self.model, &self.joints, &groups, || passive_forces(self.model, true));
-        let marked = limbs.as_ref().map(|limbs| Trunk::branching(&limbs.joints, limbs.model.nv()));
+        let marked = limbs.as_ref().map(|limbs| Trunk::branching_velocities(&limbs.joints, limbs.model.nv()));
         if self.model.nv() > DERIVATIVES_COMPARED {
             let whole = match (&limbs, &marked) {
                 (Some(limbs), Some(marked)) => limbs.marked_outside_limbs(marked),
-                _ => Trunk::branching(&self.joints, self.model.nv()),
+                _ => Trunk::branching_velocities(&self.joints, self.model.nv()),
             };
             self.trunk = Trunk::new(&self.joints, &self.mass, &whole);
         }
@@ -222,23 +222,22 @@ impl<'a, 'g> Parts<'a, 'g> {
         });
     }
 
-    fn cost(&self) -> usize {
-        self.specialisation.program(&self.force_columns(self.method)).counts.total()
+    fn operation_cost(&self) -> usize {
+        self.specialisation.lower_to_program(&self.force_columns(self.method)).counts.total_operations()
     }
 
     fn force_columns(&self, method: DerivationMethod) -> Vec<Expr<'g>> {
-        let a = mechanics::accelerations(self.model);
+        let a = mechanics::acceleration_symbols(self.model);
         force_columns(&derivatives::inverse_dynamics(self.model, &self.joints, &a, method))
     }
 
     fn inverse_dynamics(&self) -> Program {
-        let program = self.specialisation.program(&self.force_columns(self.method));
-        let wide = self
-            .wide
-            .iter()
-            .map(|most| self.specialisation.program(&self.force_columns(DerivationMethod::Recursion(*most))));
+        let program = self.specialisation.lower_to_program(&self.force_columns(self.method));
+        let wide = self.wide.iter().map(|most| {
+            self.specialisation.lower_to_program(&self.force_columns(DerivationMethod::Recursion(*most)))
+        });
         let in_lanes = self.limbs.iter().flat_map(|lanes| {
-            let a = lanes.limbs.symbols(Quantity::Acceleration);
+            let a = lanes.limbs.symbols_by_velocity(Quantity::Acceleration);
             [1].iter().chain(self.wide).map(move |most| {
                 let forces = limb_lanes::inverse_dynamics_derivatives(&lanes.limbs, self.model, &a, *most);
                 lower(&force_columns(&forces))
@@ -248,11 +247,11 @@ impl<'a, 'g> Parts<'a, 'g> {
     }
 
     fn forward_dynamics(&self) -> Program {
-        let tau = mechanics::efforts(self.model);
+        let tau = mechanics::generalized_force_symbols(self.model);
         let program_from_mass_matrix = |mass: &crba::Matrix<'g>, method: DerivationMethod| {
             let mut found = derivatives::forward_dynamics(self.model, &self.joints, mass, &tau, method);
-            self.known.replace(&mut found.forces);
-            self.specialisation.program(&[all_columns(&found), found.accelerations].concat())
+            self.known.replace_known_columns(&mut found.forces);
+            self.specialisation.lower_to_program(&[all_columns(&found), found.accelerations].concat())
         };
         let wide = self.wide.iter().map(|most| {
             let mass = crba::mass_matrix_in_lanes(self.model, &self.joints, *most);
@@ -265,26 +264,27 @@ impl<'a, 'g> Parts<'a, 'g> {
     fn forward_dynamics_in_parts(&self, trunk: &Trunk) -> Program {
         let model = self.model;
         let inverse = Inverse::new(&self.mass, trunk);
-        let a = inverse.solve(&self.unbalanced());
+        let a = inverse.solve_divided(&self.unbalanced_forces());
         let forces = derivatives::inverse_dynamics(model, &self.joints, &a, self.method);
         let derivative_outputs = |mut forces: ForceDerivatives<'g>,
                                   [inverse, factors]: [crba::Matrix<'g>; 2],
                                   a: Vec<Expr<'g>>| {
-            self.known.replace(&mut forces);
-            [force_columns(&forces), columns(&inverse), factors.concat(), a].concat()
+            self.known.replace_known_columns(&mut forces);
+            [force_columns(&forces), entries_by_column(&inverse), factors.concat(), a].concat()
         };
-        let program = self.specialisation.program(&derivative_outputs(
+        let program = self.specialisation.lower_to_program(&derivative_outputs(
             forces,
-            [inverse.columns(), inverse.factors()],
+            [inverse.inverse_columns(), inverse.limb_factor_rows()],
             a,
         ));
         let in_lanes = self.limbs.as_ref().and_then(|lanes| {
             let inverse = Inverse::new(&lanes.mass, lanes.trunk.as_ref()?);
-            let a = limb_lanes::accelerations(&lanes.limbs, &inverse);
-            let parts = limb_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);
+            let a = limb_lanes::accelerations_in_lanes(&lanes.limbs, &inverse);
+            let parts =
+                limb_lanes::inverse(&lanes.limbs, &[inverse.inverse_columns(), inverse.limb_factor_rows()]);
             Some([1].iter().chain(self.wide).map(move |most| {
                 let forces = limb_lanes::inverse_dynamics_derivatives(&lanes.limbs, model, &a, *most);
-                lower(&derivative_outputs(forces, parts.clone(), lanes.limbs.scattered(&a)))
+                lower(&derivative_outputs(forces, parts.clone(), lanes.limbs.scatter_to_velocities(&a)))
             }))
         });
         program.or_in_lanes(in_lanes.into_iter().flatten())
@@ -293,41 +293,46 @@ impl<'a, 'g> Parts<'a, 'g> {
     /// Returns the program of `M⁻¹`, by blocks if there is a trunk; after the accelerations if `accelerated`.
     fn inverse(&self, accelerated: bool) -> Program {
         let inverse_outputs = |a: Option<Vec<Expr<'g>>>, [inverse, factors]: [crba::Matrix<'g>; 2]| {
-            [a.unwrap_or_default(), columns(&inverse), factors.concat()].concat()
+            [a.unwrap_or_default(), entries_by_column(&inverse), factors.concat()].concat()
         };
         let Some(trunk) = &self.trunk else {
             let mass = if accelerated { &self.effective } else { &self.mass };
             let factor = Factor::new(mass, &self.joints);
-            let a = accelerated.then(|| factor.solve(self.unbalanced()));
-            return self.specialisation.program(&inverse_outputs(a, [factor.inverse(), Vec::new()]));
+            let a = accelerated.then(|| factor.solve_factored(self.unbalanced_forces()));
+            return self.specialisation.lower_to_program(&inverse_outputs(a, [factor.inverse(), Vec::new()]));
         };
         let inverse = Inverse::new(&self.mass, trunk);
-        let a = accelerated.then(|| inverse.solve(&self.unbalanced()));
-        let program =
-            self.specialisation.program(&inverse_outputs(a, [inverse.columns(), inverse.factors()]));
+        let a = accelerated.then(|| inverse.solve_divided(&self.unbalanced_forces()));
+        let program = self
+            .specialisation
+            .lower_to_program(&inverse_outputs(a, [inverse.inverse_columns(), inverse.limb_factor_rows()]));
         program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
             let inverse = Inverse::new(&lanes.mass, lanes.trunk.as_ref()?);
-            let a = accelerated
-                .then(|| lanes.limbs.scattered(&limb_lanes::accelerations(&lanes.limbs, &inverse)));
-            let parts = limb_lanes::inverse(&lanes.limbs, &[inverse.columns(), inverse.factors()]);
+            let a = accelerated.then(|| {
+                lanes.limbs.scatter_to_velocities(&limb_lanes::accelerations_in_lanes(&lanes.limbs, &inverse))
+            });
+            let parts =
+                limb_lanes::inverse(&lanes.limbs, &[inverse.inverse_columns(), inverse.limb_factor_rows()]);
             Some(lower(&inverse_outputs(a, parts)))
         }))
     }
 
     /// Returns the program of the terms from which loops of the runtime compute `M⁻¹`. If `accelerated` is
     /// true, `τ − h` follows these terms, from which the loops compute the accelerations.
-    fn divided(&self, accelerated: bool) -> Program {
+    fn inverse_terms_program(&self, accelerated: bool) -> Program {
         let bordered_inverse_outputs =
             |r: Option<Vec<Expr<'g>>>, [inverse, borders]: [crba::Matrix<'g>; 2]| {
-                [r.unwrap_or_default(), columns(&inverse), borders.concat()].concat()
+                [r.unwrap_or_default(), entries_by_column(&inverse), borders.concat()].concat()
             };
-        let r = accelerated.then(|| self.unbalanced());
-        let program = self
-            .specialisation
-            .program(&bordered_inverse_outputs(r, divided(&self.mass, &self.trunk_or_all())));
+        let r = accelerated.then(|| self.unbalanced_forces());
+        let program = self.specialisation.lower_to_program(&bordered_inverse_outputs(
+            r,
+            divided_inverse_terms(&self.mass, &self.trunk_or_all()),
+        ));
         program.or_in_lanes(self.limbs.iter().filter_map(|lanes| {
-            let parts = divided(&lanes.mass, lanes.trunk.as_ref()?);
-            let r = accelerated.then(|| lanes.limbs.scattered(&limb_lanes::unbalanced(&lanes.limbs)));
+            let parts = divided_inverse_terms(&lanes.mass, lanes.trunk.as_ref()?);
+            let r = accelerated
+                .then(|| lanes.limbs.scatter_to_velocities(&limb_lanes::unbalanced_forces(&lanes.limbs)));
             Some(lower(&bordered_inverse_outputs(r, limb_lanes::inverse(&lanes.limbs, &parts))))
         }))
     }
@@ -346,14 +351,14 @@ impl<'a, 'g> Parts<'a, 'g> {
 
     /// Returns the trunk, or a trunk of all velocities for a mechanism that does not branch.
     fn trunk_or_all(&self) -> Trunk {
-        self.trunk.clone().unwrap_or_else(|| Trunk::whole(&self.joints, self.model.nv()))
+        self.trunk.clone().unwrap_or_else(|| Trunk::whole_trunk(&self.joints, self.model.nv()))
     }
 
     /// Returns the forces that accelerate the mechanism, `τ − h`.
-    fn unbalanced(&self) -> Vec<Expr<'g>> {
-        let (model, v) = (self.model, mechanics::velocities(self.model));
+    fn unbalanced_forces(&self) -> Vec<Expr<'g>> {
+        let (model, v) = (self.model, mechanics::velocity_symbols(self.model));
         let bias = rnea::inverse_dynamics(model, &self.joints, &v, None);
-        mechanics::efforts(model).into_iter().zip(bias).map(|(tau, h)| tau - h).collect()
+        mechanics::generalized_force_symbols(model).into_iter().zip(bias).map(|(tau, h)| tau - h).collect()
     }
 
     /// Returns true if a single function for all derivatives of forward dynamics would be too large.
@@ -362,30 +367,31 @@ impl<'a, 'g> Parts<'a, 'g> {
         self.model.nv() > most && self.model.acceleration_forces.is_empty()
     }
 
-    fn linearization(&self, tau: &[Expr<'g>]) -> Program {
-        let linear = derivatives::linearized(self.model, &self.joints, &self.effective, tau, self.method);
+    fn linearization_program(&self, tau: &[Expr<'g>]) -> Program {
+        let linear =
+            derivatives::linearize_equations(self.model, &self.joints, &self.effective, tau, self.method);
         let mut outputs = all_columns(&linear);
-        outputs.extend(columns(&commutators(self.model)));
-        self.specialisation.program(&outputs)
+        outputs.extend(entries_by_column(&displacement_commutators(self.model)));
+        self.specialisation.lower_to_program(&outputs)
     }
 
     /// Returns the program of the input forces `tau` with their derivatives and the commutators of
     /// displacements.
-    fn inputs(&self, tau: &[Expr<'g>]) -> Program {
+    fn input_force_program(&self, tau: &[Expr<'g>]) -> Program {
         let mut outputs = tau.to_vec();
-        outputs.extend(force_columns(&symbolic::derivatives(self.model, tau)));
-        outputs.extend(columns(&symbolic::by_input(self.model, tau)));
-        outputs.extend(columns(&commutators(self.model)));
-        self.specialisation.program(&outputs)
+        outputs.extend(force_columns(&symbolic::force_derivatives(self.model, tau)));
+        outputs.extend(entries_by_column(&symbolic::by_input(self.model, tau)));
+        outputs.extend(entries_by_column(&displacement_commutators(self.model)));
+        self.specialisation.lower_to_program(&outputs)
     }
 
     /// Returns the program of the input forces `tau` with their derivatives, without the commutators of
     /// displacements.
     fn inputs_alone(&self, tau: &[Expr<'g>]) -> Program {
         let mut outputs = tau.to_vec();
-        outputs.extend(force_columns(&symbolic::derivatives(self.model, tau)));
-        outputs.extend(columns(&symbolic::by_input(self.model, tau)));
-        self.specialisation.program(&outputs)
+        outputs.extend(force_columns(&symbolic::force_derivatives(self.model, tau)));
+        outputs.extend(entries_by_column(&symbolic::by_input(self.model, tau)));
+        self.specialisation.lower_to_program(&outputs)
     }
 
     /// Returns, at constant accelerations and multipliers, the program of the derivatives of
@@ -393,28 +399,28 @@ impl<'a, 'g> Parts<'a, 'g> {
     /// displacements.
     fn constrained_motion(&self) -> Program {
         let model = self.model;
-        let a = mechanics::accelerations(model);
+        let a = mechanics::acceleration_symbols(model);
         let mut forces = derivatives::inverse_dynamics(model, &self.joints, &a, self.method);
         let parts = constraints::first_order(model, &a);
-        derivatives::subtract(&mut forces.by_q, &parts.forces.by_q);
-        derivatives::subtract(&mut forces.by_v, &parts.forces.by_v);
+        derivatives::subtract_matrix(&mut forces.by_q, &parts.forces.by_q);
+        derivatives::subtract_matrix(&mut forces.by_v, &parts.forces.by_v);
         let mut outputs = force_columns(&forces);
         outputs.extend(force_columns(&parts.accelerations));
-        outputs.extend(columns(&parts.rates));
-        outputs.extend(columns(&commutators(model)));
-        self.specialisation.program(&outputs)
+        outputs.extend(entries_by_column(&parts.rates));
+        outputs.extend(entries_by_column(&displacement_commutators(model)));
+        self.specialisation.lower_to_program(&outputs)
     }
 
     fn coriolis_matrix(&self) -> Program {
-        let v = mechanics::velocities(self.model);
+        let v = mechanics::velocity_symbols(self.model);
         let coriolis_program = |most: usize| {
             let matrix = analytic::coriolis_matrix(self.model, &self.joints, &v, most);
-            self.specialisation.program(&columns(&matrix))
+            self.specialisation.lower_to_program(&entries_by_column(&matrix))
         };
         let wide = self.wide.iter().map(|most| coriolis_program(*most));
         let in_lanes = self.limbs.iter().flat_map(|lanes| {
             let most = [1].iter().chain(self.wide);
-            most.map(|most| lower(&columns(&limb_lanes::coriolis_matrix(&lanes.limbs, *most))))
+            most.map(|most| lower(&entries_by_column(&limb_lanes::coriolis_matrix(&lanes.limbs, *most))))
         });
         coriolis_program(1).or_in_lanes(wide.chain(in_lanes))
     }
@@ -424,17 +430,19 @@ impl<'a, 'g> Parts<'a, 'g> {
         let (program, inverse) = match self.is_divided() {
             true => {
                 let trunk = self.trunk_or_all();
-                let parted =
-                    InverseForm::BlockArrow { trunk: trunk.velocities.clone(), limbs: trunk.limbs() };
-                (self.divided(accelerated), parted)
+                let parted = InverseForm::BlockArrow {
+                    trunk: trunk.velocities.clone(),
+                    limbs: trunk.velocities_of_limbs(),
+                };
+                (self.inverse_terms_program(accelerated), parted)
             }
-            false => (self.inverse(accelerated), self.parted()),
+            false => (self.inverse(accelerated), self.form_of_inverse()),
         };
         (program, Structure { inverse, ..Structure::default() })
     }
 
     /// Returns the form of the inverse that straight-line code computes.
-    fn parted(&self) -> InverseForm {
+    fn form_of_inverse(&self) -> InverseForm {
         self.trunk
             .as_ref()
             .map_or(InverseForm::Explicit, |trunk| InverseForm::LowRankUpdate(trunk.velocities.clone()))
@@ -442,18 +450,18 @@ impl<'a, 'g> Parts<'a, 'g> {
 }
 
 /// Returns the entries of a matrix column by column.
-pub(super) fn columns<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
+pub(super) fn entries_by_column<'g>(m: &crba::Matrix<'g>) -> Vec<Expr<'g>> {
     let [any, ..] = m.as_slice() else { return Vec::new() };
     (0..any.len()).flat_map(|j| m.iter().map(move |row| row[j])).collect()
 }
 
 fn force_columns<'g>(d: &ForceDerivatives<'g>) -> Vec<Expr<'g>> {
-    [&d.by_q, &d.by_v].into_iter().flat_map(columns).collect()
+    [&d.by_q, &d.by_v].into_iter().flat_map(entries_by_column).collect()
 }
 
 fn all_columns<'g>(l: &Linearized<'g>) -> Vec<Expr<'g>> {
     let mut all = force_columns(&l.forces);
-    all.extend(columns(&l.inverse));
-    all.extend(columns(&l.by_u));
+    all.extend(entries_by_column(&l.inverse));
+    all.extend(entries_by_column(&l.by_u));
     all
 }

@@ -18,7 +18,7 @@ use std::rc::Rc;
 mod frame_choice;
 mod variants;
 
-use frame_choice::{FrameChoice, smallest};
+use frame_choice::{FrameChoice, smallest_size};
 use variants::Variants;
 
 /// Inverse tolerance of the comparison of frames: frames whose mass matrix and inverse dynamics exceed the
@@ -49,7 +49,7 @@ impl<'g> Dynamics<'g> {
         specialisation: Specialisation,
         speeds: Option<&Rc<InSpeeds<'g>>>,
     ) -> Dynamics<'g> {
-        let mut all = FrameChoice::all(model, passes, specialisation, speeds);
+        let mut all = FrameChoice::all_frame_choices(model, passes, specialisation, speeds);
         all.sort_by_key(|choice| choice.size);
         if model.nv() > COMPARED_VELOCITIES {
             all.truncate(1);
@@ -65,19 +65,21 @@ impl<'g> Dynamics<'g> {
             }
         }
         choices.iter_mut().for_each(Variants::find_bias);
-        let wide = if speeds.is_none() { passes.wide(model.nv()) } else { &[] };
+        let wide = if speeds.is_none() { passes.tried_lane_counts(model.nv()) } else { &[] };
         let wide = mass_matrices_in_lanes(&choices, specialisation, wide);
         let side_by_side = in_lanes_of(
             specialisation,
             choices.iter().flat_map(|variants| variants.recursions_in_lanes(true)),
         );
         let biases = choices.iter().map(|variants| &variants.bias.program);
-        let bias = biases.min_by_key(|p| (p.counts.total(), p.fused_length())).cloned();
+        let bias = biases.min_by_key(|p| (p.counts.total_operations(), p.fused_length())).cloned();
         let biases_in_lanes =
             choices.iter().filter_map(|variants| Some(variants.bias.simd.as_ref()?.1.clone()));
         Dynamics {
-            mass_matrix: specialisation.cheapest(masses.into_iter()).or_in_lanes(wide),
-            inverse_dynamics: specialisation.cheapest(recursions.into_iter()).or_in_lanes(side_by_side),
+            mass_matrix: specialisation.cheapest_program(masses.into_iter()).or_in_lanes(wide),
+            inverse_dynamics: specialisation
+                .cheapest_program(recursions.into_iter())
+                .or_in_lanes(side_by_side),
             bias: bias.unwrap_or_default().or_in_lanes(biases_in_lanes),
             is_large: model.nv() > COMPARED_VELOCITIES || least > COMPARED_OPERATIONS,
             choices,
@@ -99,19 +101,19 @@ impl<'g> Dynamics<'g> {
     }
 
     pub(super) fn kinetic_energy(&self) -> Program {
-        self.smallest(Role::Scalars, |m, j, v| vec![energy::kinetic_energy(m, j, v)])
+        self.smallest_program(Role::Scalars, |m, j, v| vec![energy::kinetic_energy(m, j, v)])
     }
 
     pub(super) fn potential_energy(&self) -> Program {
-        self.smallest(Role::Scalars, |m, j, _| vec![energy::potential_energy(m, j)])
+        self.smallest_program(Role::Scalars, |m, j, _| vec![energy::potential_energy(m, j)])
     }
 
     pub(super) fn generalized_momentum(&self) -> Program {
-        self.smallest(Role::Forces, momentum::generalized_momentum)
+        self.smallest_program(Role::Forces, momentum::generalized_momentum)
     }
 
     pub(super) fn momentum_rate(&self) -> Program {
-        self.smallest(Role::MomentumRate, |m, j, v| {
+        self.smallest_program(Role::MomentumRate, |m, j, v| {
             let mut rate = momentum::momentum_rate(m, j, v);
             if self.in_speeds {
                 rate.extend(momentum::generalized_momentum(m, j, v));
@@ -121,20 +123,22 @@ impl<'g> Dynamics<'g> {
     }
 
     pub(super) fn center_of_mass(&self) -> Program {
-        self.smallest(Role::Scalars, |m, j, _| energy::center_of_mass(m, j).0.to_vec())
+        self.smallest_program(Role::Scalars, |m, j, _| energy::center_of_mass(m, j).0.to_vec())
     }
 
     pub(super) fn momentum(&self) -> Program {
-        self.smallest(Role::Scalars, |m, j, v| frames::flat(&momentum::centroidal_momentum(m, j, v)))
+        self.smallest_program(Role::Scalars, |m, j, v| {
+            frames::spatial_components(&momentum::centroidal_momentum(m, j, v))
+        })
     }
 
     pub(super) fn centroidal_momentum_matrix(&self) -> Program {
-        self.smallest(Role::Columns(6), |m, j, _| momentum::centroidal_momentum_matrix(m, j))
+        self.smallest_program(Role::Columns(6), |m, j, _| momentum::centroidal_momentum_matrix(m, j))
     }
 
     pub(super) fn centroidal_momentum_bias(&self) -> Program {
-        self.smallest(Role::Bias(6), |m, j, v| {
-            let mut bias = frames::flat(&momentum::centroidal_bias(m, j, v)).to_vec();
+        self.smallest_program(Role::Bias(6), |m, j, v| {
+            let mut bias = frames::spatial_components(&momentum::centroidal_bias(m, j, v)).to_vec();
             if self.in_speeds {
                 bias.extend(momentum::centroidal_momentum_matrix(m, j));
             }
@@ -158,11 +162,13 @@ impl<'g> Dynamics<'g> {
     /// impulses.
     pub(super) fn contact_responses(&self, rows: &crba::Matrix<'g>) -> Program {
         self.of_best(|variants| {
-            let plain = variants.cheapest(Role::Responses(rows.len()), |model| {
+            let plain = variants.cheapest_program(Role::Responses(rows.len()), |model| {
                 let mass = crba::mass_matrix(model, &variants.joints);
-                Factor::new(&mass, &variants.joints).responses(rows)
+                Factor::new(&mass, &variants.joints).constraint_responses(rows)
             });
-            let limbs = variants.plain_limbs().filter_map(|limbs| limb_responses::responses(limbs, rows));
+            let limbs = variants
+                .plain_limbs()
+                .filter_map(|limbs| limb_responses::limb_contact_responses(limbs, rows));
             plain.or_in_lanes(in_lanes_of(self.specialisation, limbs))
         })
     }
@@ -178,7 +184,7 @@ impl<'g> Dynamics<'g> {
         let limbs = self.choices.first().and_then(|variants| variants.plain_limbs().next());
         let mut contacts = limbs.and_then(|limbs| LimbContacts::new(limbs, rows));
         let found = contacts.as_mut().and_then(outputs);
-        plain.or_in_lanes(found.map(|outputs| self.specialisation.program(&outputs)))
+        plain.or_in_lanes(found.map(|outputs| self.specialisation.lower_to_program(&outputs)))
     }
 
     fn of_best(&self, program: impl FnOnce(&Variants<'g>) -> Program) -> Program {
@@ -187,31 +193,39 @@ impl<'g> Dynamics<'g> {
 
     /// Returns the program of the variant in which these expressions of model, joints and velocities are
     /// smallest.
-    fn smallest(
+    fn smallest_program(
         &self,
         role: Role,
         expressions: impl Fn(&Model<'g>, &[Joint<'g>], &[Expr<'g>]) -> Vec<Expr<'g>>,
     ) -> Program {
         self.of_best(|variants| {
-            variants
-                .smallest(role, |model| expressions(model, &variants.joints, &mechanics::velocities(model)))
+            variants.smallest_program(role, |model| {
+                expressions(model, &variants.joints, &mechanics::velocity_symbols(model))
+            })
         })
     }
 
     /// Returns forward dynamics by articulated bodies or by factorisation, whichever takes less time. The
     /// dependency chains of articulated bodies are longer.
     pub(super) fn forward_dynamics(&self) -> Program {
-        let articulated: Vec<Candidate<'g>> = self.choices.iter().flat_map(Variants::articulated).collect();
+        let articulated: Vec<Candidate<'g>> =
+            self.choices.iter().flat_map(Variants::articulated_body_candidates).collect();
         let is_large = self.is_large;
         let factorised: Vec<Candidate<'g>> = match is_large && !articulated.is_empty() {
             true => Vec::new(),
-            false => self.choices.iter().flat_map(Variants::factorised).collect(),
+            false => self.choices.iter().flat_map(Variants::factorisation_candidates).collect(),
         };
-        let is_larger = smallest(&factorised).is_none_or(|f| smallest(&articulated).is_some_and(|a| f > a));
+        let is_larger =
+            smallest_size(&factorised).is_none_or(|f| smallest_size(&articulated).is_some_and(|a| f > a));
         let others = articulated.into_iter().filter(|_| is_larger);
-        let both =
-            [self.specialisation.cheapest(factorised.into_iter()), self.specialisation.cheapest(others)];
-        let found = both.into_iter().filter(|program| !program.outputs.is_empty()).min_by_key(Program::time);
+        let both = [
+            self.specialisation.cheapest_program(factorised.into_iter()),
+            self.specialisation.cheapest_program(others),
+        ];
+        let found = both
+            .into_iter()
+            .filter(|program| !program.outputs.is_empty())
+            .min_by_key(Program::estimated_time);
         let in_lanes =
             in_lanes_of(self.specialisation, self.choices.iter().flat_map(Variants::articulated_in_lanes));
         found.unwrap_or_default().or_in_lanes(in_lanes)
@@ -232,7 +246,7 @@ fn mass_matrices_in_lanes<'g>(
     };
     let column_mass_matrices = |most| {
         let mass_matrices = move |variants: &Variants<'g>| {
-            let all = variants.plain();
+            let all = variants.general_variants();
             all.map(|m| crba::mass_matrix_in_lanes(m, &variants.joints, most).concat()).collect::<Vec<_>>()
         };
         in_lanes_of(specialisation, choices.iter().flat_map(mass_matrices))
@@ -249,6 +263,7 @@ fn in_lanes_of<'g>(
     specialisation: Specialisation,
     lists: impl Iterator<Item = Vec<Expr<'g>>>,
 ) -> Vec<Program> {
-    let programs = specialisation.programs(lists.map(|list| specialisation.sized(list)));
+    let programs =
+        specialisation.candidate_programs(lists.map(|list| specialisation.candidate_with_size(list)));
     programs.into_iter().map(|(_, program)| program).collect()
 }

@@ -14,22 +14,22 @@ pub fn mass_matrix<'g>(limbs: &Limbs<'g>, most: usize) -> Vec<Expr<'g>> {
 
 /// Returns inverse dynamics, or the bias if `accelerations` is false.
 pub fn inverse_dynamics<'g>(limbs: &Limbs<'g>, accelerations: bool) -> Vec<Expr<'g>> {
-    let v = limbs.symbols(Quantity::Velocity);
-    let a = accelerations.then(|| limbs.symbols(Quantity::Acceleration));
+    let v = limbs.symbols_by_velocity(Quantity::Velocity);
+    let a = accelerations.then(|| limbs.symbols_by_velocity(Quantity::Acceleration));
     let tau = rnea::inverse_dynamics(&limbs.model, &limbs.joints, &v, a.as_deref());
     let whole: Vec<Expr<'g>> = tau.iter().zip(limbs.passive_forces()).map(|(t, h)| *t + *h).collect();
-    limbs.scattered(&whole)
+    limbs.scatter_to_velocities(&whole)
 }
 
 /// Returns forward dynamics by articulated bodies, with the bias wrenches of another variant; `None` for a
 /// mechanism with coupled coordinates.
 pub fn forward_dynamics<'g>(limbs: &Limbs<'g>, bias: &Limbs<'g>) -> Option<Vec<Expr<'g>>> {
-    let v = limbs.symbols(Quantity::Velocity);
+    let v = limbs.symbols_by_velocity(Quantity::Velocity);
     let wrenches = rnea::wrenches(&bias.model, &bias.joints, &v, None);
-    let tau = limbs.symbols(Quantity::Force);
+    let tau = limbs.symbols_by_velocity(Quantity::Force);
     let r: Vec<Expr<'g>> = tau.iter().zip(limbs.passive_forces()).map(|(t, h)| *t - *h).collect();
     let a = aba::forward_dynamics(&limbs.model, &limbs.joints, wrenches, &r)?;
-    Some(limbs.scattered(&a))
+    Some(limbs.scatter_to_velocities(&a))
 }
 
 /// Returns the derivatives of inverse dynamics at the accelerations `a` of the mechanism in lanes, by
@@ -40,7 +40,7 @@ pub fn inverse_dynamics_derivatives<'g>(
     a: &[Expr<'g>],
     most: usize,
 ) -> ForceDerivatives<'g> {
-    let v = limbs.symbols(Quantity::Velocity);
+    let v = limbs.symbols_by_velocity(Quantity::Velocity);
     let found = analytic::inverse_dynamics(&limbs.model, &limbs.joints, &v, a, most);
     let [by_q, by_v] = [found.by_q, found.by_v].map(|m| scattered_rows(limbs, &m));
     let mut scattered = ForceDerivatives { by_q, by_v };
@@ -50,20 +50,20 @@ pub fn inverse_dynamics_derivatives<'g>(
 
 /// Returns a Coriolis matrix by rows, in up to `most` lanes.
 pub fn coriolis_matrix<'g>(limbs: &Limbs<'g>, most: usize) -> crba::Matrix<'g> {
-    let v = limbs.symbols(Quantity::Velocity);
+    let v = limbs.symbols_by_velocity(Quantity::Velocity);
     scattered_rows(limbs, &analytic::coriolis_matrix(&limbs.model, &limbs.joints, &v, most))
 }
 
 /// Returns the accelerations of the mechanism in lanes under forces, given the blocks of its inverse mass
 /// matrix.
-pub fn accelerations<'g>(limbs: &Limbs<'g>, inverse: &Inverse<'_, 'g>) -> Vec<Expr<'g>> {
-    inverse.solve(&unbalanced(limbs))
+pub fn accelerations_in_lanes<'g>(limbs: &Limbs<'g>, inverse: &Inverse<'_, 'g>) -> Vec<Expr<'g>> {
+    inverse.solve_divided(&unbalanced_forces(limbs))
 }
 
 /// Returns `τ − h` of the mechanism in lanes.
-pub fn unbalanced<'g>(limbs: &Limbs<'g>) -> Vec<Expr<'g>> {
-    let v = limbs.symbols(Quantity::Velocity);
-    let tau = limbs.symbols(Quantity::Force);
+pub fn unbalanced_forces<'g>(limbs: &Limbs<'g>) -> Vec<Expr<'g>> {
+    let v = limbs.symbols_by_velocity(Quantity::Velocity);
+    let tau = limbs.symbols_by_velocity(Quantity::Force);
     let bias = rnea::inverse_dynamics(&limbs.model, &limbs.joints, &v, None);
     let resisted = tau.iter().zip(limbs.passive_forces()).map(|(t, h)| *t - *h);
     resisted.zip(bias).map(|(r, h)| r - h).collect()
@@ -73,7 +73,7 @@ pub fn unbalanced<'g>(limbs: &Limbs<'g>) -> Vec<Expr<'g>> {
 /// the columns of the low-rank term.
 pub fn inverse<'g>(limbs: &Limbs<'g>, [matrix, beside]: &[crba::Matrix<'g>; 2]) -> [crba::Matrix<'g>; 2] {
     let width = beside.iter().map(Vec::len).max().unwrap_or_default();
-    let column = |k: usize| limbs.scattered(&beside.iter().map(|row| row[k]).collect::<Vec<_>>());
+    let column = |k: usize| limbs.scatter_to_velocities(&beside.iter().map(|row| row[k]).collect::<Vec<_>>());
     let columns: Vec<Vec<Expr<'g>>> = (0..width).map(column).collect();
     let rows = scattered_rows(limbs, matrix);
     let beside = (0..rows.len()).map(|i| columns.iter().map(|column| column[i]).collect()).collect();

@@ -32,12 +32,17 @@ impl Function {
     }
 
     /// Returns an empty function for a mechanism with an error.
-    pub fn stub(declared: Declared) -> Function {
+    pub fn empty_function(declared: Declared) -> Function {
         Function::new(declared, Program::default(), Structure::default())
     }
 
     /// Returns a hidden function that computes a part of another function.
-    pub fn part(name: String, arguments: Vec<Argument>, length: usize, program: Program) -> Function {
+    pub fn hidden_part_function(
+        name: String,
+        arguments: Vec<Argument>,
+        length: usize,
+        program: Program,
+    ) -> Function {
         let shape = Shape::Array(length);
         Function {
             id: Id::Part,
@@ -58,11 +63,11 @@ impl Function {
     /// Returns true if the program, and its version in lanes, has the number of outputs that the result takes
     /// and reads only arguments of the function.
     fn is_whole(&self) -> bool {
-        let expected = self.shape.outputs(&self.structure);
+        let expected = self.shape.output_count(&self.structure);
         let programs = [Some(&self.program), self.program.simd.as_deref()];
         programs.into_iter().flatten().all(|program| {
             let reads_arguments =
-                || program.symbols().into_iter().map(Quantity::from_symbol).all(|q| self.is_given(q));
+                || program.used_symbols().into_iter().map(Quantity::from_symbol).all(|q| self.is_given(q));
             program.outputs.len() == expected && reads_arguments()
         })
     }
@@ -105,14 +110,14 @@ impl Output {
     }
 
     /// Returns the text of an operation on constants whose result is not finite, if a program contains one.
-    pub fn undefined(&self) -> Option<String> {
+    pub fn undefined_operation(&self) -> Option<String> {
         let numbers = self.prepared.iter().map(|prepared| &prepared.numbers);
-        self.all_functions().map(|f| &f.program).chain(numbers).find_map(Program::undefined)
+        self.all_functions().map(|f| &f.program).chain(numbers).find_map(Program::undefined_operation)
     }
 
     /// Returns the name of a function whose program does not fit its arguments or its result. This is an
     /// internal error, which would produce wrong code.
-    pub fn misfit(&self) -> Option<&str> {
+    pub fn misfitting_function(&self) -> Option<&str> {
         let function = self.all_functions().find(|f| !f.is_whole()).map(|f| f.name.as_str());
         let link = self.links.iter().any(|l| !l.is_whole()).then_some("the steps of a link");
         let frame = self.frames.iter().find(|f| !f.is_whole()).map(|f| f.name.as_str());
@@ -195,20 +200,20 @@ pub struct Constant {
 }
 
 impl Constant {
-    fn strings(name: &'static str, docs: &'static str, list: &[String]) -> Constant {
+    fn string_list_constant(name: &'static str, docs: &'static str, list: &[String]) -> Constant {
         Constant { name, docs, item: "&'static str", list: list.iter().map(|s| format!("{s:?}")).collect() }
     }
 
     /// Returns the lists of names for the option `regressor`.
-    pub fn regressor(bodies: &[String], base: &[String]) -> Vec<Constant> {
+    pub fn regressor_name_constants(bodies: &[String], base: &[String]) -> Vec<Constant> {
         vec![
-            Constant::strings(
+            Constant::string_list_constant(
                 "BODIES",
                 "Name of the body of each group of ten standard parameters, which include everything fixed \
                  to it.",
                 bodies,
             ),
-            Constant::strings(
+            Constant::string_list_constant(
                 "BASE_PARAMETERS",
                 "Name of each base parameter: the link parameter, in the frame of its joint, that represents \
                  the combination.",
@@ -218,7 +223,7 @@ impl Constant {
     }
 
     /// Returns the list of the rows and columns of the entries for the option `packed`.
-    pub fn entries(list: &[(usize, usize)]) -> Constant {
+    pub fn packed_entry_constant(list: &[(usize, usize)]) -> Constant {
         Constant {
             name: "MASS_MATRIX_ENTRIES",
             docs: "Row and column of every entry of `mass_matrix_packed`: the lower triangle of the mass \
@@ -229,7 +234,7 @@ impl Constant {
     }
 
     /// Returns the list of the coordinates that the option `routh` eliminates.
-    pub fn cyclic(list: &[usize]) -> Constant {
+    pub fn cyclic_coordinate_constant(list: &[usize]) -> Constant {
         Constant {
             name: "CYCLIC",
             docs: "Index in `v` of the velocity of each cyclic coordinate. The Lagrangian does not depend on \
@@ -241,8 +246,8 @@ impl Constant {
     }
 
     /// Returns the list of the names of the conserved quantities.
-    pub fn conserved(list: &[String]) -> Constant {
-        Constant::strings(
+    pub fn conserved_name_constant(list: &[String]) -> Constant {
+        Constant::string_list_constant(
             "CONSERVED",
             "Name of every entry of [`conserved`](Self::conserved): a quantity that is constant in every \
              motion without inputs, for any values of the parameters. The energy, Jacobi's integral and \
@@ -260,19 +265,19 @@ impl Constant {
         let collect_text_parts =
             |part: fn(&(String, Written)) -> String| all.iter().map(part).collect::<Vec<String>>();
         vec![
-            Constant::strings(
+            Constant::string_list_constant(
                 "EQUILIBRIA",
                 "Name of every declared equilibrium.",
                 &collect_text_parts(|(name, _)| name.clone()),
             ),
-            Constant::strings(
+            Constant::string_list_constant(
                 "LINEAR_EQUATIONS",
                 "The equations of motion to first order about every equilibrium of `EQUILIBRIA`, as text in \
                  the parameters of the mechanism: the state at rest, the equations and, for at most three \
                  velocities and degree seven, the characteristic equation with the conditions of stability.",
                 &collect_text_parts(|(_, written)| written.plain.clone()),
             ),
-            Constant::strings(
+            Constant::string_list_constant(
                 "LINEAR_EQUATIONS_LATEX",
                 "[`LINEAR_EQUATIONS`](Self::LINEAR_EQUATIONS) as LaTeX: an `aligned` environment of \
                  `amsmath` each.",
@@ -282,7 +287,7 @@ impl Constant {
     }
 
     /// Returns the list of the pieces of the drawing, for the option `drawing`.
-    pub fn drawing(pieces: &[Piece<'_>]) -> Constant {
+    pub fn drawing_constant(pieces: &[Piece<'_>]) -> Constant {
         let mut first = 0;
         let written = pieces.iter().map(|piece| {
             first += piece.numbers.len();
@@ -309,7 +314,7 @@ impl Constant {
     }
 
     /// Returns the list of the names of the parameters.
-    pub fn parameters(list: &[String]) -> Constant {
-        Constant::strings("PARAMETERS", "Name of every parameter of the struct.", list)
+    pub fn parameter_name_constant(list: &[String]) -> Constant {
+        Constant::string_list_constant("PARAMETERS", "Name of every parameter of the struct.", list)
     }
 }

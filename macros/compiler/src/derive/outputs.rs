@@ -9,7 +9,7 @@ use crate::mechanics::reactions;
 use crate::mechanism::{Model, OutputValue, Quantity, Uses};
 
 /// Returns the functions of all outputs, in order. Mechanisms without dynamics have no reactions.
-pub fn declared(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
+pub fn declared_output_functions(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
     let functions_of_output = |output: &OutputValue<'_>| {
         let size = output.values.len();
         let depends_on_quantity = |f: fn(&Quantity) -> bool| {
@@ -20,15 +20,17 @@ pub fn declared(model: &Model<'_>, facts: &Facts) -> Vec<Declared> {
         let follows = touched || output.diagram.is_some() || reactions::names_one(&output.values);
         match (follows, facts.kinematic) {
             (true, true) => Vec::new(),
-            (true, false) if touched => vec![catalogue::touched(&output.name, size, facts)],
-            (true, false) => vec![catalogue::reaction(&output.name, size, output.diagram.is_some(), facts)],
-            (false, _) => catalogue::output(&output.name, size, uses(output), facts),
+            (true, false) if touched => vec![catalogue::contact_force_function(&output.name, size, facts)],
+            (true, false) => {
+                vec![catalogue::reaction_function(&output.name, size, output.diagram.is_some(), facts)]
+            }
+            (false, _) => catalogue::output_functions(&output.name, size, uses_of_output(output), facts),
         }
     };
     model.outputs.iter().flat_map(functions_of_output).collect()
 }
 
-fn uses(output: &OutputValue<'_>) -> Uses {
+fn uses_of_output(output: &OutputValue<'_>) -> Uses {
     let symbols: Vec<Quantity> = symbols_in(&output.values).into_iter().map(Quantity::from_symbol).collect();
     let depends_on_quantity = |f: fn(&Quantity) -> bool| symbols.iter().any(f);
     Uses {
@@ -39,7 +41,7 @@ fn uses(output: &OutputValue<'_>) -> Uses {
 }
 
 /// Returns the values of a declared output function.
-pub fn values<'g>(model: &Model<'g>, declared: &Declared) -> Vec<Expr<'g>> {
+pub fn output_function_values<'g>(model: &Model<'g>, declared: &Declared) -> Vec<Expr<'g>> {
     let name = match declared.id {
         Id::Reaction => declared.name.strip_prefix(REACTION),
         Id::Touched => declared.name.strip_prefix(TOUCHED),
@@ -52,9 +54,9 @@ pub fn values<'g>(model: &Model<'g>, declared: &Declared) -> Vec<Expr<'g>> {
         return Vec::new();
     };
     match declared.id {
-        Id::Reaction => reactions::resolved(model, &output.values, output.diagram.is_some()),
-        Id::OutputJacobian => jacobian(model, output),
-        Id::OutputDerivatives => derivatives(model, &output.values),
+        Id::Reaction => reactions::replace_reactions(model, &output.values, output.diagram.is_some()),
+        Id::OutputJacobian => output_jacobian(model, output),
+        Id::OutputDerivatives => output_derivatives(model, &output.values),
         Id::OutputByParameters => by_parameters(model, &output.values),
         _ => output.values.clone(),
     }
@@ -62,8 +64,8 @@ pub fn values<'g>(model: &Model<'g>, declared: &Declared) -> Vec<Expr<'g>> {
 
 /// Returns the derivatives with respect to configuration, velocity, acceleration and input, each column by
 /// column.
-fn derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    let by_state = symbolic::derivatives(model, values);
+fn output_derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    let by_state = symbolic::force_derivatives(model, values);
     let blocks = [
         (by_state.by_q, model.nv()),
         (by_state.by_v, model.nv()),
@@ -85,10 +87,10 @@ fn by_parameters<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
 
 /// Returns the Jacobian column by column: the derivatives of the output with respect to the velocities, or of
 /// its time derivative if the output depends only on configuration and time.
-fn jacobian<'g>(model: &Model<'g>, output: &OutputValue<'g>) -> Vec<Expr<'g>> {
-    let rates: Vec<Expr<'g>> = match uses(output).velocities {
+fn output_jacobian<'g>(model: &Model<'g>, output: &OutputValue<'g>) -> Vec<Expr<'g>> {
+    let rates: Vec<Expr<'g>> = match uses_of_output(output).velocities {
         true => output.values.clone(),
-        false => output.values.iter().map(|e| time_derivative(model.space(), *e)).collect(),
+        false => output.values.iter().map(|e| time_derivative(model.configuration_space(), *e)).collect(),
     };
     let mut entries = Vec::new();
     for k in 0..model.nv() {

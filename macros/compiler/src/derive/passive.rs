@@ -1,7 +1,7 @@
 //! Functions for passive forces that are expensive; the other generated functions call these.
 
 use crate::expr::Expr;
-use crate::lower::size;
+use crate::lower::operation_count;
 use crate::machine::CALLED_OPERATIONS;
 use crate::mechanics::derivatives::symbolic;
 use crate::mechanics::passive::passive_forces;
@@ -11,13 +11,13 @@ use std::rc::Rc;
 /// Returns the model with passive forces as symbols if they take enough operations, otherwise `None`. Their
 /// derivatives are computed only if `derivatives` is true.
 pub(super) fn with_given_forces<'g>(model: &Model<'g>, derivatives: bool) -> Option<Model<'g>> {
-    if operations(model) < CALLED_OPERATIONS {
+    if passive_operation_count(model) < CALLED_OPERATIONS {
         return None;
     }
     let forces = passive_forces(model, true);
     let passive = match derivatives {
         true => {
-            let found = symbolic::derivatives(model, &forces);
+            let found = symbolic::force_derivatives(model, &forces);
             PassiveForces::new(forces, &found.by_q, &found.by_v)
         }
         false => PassiveForces::new(forces, &[], &[]),
@@ -27,8 +27,8 @@ pub(super) fn with_given_forces<'g>(model: &Model<'g>, derivatives: bool) -> Opt
 
 /// Returns the number of operations of the elements' energies and dissipation functions, and of the forces
 /// and velocities of all loads, without deriving the generalized forces.
-fn operations(model: &Model<'_>) -> usize {
+fn passive_operation_count(model: &Model<'_>) -> usize {
     let energies = model.potentials.iter().chain(&model.dissipations).copied();
     let loads = model.loads.iter().flat_map(|load| [load.rate, load.force]);
-    size(&energies.chain(loads).collect::<Vec<Expr<'_>>>(), &|_| false)
+    operation_count(&energies.chain(loads).collect::<Vec<Expr<'_>>>(), &|_| false)
 }

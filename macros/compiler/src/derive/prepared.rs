@@ -9,7 +9,7 @@ use crate::mechanism::Quantity;
 use std::collections::BTreeMap;
 
 /// Extracts the precomputed values from the programs of the functions, in the order of their first use.
-pub fn prepared(graph: &Graph, mut functions: Vec<Function>) -> Prepared {
+pub fn extract_prepared_values(graph: &Graph, mut functions: Vec<Function>) -> Prepared {
     let mut numbers: Vec<Expr<'_>> = Vec::new();
     let mut known: BTreeMap<(Id, bool), usize> = BTreeMap::new();
     let mut place = |id: Id, negative: bool| {

@@ -5,10 +5,12 @@ use super::output::Constant;
 use crate::expr::Expr;
 use crate::kinematics::{self, Joint};
 use crate::mechanics;
-use crate::mechanics::independence::{Part, independent};
-use crate::mechanics::regressor::{COUNT, NAMES, Site, columns, inertia, parameters};
+use crate::mechanics::independence::{Part, classify_columns};
+use crate::mechanics::regressor::{
+    COUNT, NAMES, Site, inertia_from_parameters, inertial_parameters, regressor_columns,
+};
 use crate::mechanism::{Inertia, LinkId, Model, NamedFrame, Pose, Quantity, Supplied};
-use crate::passes::{Gauge, Regroup, regroup};
+use crate::passes::{Gauge, Regroup, regroup_inertias};
 
 /// Data of a model for parameter identification.
 pub(super) struct Identification<'a, 'g> {
@@ -33,35 +35,35 @@ impl<'a, 'g> Identification<'a, 'g> {
         let first_massive_frame =
             |link: usize| model.frames.iter().find(|f| f.massive && f.link == Some(LinkId(link)));
         let bodies: Vec<&NamedFrame<'g>> = (0..model.links.len()).filter_map(first_massive_frame).collect();
-        let base = base(model, joints, &bodies);
+        let base = derive_base_parameters(model, joints, &bodies);
         Identification { model, bodies, base }
     }
 
     /// Returns the numbers of bodies and of base parameters.
-    pub(super) fn counts(&self) -> [usize; 2] {
+    pub(super) fn body_and_parameter_counts(&self) -> [usize; 2] {
         [self.bodies.len(), self.base.entries.len()]
     }
 
     /// Returns the names of the bodies and of the base parameters.
-    pub(super) fn names(&self) -> Vec<Constant> {
+    pub(super) fn name_constants(&self) -> Vec<Constant> {
         let name_of_link = |k: usize| {
             let body = self.bodies.iter().find(|body| body.link == Some(LinkId(k)));
-            let first_velocity = || kinematics::joints(self.model)[k].dofs.first().map(|d| d.index);
+            let first_velocity = || kinematics::joints_of_model(self.model)[k].dofs.first().map(|d| d.index);
             let name_of_first_velocity =
                 || first_velocity().map_or(String::new(), |v| self.model.velocities[v].0.clone());
             body.map_or_else(name_of_first_velocity, |body| body.name.clone())
         };
         let base = self.base.entries.iter().map(|(k, p)| format!("{}.{}", name_of_link(*k), NAMES[*p]));
         let bodies: Vec<String> = self.bodies.iter().map(|body| body.name.clone()).collect();
-        Constant::regressor(&bodies, &base.collect::<Vec<String>>())
+        Constant::regressor_name_constants(&bodies, &base.collect::<Vec<String>>())
     }
 
     pub(super) fn joint_torque_regressor(&self, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
-        let (v, a) = (mechanics::velocities(self.model), mechanics::accelerations(self.model));
-        let sites: Vec<Site<'g>> = self.bodies.iter().filter_map(|body| site(body)).collect();
+        let (v, a) = (mechanics::velocity_symbols(self.model), mechanics::acceleration_symbols(self.model));
+        let sites: Vec<Site<'g>> = self.bodies.iter().filter_map(|body| site_of_body(body)).collect();
         let all: Vec<(usize, usize)> =
             (0..sites.len()).flat_map(|k| (0..COUNT).map(move |p| (k, p))).collect();
-        columns(self.model, joints, &v, &a, &sites, &all).concat()
+        regressor_columns(self.model, joints, &v, &a, &sites, &all).concat()
     }
 
     pub(super) fn base_regressor(&self) -> Vec<Expr<'g>> {
@@ -75,43 +77,50 @@ impl<'a, 'g> Identification<'a, 'g> {
     /// Returns the standard parameters of the bodies in the model.
     pub(super) fn standard_parameters(&self) -> Vec<Expr<'g>> {
         let zero = Inertia::zero(self.model.graph);
-        let sites = self.bodies.iter().filter_map(|body| site(body));
+        let sites = self.bodies.iter().filter_map(|body| site_of_body(body));
         sites
             .flat_map(|site| {
                 let back = site.pose.inverse();
                 let own = &self.model.links[site.link.0].inertia;
-                parameters(&zero.plus_placed(own, &back.rotation, back.translation))
+                inertial_parameters(&zero.plus_placed(own, &back.rotation, back.translation))
             })
             .collect()
     }
 }
 
-fn site<'g>(body: &NamedFrame<'g>) -> Option<Site<'g>> {
+fn site_of_body<'g>(body: &NamedFrame<'g>) -> Option<Site<'g>> {
     Some(Site { link: body.link?, pose: body.pose.clone() })
 }
 
 /// Derives the base parameters of the bodies' parameters. Parameters are regrouped towards the base as far as
 /// possible (Gautier and Khalil 1990); then those that still depend linearly on others are removed.
-fn base<'g>(model: &Model<'g>, joints: &[Joint<'g>], bodies: &[&NamedFrame<'g>]) -> Base<'g> {
+fn derive_base_parameters<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    bodies: &[&NamedFrame<'g>],
+) -> Base<'g> {
     let g = model.graph;
     let mut given = model.clone();
     given.links.iter_mut().for_each(|link| link.inertia = Inertia::zero(g));
-    for (k, site) in bodies.iter().filter_map(|body| site(body)).enumerate() {
-        let own = inertia(std::array::from_fn(|p| Quantity::Given(Supplied::Inertia, COUNT * k + p).expr(g)));
+    for (k, site) in bodies.iter().filter_map(|body| site_of_body(body)).enumerate() {
+        let own = inertia_from_parameters(std::array::from_fn(|p| {
+            Quantity::Given(Supplied::Inertia, COUNT * k + p).expr(g)
+        }));
         let link = &mut given.links[site.link.0].inertia;
         *link = link.plus_placed(&own, &site.pose.rotation, site.pose.translation);
     }
-    regroup(&mut given, Regroup { gauge: Gauge::Second, to_children: false, symbolic: true });
+    regroup_inertias(&mut given, Regroup { gauge: Gauge::Second, to_children: false, symbolic: true });
 
-    let left: Vec<[Expr<'g>; COUNT]> = given.links.iter().map(|link| parameters(&link.inertia)).collect();
+    let left: Vec<[Expr<'g>; COUNT]> =
+        given.links.iter().map(|link| inertial_parameters(&link.inertia)).collect();
     let all = (0..left.len()).flat_map(|k| (0..COUNT).map(move |p| (k, p)));
     let entries: Vec<(usize, usize)> = all.filter(|(k, p)| !left[*k][*p].is_zero()).collect();
     let sites: Vec<Site<'g>> =
         (0..left.len()).map(|k| Site { link: LinkId(k), pose: Pose::identity(g) }).collect();
-    let (v, a) = (mechanics::velocities(model), mechanics::accelerations(model));
-    let columns = columns(model, joints, &v, &a, &sites, &entries);
+    let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
+    let columns = regressor_columns(model, joints, &v, &a, &sites, &entries);
 
-    let parts = independent(model, &columns);
+    let parts = classify_columns(model, &columns);
     let mut values: Vec<Expr<'g>> = entries.iter().map(|(k, p)| left[*k][*p]).collect();
     for (k, part) in parts.iter().enumerate() {
         if let Part::Combined(list) = part {
@@ -120,11 +129,11 @@ fn base<'g>(model: &Model<'g>, joints: &[Joint<'g>], bodies: &[&NamedFrame<'g>])
         }
     }
     let mut base = Base { entries, values, columns };
-    base.keep(&parts);
+    base.keep_independent_parameters(&parts);
     // Between two axes of a joint there is no body. A parameter of one body that is moved to such a link may
     // appear in two base parameters, whose values are then proportional.
     let alone: Vec<Vec<Expr<'g>>> = base.values.iter().map(|value| vec![*value]).collect();
-    let parts = independent(model, &alone);
+    let parts = classify_columns(model, &alone);
     for (k, part) in parts.iter().enumerate() {
         let Part::Combined(list) = part else { continue };
         let dependent = base.columns[k].clone();
@@ -134,20 +143,20 @@ fn base<'g>(model: &Model<'g>, joints: &[Joint<'g>], bodies: &[&NamedFrame<'g>])
             }
         }
     }
-    base.keep(&parts);
+    base.keep_independent_parameters(&parts);
     base
 }
 
 impl Base<'_> {
     /// Removes the parameters that are combinations of others.
-    fn keep(&mut self, parts: &[Part]) {
-        retain(&mut self.entries, parts);
-        retain(&mut self.values, parts);
-        retain(&mut self.columns, parts);
+    fn keep_independent_parameters(&mut self, parts: &[Part]) {
+        retain_independent(&mut self.entries, parts);
+        retain_independent(&mut self.values, parts);
+        retain_independent(&mut self.columns, parts);
     }
 }
 
-fn retain<T>(list: &mut Vec<T>, parts: &[Part]) {
+fn retain_independent<T>(list: &mut Vec<T>, parts: &[Part]) {
     let mut parts = parts.iter();
     list.retain(|_| parts.next() == Some(&Part::Own));
 }

@@ -1,6 +1,6 @@
 //! Derivation of the functions of the option `second_derivatives`.
 
-use super::derivatives::{DIFFERENTIATE, columns};
+use super::derivatives::{DIFFERENTIATE, entries_by_column};
 use super::specialisation::Specialisation;
 use crate::expr::Expr;
 use crate::kinematics::Joint;
@@ -19,37 +19,44 @@ pub(super) fn inverse_dynamics<'g>(
     // Passive forces as symbols hide their dependence on the state, so the elements themselves are
     // differentiated.
     let model = &Model { passive: None, ..model.clone() };
-    let in_lanes =
-        |most: usize| second::by_recursion(model, joints, most).map(|found| state(&found).concat());
+    let in_lanes = |most: usize| {
+        second::by_recursion(model, joints, most).map(|found| state_hessian_blocks(&found).concat())
+    };
     let Some(plain) = in_lanes(1) else {
-        return specialisation.program(&state(&second::by_differentiation(model, joints)).concat());
+        return specialisation
+            .lower_to_program(&state_hessian_blocks(&second::by_differentiation(model, joints)).concat());
     };
     let candidates = match model.nv() <= DIFFERENTIATE {
-        true => vec![plain, state(&second::by_differentiation(model, joints)).concat()],
+        true => vec![plain, state_hessian_blocks(&second::by_differentiation(model, joints)).concat()],
         false => vec![plain],
     };
-    let program = specialisation.cheapest(candidates.into_iter().map(|list| specialisation.sized(list)));
-    let wide = wide.iter().filter_map(|most| Some(specialisation.program(&in_lanes(*most)?)));
+    let program = specialisation
+        .cheapest_program(candidates.into_iter().map(|list| specialisation.candidate_with_size(list)));
+    let wide = wide.iter().filter_map(|most| Some(specialisation.lower_to_program(&in_lanes(*most)?)));
     program.or_in_lanes(wide)
 }
 
 /// Returns the second derivatives of the power of the input forces.
-pub(super) fn inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>], specialisation: Specialisation) -> Program {
+pub(super) fn input_power_hessian<'g>(
+    model: &Model<'g>,
+    tau: &[Expr<'g>],
+    specialisation: Specialisation,
+) -> Program {
     let InputHessian { state: by_state, qu, vu, uu } = second::of_inputs(model, tau);
-    let [qq, qv, vv, _] = state(&by_state);
-    let blocks = [qq, qv, vv, columns(&qu), columns(&vu), columns(&uu)];
-    specialisation.program(&blocks.concat())
+    let [qq, qv, vv, _] = state_hessian_blocks(&by_state);
+    let blocks = [qq, qv, vv, entries_by_column(&qu), entries_by_column(&vu), entries_by_column(&uu)];
+    specialisation.lower_to_program(&blocks.concat())
 }
 
 /// Returns the second derivatives of the terms that constraints add to the equations of motion.
-pub(super) fn constraints(model: &Model<'_>, specialisation: Specialisation) -> Program {
+pub(super) fn constraint_hessian(model: &Model<'_>, specialisation: Specialisation) -> Program {
     let ConstraintHessian { state: by_state, q_lambda } = second::of_constraints(model);
-    let mut outputs = state(&by_state).concat();
-    outputs.extend(columns(&q_lambda));
-    specialisation.program(&outputs)
+    let mut outputs = state_hessian_blocks(&by_state).concat();
+    outputs.extend(entries_by_column(&q_lambda));
+    specialisation.lower_to_program(&outputs)
 }
 
 /// Returns the blocks of the state and the accelerations, each column by column.
-pub(super) fn state<'g>(found: &Hessian<'g>) -> [Vec<Expr<'g>>; 4] {
-    [&found.qq, &found.qv, &found.vv, &found.qa].map(columns)
+pub(super) fn state_hessian_blocks<'g>(found: &Hessian<'g>) -> [Vec<Expr<'g>>; 4] {
+    [&found.qq, &found.qv, &found.vv, &found.qa].map(entries_by_column)
 }

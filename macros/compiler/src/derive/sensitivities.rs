@@ -25,11 +25,14 @@ impl<'g> Sensitivities<'g> {
         // Passive forces as symbols hide their dependence on the parameters, so the elements themselves are
         // differentiated.
         let model = &Model { passive: None, ..model.clone() };
-        let mut variants =
-            if model.nv() <= DERIVATIVES_COMPARED { passes::variants(model, passes) } else { Vec::new() };
+        let mut variants = if model.nv() <= DERIVATIVES_COMPARED {
+            passes::model_variants(model, passes)
+        } else {
+            Vec::new()
+        };
         variants.retain(|variant| !variant.for_inverse_dynamics);
         variants.push(Variant {
-            joints: kinematics::joints(model),
+            joints: kinematics::joints_of_model(model),
             model: model.clone(),
             for_inverse_dynamics: false,
         });
@@ -37,13 +40,14 @@ impl<'g> Sensitivities<'g> {
             variants.extend(passes::in_common_axes(&variants));
         }
         let inverse_dynamics_program = |variant: &Variant<'_>| {
-            specialisation.program(&parameters::inverse_dynamics(&variant.model, &variant.joints).concat())
+            specialisation
+                .lower_to_program(&parameters::inverse_dynamics(&variant.model, &variant.joints).concat())
         };
         let all = variants.into_iter().map(|variant| {
             let program = inverse_dynamics_program(&variant);
             (variant, program)
         });
-        let best = all.min_by_key(|(_, program)| program.counts.total());
+        let best = all.min_by_key(|(_, program)| program.counts.total_operations());
         let (variant, inverse) = best.map_or((None, Program::default()), |(variant, p)| (Some(variant), p));
         Sensitivities { variant, inverse, specialisation }
     }
@@ -53,12 +57,12 @@ impl<'g> Sensitivities<'g> {
     }
 
     pub(super) fn forward_dynamics(&self) -> Program {
-        let accelerations = self.variant.as_ref().map_or_else(Vec::new, accelerations);
-        self.specialisation.program(&accelerations.concat())
+        let accelerations = self.variant.as_ref().map_or_else(Vec::new, acceleration_sensitivities);
+        self.specialisation.lower_to_program(&accelerations.concat())
     }
 }
 
-fn accelerations<'g>(variant: &Variant<'g>) -> Vec<Vec<Expr<'g>>> {
+fn acceleration_sensitivities<'g>(variant: &Variant<'g>) -> Vec<Vec<Expr<'g>>> {
     let model = &variant.model;
-    parameters::forward_dynamics(model, &variant.joints, &mechanics::efforts(model))
+    parameters::forward_dynamics(model, &variant.joints, &mechanics::generalized_force_symbols(model))
 }

@@ -12,7 +12,7 @@ const LEAVE_OUT: &str = "or omit the dynamics with `inertia = none`: frames, the
                          and outputs remain";
 
 /// Returns true if the mass matrix is regular; otherwise reports the cause.
-pub fn check<'g>(
+pub fn check_mass_matrix<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &crba::Matrix<'g>,
@@ -49,22 +49,23 @@ pub fn check_effective<'g>(
     cx: &mut Diagnostics,
 ) -> bool {
     let [force, ..] = model.acceleration_forces.as_slice() else { return true };
-    let singular = regularity::singular_velocities(model, joints, &added_mass::effective(model, mass));
+    let singular =
+        regularity::singular_velocities(model, joints, &added_mass::effective_mass_matrix(model, mass));
     let names: Vec<String> = singular.iter().map(|k| format!("`{}`", model.velocities[*k].0)).collect();
     if names.is_empty() {
         return true;
     }
-    cx.error(
+    cx.report_error(
         force.place.clone(),
         format!("forces that depend on accelerations cancel the inertia of {}", all_of(&names)),
     )
-    .help("an added mass of water or air opposes the acceleration, as in `value = -added * a(…)`");
+    .add_help("an added mass of water or air opposes the acceleration, as in `value = -added * a(…)`");
     false
 }
 
 /// Returns mass properties with unit mass and unit inertia.
-fn unit(graph: &Graph) -> Inertia<'_> {
-    Inertia::of_body(graph.one(), Vec3::zero(graph), Sym3::scalar(graph.one()))
+fn unit_mass_properties(graph: &Graph) -> Inertia<'_> {
+    Inertia::of_body(graph.one(), Vec3::zero(graph), Sym3::multiple_of_identity(graph.one()))
 }
 
 /// Returns a free link without mass, or without a moment of inertia about some axis, if more inertia of this
@@ -73,7 +74,7 @@ fn bare_base<'g>(model: &Model<'g>, joints: &[Joint<'g>], singular: &[usize]) ->
     let is_free_link = |link: &usize| matches!(model.links[*link].motion, Motion::Free { .. });
     (0..model.links.len()).filter(is_free_link).find_map(|bare| {
         let mut with_mass = model.clone();
-        with_mass.links[bare].inertia = unit(model.graph);
+        with_mass.links[bare].inertia = unit_mass_properties(model.graph);
         let mass = crba::mass_matrix(&with_mass, joints);
         let loaded = massless::loaded_mass(&with_mass, joints, mass);
         let rest = regularity::singular_velocities(&with_mass, joints, &loaded);
@@ -88,7 +89,7 @@ fn report_nothing(model: &Model<'_>, velocity: usize, cx: &mut Diagnostics) {
         Some(_) => ("no moving link has inertia", "add `<inertial>` elements to the file"),
         None => ("no moving body has inertia", "give mass or inertia to the bodies"),
     };
-    cx.error(place.clone(), what).help(mend).help(LEAVE_OUT);
+    cx.report_error(place.clone(), what).add_help(mend).add_help(LEAVE_OUT);
 }
 
 /// Reports a free base without mass or moments of inertia.
@@ -101,10 +102,10 @@ fn report_base(model: &Model<'_>, link: usize, cx: &mut Diagnostics) {
         true => "no mass of its own",
         false => "no moment of inertia about some axis",
     };
-    let diagnostic = cx.error(place.clone(), format!("`{name}` moves freely and has {what}"));
-    diagnostic.help(format!("a free base needs a mass and an inertia of its own: give them to `{name}`"));
+    let diagnostic = cx.report_error(place.clone(), format!("`{name}` moves freely and has {what}"));
+    diagnostic.add_help(format!("a free base needs a mass and an inertia of its own: give them to `{name}`"));
     if place.file.is_some() {
-        diagnostic.help("or fix it: remove `base = free`");
+        diagnostic.add_help("or fix it: remove `base = free`");
     }
 }
 
@@ -122,8 +123,9 @@ fn report_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics
         _ => ("coordinates", "move", "the joints carry"),
     };
     let message = format!("the {subject} {} {verb} no body with inertia", all_of(&list));
-    let diagnostic = cx.error(place.clone(), message);
-    diagnostic.help(format!("the mass matrix is singular: give mass or inertia to the bodies that {joints}"));
+    let diagnostic = cx.report_error(place.clone(), message);
+    diagnostic
+        .add_help(format!("the mass matrix is singular: give mass or inertia to the bodies that {joints}"));
     if place.file.is_some() {
         let mut joints: Vec<&str> = singular.iter().map(|k| joint_of(model, *k)).collect();
         joints.dedup();
@@ -132,10 +134,10 @@ fn report_velocities(model: &Model<'_>, singular: &[usize], cx: &mut Diagnostics
         match joints.as_slice() {
             [] => {}
             _ if singular.len() == model.nv() => {}
-            [joint] => _ = diagnostic.help(format!("or freeze the joint: `lock = [\"{joint}\"]`")),
-            all => _ = diagnostic.help(format!("or freeze the joints: `lock = {all:?}`")),
+            [joint] => _ = diagnostic.add_help(format!("or freeze the joint: `lock = [\"{joint}\"]`")),
+            all => _ = diagnostic.add_help(format!("or freeze the joints: `lock = {all:?}`")),
         }
-        diagnostic.help(LEAVE_OUT);
+        diagnostic.add_help(LEAVE_OUT);
     }
 }
 

@@ -2,7 +2,7 @@
 //! function.
 
 use crate::expr::{Expr, Symbol};
-use crate::lower::{Program, lower_without, size};
+use crate::lower::{Program, lower_without, operation_count};
 use crate::mechanism::Quantity;
 
 /// Tolerance of the comparison of sizes before lowering: factoring sums may change the operation count by the
@@ -28,24 +28,24 @@ pub enum Specialisation {
 
 impl Specialisation {
     /// Returns the program of these outputs under the specialisation.
-    pub fn program(self, outputs: &[Expr<'_>]) -> Program {
-        lower_without(outputs, &|s| self.knows(s))
+    pub fn lower_to_program(self, outputs: &[Expr<'_>]) -> Program {
+        lower_without(outputs, &|s| self.is_precomputed_symbol(s))
     }
 
     /// Returns the program with the fewest operations among equivalent candidates; among equal operation
     /// counts, the one with the fewest instructions.
-    pub fn cheapest<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> Program {
+    pub fn cheapest_program<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> Program {
         self.cheapest_of(lists).1
     }
 
     /// Returns the program with the fewest operations among equivalent candidates, with the candidate's
     /// index.
     pub fn cheapest_of<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> (usize, Program) {
-        let all = promising(lists);
+        let all = promising_candidates(lists);
         let mut programs: Vec<(usize, Program)> =
-            all.iter().map(|(k, list)| (*k, self.program(list))).collect();
-        let fewest = programs.iter().map(|(_, p)| p.counts.total()).min();
-        programs.retain(|(_, p)| Some(p.counts.total()) == fewest);
+            all.iter().map(|(k, list)| (*k, self.lower_to_program(list))).collect();
+        let fewest = programs.iter().map(|(_, p)| p.counts.total_operations()).min();
+        programs.retain(|(_, p)| Some(p.counts.total_operations()) == fewest);
         if programs.len() > 1 {
             programs.sort_by_cached_key(|(_, program)| program.fused_length());
         }
@@ -54,17 +54,17 @@ impl Specialisation {
 
     /// Returns the programs, with their indices, of the equivalent candidates that may be the cheapest in
     /// SIMD lanes.
-    pub fn programs<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> Vec<(usize, Program)> {
-        promising(lists).iter().map(|(k, list)| (*k, self.program(list))).collect()
+    pub fn candidate_programs<'g>(self, lists: impl Iterator<Item = Candidate<'g>>) -> Vec<(usize, Program)> {
+        promising_candidates(lists).iter().map(|(k, list)| (*k, self.lower_to_program(list))).collect()
     }
 
     /// Returns outputs together with their number of operations.
-    pub fn sized(self, outputs: Vec<Expr<'_>>) -> Candidate<'_> {
-        Candidate { size: size(&outputs, &|s| self.knows(s)), outputs }
+    pub fn candidate_with_size(self, outputs: Vec<Expr<'_>>) -> Candidate<'_> {
+        Candidate { size: operation_count(&outputs, &|s| self.is_precomputed_symbol(s)), outputs }
     }
 
     /// Returns true for a symbol whose value is known beforehand.
-    pub fn knows(self, symbol: Symbol) -> bool {
+    pub fn is_precomputed_symbol(self, symbol: Symbol) -> bool {
         self == Specialisation::ByParameters
             && matches!(Quantity::from_symbol(symbol), Quantity::Parameter(_))
     }
@@ -72,7 +72,7 @@ impl Specialisation {
 
 /// Returns the equivalent candidates that may take the fewest operations, with their indices. Of identical
 /// candidates, only the first is returned.
-fn promising<'g>(lists: impl Iterator<Item = Candidate<'g>>) -> Vec<(usize, Vec<Expr<'g>>)> {
+fn promising_candidates<'g>(lists: impl Iterator<Item = Candidate<'g>>) -> Vec<(usize, Vec<Expr<'g>>)> {
     let mut all: Vec<(usize, Candidate<'g>)> = lists.enumerate().collect();
     let most = all.iter().map(|(_, list)| list.size + SPREAD.0 + list.size / SPREAD.1).min().unwrap_or(0);
     all.retain(|(_, list)| list.size <= most);

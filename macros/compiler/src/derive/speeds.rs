@@ -2,7 +2,7 @@
 //! to joint velocities, and all derivatives, by differentiation of the equations in speeds.
 
 use super::derivation::Derivation;
-use super::derivatives::columns;
+use super::derivatives::entries_by_column;
 use super::second;
 use crate::catalogue::{Declared, Id};
 use crate::expr::Expr;
@@ -10,7 +10,7 @@ use crate::expr::diff::Derivative;
 use crate::expr::replace::replace_all;
 use crate::kinematics::symbols_in;
 use crate::mechanics::derivatives::second::{self as hessian, Hessian, InputHessian};
-use crate::mechanics::derivatives::{Factor, ForceDerivatives, analytic, subtract, symbolic};
+use crate::mechanics::derivatives::{Factor, ForceDerivatives, analytic, subtract_matrix, symbolic};
 use crate::mechanics::speeds::{InSpeeds, Role};
 use crate::mechanics::{
     self, added_mass, constraints, crba, energy, forces, momentum, power, reactions, rnea,
@@ -46,18 +46,18 @@ impl<'g> Derivation<'_, 'g> {
     /// other functions.
     pub(super) fn in_speeds(&self, speeds: &InSpeeds<'g>, declared: &Declared) -> Option<Vec<Expr<'g>>> {
         let (native, joints) = (&speeds.native, self.joints);
-        let scalars_in_speeds = |e: Vec<Expr<'g>>| Some(speeds.written(&e));
+        let scalars_in_speeds = |e: Vec<Expr<'g>>| Some(speeds.express_in_speeds(&e));
         match declared.id {
             Id::RatesOfSpeeds => Some(speeds.rates.clone()),
-            Id::SpeedsOfRates => Some(speeds.speeds_of(&mechanics::velocities(native))),
-            Id::RateMatrix => Some(columns(speeds.of_speeds())),
-            Id::SpeedMatrix => Some(columns(speeds.of_rates())),
-            Id::RateChanges => Some(columns(&speeds.rate_changes())),
+            Id::SpeedsOfRates => Some(speeds.speeds_of(&mechanics::velocity_symbols(native))),
+            Id::RateMatrix => Some(entries_by_column(speeds.of_speeds())),
+            Id::SpeedMatrix => Some(entries_by_column(speeds.of_rates())),
+            Id::RateChanges => Some(entries_by_column(&speeds.rate_changes())),
             Id::RateAccelerations => Some(speeds.accelerations.clone()),
             Id::GeneralizedForces => Some(self.input_forces(speeds)),
-            Id::DissipatedPower => scalars_in_speeds(vec![power::dissipated(native)]),
-            Id::ControlPower => scalars_in_speeds(vec![power::control(native, joints)]),
-            Id::DisturbancePower => scalars_in_speeds(vec![power::disturbance(native)]),
+            Id::DissipatedPower => scalars_in_speeds(vec![power::dissipated_power(native)]),
+            Id::ControlPower => scalars_in_speeds(vec![power::control_power(native, joints)]),
+            Id::DisturbancePower => scalars_in_speeds(vec![power::disturbance_power(native)]),
             Id::TotalMass => Some(vec![energy::mass_and_moment(native, joints).0]),
             Id::Hamiltonian | Id::CanonicalVelocity | Id::CanonicalMomentumRate => {
                 self.canonical_in_speeds(speeds, declared.id)
@@ -65,7 +65,11 @@ impl<'g> Derivation<'_, 'g> {
             Id::Reaction => {
                 let name = declared.name.strip_prefix(crate::catalogue::REACTION)?;
                 let output = native.outputs.iter().find(|output| output.name == name)?;
-                scalars_in_speeds(reactions::resolved(native, &output.values, output.diagram.is_some()))
+                scalars_in_speeds(reactions::replace_reactions(
+                    native,
+                    &output.values,
+                    output.diagram.is_some(),
+                ))
             }
             Id::JointTorqueRegressor => self.regressor_in_speeds(speeds, true),
             Id::BaseRegressor => self.regressor_in_speeds(speeds, false),
@@ -80,19 +84,19 @@ impl<'g> Derivation<'_, 'g> {
 
     fn derivatives_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Option<Vec<Expr<'g>>> {
         let (native, model, joints) = (&speeds.native, &speeds.model, self.joints);
-        let v = mechanics::velocities(native);
-        let forces_by_columns = |e: &[Expr<'g>]| force_columns(&symbolic::derivatives(model, e));
+        let v = mechanics::velocity_symbols(native);
+        let forces_by_columns = |e: &[Expr<'g>]| force_columns(&symbolic::force_derivatives(model, e));
         match id {
             Id::MassMatrixInverse => Some(self.inverse_of(speeds, false)),
             Id::CoriolisMatrix => {
                 let (coriolis, mass) =
                     (analytic::coriolis_matrix(native, joints, &v, 1), crba::mass_matrix(native, joints));
-                Some(columns(&speeds.coriolis_matrix(&coriolis, &mass)))
+                Some(entries_by_column(&speeds.coriolis_matrix(&coriolis, &mass)))
             }
             Id::InverseDynamicsDerivatives => Some(forces_by_columns(&self.inverse(speeds))),
             Id::GeneralizedMomentumDerivatives => {
-                let p = speeds.forces(&momentum::generalized_momentum(native, joints, &v));
-                Some(columns(&symbolic::by_configuration(model, &p)))
+                let p = speeds.transform_forces(&momentum::generalized_momentum(native, joints, &v));
+                Some(entries_by_column(&symbolic::by_configuration(model, &p)))
             }
             Id::MomentumRateDerivatives => {
                 let (rate, p) = (
@@ -102,18 +106,18 @@ impl<'g> Derivation<'_, 'g> {
                 Some(forces_by_columns(&speeds.momentum_rate(&rate, &p)))
             }
             Id::ForwardDynamicsDerivatives => {
-                let forces = symbolic::derivatives(model, &self.inverse(speeds));
+                let forces = symbolic::force_derivatives(model, &self.inverse(speeds));
                 let accelerations = self.free_accelerations(speeds);
                 let forces = self.at_accelerations(force_columns(&forces), &accelerations);
                 Some([forces, self.inverse_of(speeds, true), accelerations].concat())
             }
-            Id::Linearize => Some(self.linearized(speeds)),
+            Id::Linearize => Some(self.linearized_outputs(speeds)),
             Id::InputDerivatives => {
                 let tau = self.input_forces(speeds);
-                let by_inputs = columns(&symbolic::by_input(model, &tau));
+                let by_inputs = entries_by_column(&symbolic::by_input(model, &tau));
                 Some([tau.clone(), forces_by_columns(&tau), by_inputs].concat())
             }
-            Id::Turning => Some(columns(&speeds.turning())),
+            Id::Turning => Some(entries_by_column(&speeds.variational_matrix())),
             Id::InverseDynamicsSecondDerivatives
             | Id::GeneralizedForcesSecondDerivatives
             | Id::ConstraintCurvature => Some(self.second_in_speeds(speeds, id)),
@@ -124,31 +128,39 @@ impl<'g> Derivation<'_, 'g> {
 
     /// Returns `τ` as a function of the rates of the speeds.
     fn inverse(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
-        let (v, a) = (mechanics::velocities(&speeds.native), mechanics::accelerations(&speeds.native));
-        speeds.forces(&rnea::inverse_dynamics(&speeds.native, self.joints, &v, Some(&a)))
+        let (v, a) =
+            (mechanics::velocity_symbols(&speeds.native), mechanics::acceleration_symbols(&speeds.native));
+        speeds.transform_forces(&rnea::inverse_dynamics(&speeds.native, self.joints, &v, Some(&a)))
     }
 
     fn input_forces(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
-        speeds.forces(&forces::generalized_forces(&speeds.native, self.joints))
+        speeds.transform_forces(&forces::generalized_forces(&speeds.native, self.joints))
     }
 
-    fn factor(&self, speeds: &InSpeeds<'g>, effective: bool) -> Factor<'g> {
+    fn mass_factor(&self, speeds: &InSpeeds<'g>, effective: bool) -> Factor<'g> {
         let mass = crba::mass_matrix(&speeds.native, self.joints);
-        let mass = if effective { added_mass::effective(&speeds.native, &mass) } else { mass };
+        let mass = if effective { added_mass::effective_mass_matrix(&speeds.native, &mass) } else { mass };
         Factor::new(&mass, self.joints)
     }
 
     /// Returns the inverse of the mass matrix, or of the effective mass matrix, column by column.
     fn inverse_of(&self, speeds: &InSpeeds<'g>, effective: bool) -> Vec<Expr<'g>> {
-        columns(&speeds.inverse_metric(&self.factor(speeds, effective).inverse()))
+        entries_by_column(&speeds.inverse_metric(&self.mass_factor(speeds, effective).inverse()))
     }
 
     /// Returns the accelerations under forces that are symbols.
     fn free_accelerations(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
         let native = &speeds.native;
-        let bias = rnea::inverse_dynamics(native, self.joints, &mechanics::velocities(native), None);
-        let lacking = mechanics::efforts(native).into_iter().zip(bias).map(|(tau, h)| tau - h).collect();
-        speeds.results(Role::Accelerations(0), &self.factor(speeds, true).solve(lacking))
+        let bias = rnea::inverse_dynamics(native, self.joints, &mechanics::velocity_symbols(native), None);
+        let lacking = mechanics::generalized_force_symbols(native)
+            .into_iter()
+            .zip(bias)
+            .map(|(tau, h)| tau - h)
+            .collect();
+        speeds.transform_results(
+            Role::Accelerations(0),
+            &self.mass_factor(speeds, true).solve_factored(lacking),
+        )
     }
 
     /// Returns the expressions with the acceleration symbols replaced by `a`.
@@ -159,21 +171,21 @@ impl<'g> Derivation<'_, 'g> {
         })
     }
 
-    fn linearized(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
+    fn linearized_outputs(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
         let (model, tau) = (&speeds.model, self.input_forces(speeds));
         let accelerations =
             replace_all(&self.free_accelerations(speeds), &|s| match Quantity::from_symbol(s) {
                 Quantity::Force(k) => tau.get(k).copied(),
                 _ => None,
             });
-        let mut forces = symbolic::derivatives(model, &self.inverse(speeds));
-        let by_state = symbolic::derivatives(model, &tau);
-        subtract(&mut forces.by_q, &by_state.by_q);
-        subtract(&mut forces.by_v, &by_state.by_v);
+        let mut forces = symbolic::force_derivatives(model, &self.inverse(speeds));
+        let by_state = symbolic::force_derivatives(model, &tau);
+        subtract_matrix(&mut forces.by_q, &by_state.by_q);
+        subtract_matrix(&mut forces.by_v, &by_state.by_v);
         let mut outputs = self.at_accelerations(force_columns(&forces), &accelerations);
         outputs.extend(self.inverse_of(speeds, true));
-        outputs.extend(columns(&symbolic::by_input(model, &tau)));
-        outputs.extend(columns(&speeds.turning()));
+        outputs.extend(entries_by_column(&symbolic::by_input(model, &tau)));
+        outputs.extend(entries_by_column(&speeds.variational_matrix()));
         outputs
     }
 
@@ -182,15 +194,18 @@ impl<'g> Derivation<'_, 'g> {
     /// displacements.
     fn constrained_motion(&self, speeds: &InSpeeds<'g>) -> Vec<Expr<'g>> {
         let (native, model) = (&speeds.native, &speeds.model);
-        let held = speeds.forces(&constraints::forces(native, &constraints::multipliers(native)));
+        let held = speeds.transform_forces(&constraints::constraint_forces(
+            native,
+            &constraints::multiplier_symbols(native),
+        ));
         let lacking: Vec<Expr<'g>> =
             self.inverse(speeds).iter().zip(held).map(|(f, held)| *f - held).collect();
-        let a = mechanics::accelerations(model);
+        let a = mechanics::acceleration_symbols(model);
         let first = constraints::first_order(model, &a);
-        let mut outputs = force_columns(&symbolic::derivatives(model, &lacking));
+        let mut outputs = force_columns(&symbolic::force_derivatives(model, &lacking));
         outputs.extend(force_columns(&first.accelerations));
-        outputs.extend(columns(&first.rates));
-        outputs.extend(columns(&speeds.turning()));
+        outputs.extend(entries_by_column(&first.rates));
+        outputs.extend(entries_by_column(&speeds.variational_matrix()));
         outputs
     }
 
@@ -199,7 +214,7 @@ impl<'g> Derivation<'_, 'g> {
     fn second_in_speeds(&self, speeds: &InSpeeds<'g>, id: Id) -> Vec<Expr<'g>> {
         let native = &speeds.native;
         let project_hessian = |found: Hessian<'g>| Hessian {
-            qq: speeds.metric(&found.qq),
+            qq: speeds.transform_mass_matrix(&found.qq),
             qv: speeds.project(&found.qv),
             qa: speeds.project(&found.qa),
             ..found
@@ -210,19 +225,28 @@ impl<'g> Derivation<'_, 'g> {
                 // displacements.
                 let constraints = speeds.model.constraints.clone();
                 let found = hessian::of_constraints(&Model { constraints, ..native.clone() });
-                let mut outputs = second::state(&project_hessian(found.state)).concat();
-                outputs.extend(columns(&speeds.project(&found.q_lambda)));
+                let mut outputs = second::state_hessian_blocks(&project_hessian(found.state)).concat();
+                outputs.extend(entries_by_column(&speeds.project(&found.q_lambda)));
                 outputs
             }
             Id::GeneralizedForcesSecondDerivatives => {
                 let InputHessian { state, qu, vu, uu } =
                     hessian::of_inputs(native, &self.input_forces(speeds));
-                let [qq, qv, vv, _] = second::state(&project_hessian(state));
-                [qq, qv, vv, columns(&speeds.project(&qu)), columns(&vu), columns(&uu)].concat()
+                let [qq, qv, vv, _] = second::state_hessian_blocks(&project_hessian(state));
+                [
+                    qq,
+                    qv,
+                    vv,
+                    entries_by_column(&speeds.project(&qu)),
+                    entries_by_column(&vu),
+                    entries_by_column(&uu),
+                ]
+                .concat()
             }
             _ => {
-                let found = hessian::of_power(native, &self.inverse(speeds), &hessian::factors(native));
-                second::state(&project_hessian(found)).concat()
+                let found =
+                    hessian::of_power(native, &self.inverse(speeds), &hessian::factor_symbols(native));
+                second::state_hessian_blocks(&project_hessian(found)).concat()
             }
         }
     }
@@ -257,12 +281,12 @@ impl<'g> Derivation<'_, 'g> {
 
     fn regressor_in_speeds(&self, speeds: &InSpeeds<'g>, standard: bool) -> Option<Vec<Expr<'g>>> {
         let joints = self.joints;
-        let of_joints = self.identified(|i| match standard {
+        let of_joints = self.regressor_outputs(|i| match standard {
             true => i.joint_torque_regressor(joints),
             false => i.base_regressor(),
         });
         let n = self.model.nv().max(1);
-        Some(of_joints.chunks(n).flat_map(|column| speeds.forces(column)).collect())
+        Some(of_joints.chunks(n).flat_map(|column| speeds.transform_forces(column)).collect())
     }
 
     /// Returns Hamilton's form in speeds. With the momenta `p` of the speeds, the momenta of the joints are
@@ -272,17 +296,18 @@ impl<'g> Derivation<'_, 'g> {
         let momenta: Vec<Expr<'g>> = (0..self.model.nv()).map(|k| Quantity::Momentum(k).expr(g)).collect();
         let of_joints = speeds.with_momenta(&momenta);
         let in_momenta = |e: Vec<Expr<'g>>| -> Vec<Expr<'g>> {
-            let velocity = speeds.speeds_of(&speeds.with_momenta(&self.canonical(|h| h.velocity.clone())));
+            let velocity =
+                speeds.speeds_of(&speeds.with_momenta(&self.hamilton_outputs(|h| h.velocity.clone())));
             replace_all(&e, &|s| match Quantity::from_symbol(s) {
                 Quantity::Velocity(k) => velocity.get(k).copied(),
                 _ => None,
             })
         };
         Some(match id {
-            Id::Hamiltonian => speeds.with_momenta(&self.canonical(|h| vec![h.hamiltonian])),
-            Id::CanonicalVelocity => in_momenta(mechanics::velocities(self.model)),
+            Id::Hamiltonian => speeds.with_momenta(&self.hamilton_outputs(|h| vec![h.hamiltonian])),
+            Id::CanonicalVelocity => in_momenta(mechanics::velocity_symbols(self.model)),
             _ => {
-                let rate = speeds.with_momenta(&self.canonical(|h| h.momentum_rate.clone()));
+                let rate = speeds.with_momenta(&self.hamilton_outputs(|h| h.momentum_rate.clone()));
                 in_momenta(speeds.momentum_rate_of_written(&rate, &of_joints))
             }
         })
@@ -290,5 +315,5 @@ impl<'g> Derivation<'_, 'g> {
 }
 
 fn force_columns<'g>(d: &ForceDerivatives<'g>) -> Vec<Expr<'g>> {
-    [&d.by_q, &d.by_v].into_iter().flat_map(columns).collect()
+    [&d.by_q, &d.by_v].into_iter().flat_map(entries_by_column).collect()
 }

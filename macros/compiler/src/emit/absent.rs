@@ -9,7 +9,7 @@ use crate::syntax::Word;
 use std::fmt::Write;
 
 /// Returns everything that a mechanism with these functions and outputs lacks.
-pub fn absent(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<Absent> {
+pub fn absent_items(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<Absent> {
     let in_lanes = |name: &str| format!("{name}_lanes");
     let absent_for_need = |(need, rows): (Need, Vec<&Row>)| {
         let mut names: Vec<String> = rows.iter().map(|row| row.name.to_string()).collect();
@@ -24,9 +24,10 @@ pub fn absent(facts: &Facts, functions: &[Function], outputs: &[String]) -> Vec<
             names.extend(catalogue::written_in_lanes(facts).map(in_lanes));
         }
         let constants = catalogue::absent_constants(need, facts);
-        Some(Absent { reason: need.reason()?, functions: names, constants })
+        Some(Absent { reason: need.trait_of_need()?, functions: names, constants })
     };
-    let mut all: Vec<Absent> = catalogue::absent(facts).into_iter().filter_map(absent_for_need).collect();
+    let mut all: Vec<Absent> =
+        catalogue::absent_functions(facts).into_iter().filter_map(absent_for_need).collect();
     let of_outputs =
         |suffix: &str| -> Vec<String> { outputs.iter().map(|name| format!("{name}{suffix}")).collect() };
     for (suffix, reason, asked) in [
@@ -76,10 +77,10 @@ impl Absent {
 
     /// Returns the functions and constants of parameters, which a prepared mechanism lacks.
     fn of_figures(facts: &Facts) -> Absent {
-        let rows = catalogue::rows().filter(|row| row.lacks(facts).is_none());
+        let rows = catalogue::catalogue_rows().filter(|row| row.first_unmet_need(facts).is_none());
         let functions = rows.filter(|row| OF_FIGURES.contains(&row.name)).map(|row| row.name.to_string());
         let constants = [("FILE", Need::FileParameters), ("LINKS", Need::FileInertials)];
-        let present = constants.into_iter().filter(|(_, need)| facts.meet(*need));
+        let present = constants.into_iter().filter(|(_, need)| facts.meets_need(*need));
         Absent {
             reason: "HoldsParameters",
             functions: functions.collect(),

@@ -44,7 +44,7 @@ impl Calls {
         self.bound += texts.len();
         for (value, letter) in [(angle.sine, 's'), (angle.cosine, 'c')] {
             let Some(value) = value else { continue };
-            self.results.push(bundle(letter, &(first..self.bound).collect::<Vec<_>>()));
+            self.results.push(bundle_names(letter, &(first..self.bound).collect::<Vec<_>>()));
             self.names.push(value);
         }
         for (k, text) in texts.into_iter().enumerate() {
@@ -65,7 +65,7 @@ impl Calls {
     }
 
     /// Returns the numbers of all values and the text of the tuple of their expressions.
-    pub fn text(mut self, zero: &str) -> (Vec<usize>, String) {
+    pub fn tuple_of_expressions(mut self, zero: &str) -> (Vec<usize>, String) {
         let mut text = String::from("{ ");
         if self.in_vectors {
             self.write_vectors(&mut text, zero);
@@ -110,12 +110,12 @@ impl Calls {
             return;
         }
         if self.padded {
-            self.pad();
+            self.pad_to_registers();
         }
         let together = if self.padded { self.arguments.len() } else { TOGETHER };
         for group in self.arguments.chunks(together) {
             let list_bundled_names =
-                |letter| group.iter().map(|(_, n)| bundle(letter, n)).collect::<Vec<_>>().join(", ");
+                |letter| group.iter().map(|(_, n)| bundle_names(letter, n)).collect::<Vec<_>>().join(", ");
             let angles: Vec<&str> = group.iter().map(|(text, _)| text.as_str()).collect();
             let (sines, cosines, angles) =
                 (list_bundled_names('s'), list_bundled_names('c'), angles.join(", "));
@@ -125,7 +125,7 @@ impl Calls {
 
     /// Pads the angles to full registers by repeating some of them, so that each register is one load from
     /// memory if the angles are adjacent.
-    fn pad(&mut self) {
+    fn pad_to_registers(&mut self) {
         let count = self.arguments.len();
         let repeated_argument = |list: &[(String, Vec<usize>)], k: usize| (list[k].0.clone(), Vec::new());
         match count % WIDTH {
@@ -148,7 +148,7 @@ impl Calls {
 }
 
 /// Returns one name, an array of several names, or `_` for no name.
-fn bundle(letter: char, numbers: &[usize]) -> String {
+fn bundle_names(letter: char, numbers: &[usize]) -> String {
     let names: Vec<String> = numbers.iter().map(|k| format!("{letter}{k}")).collect();
     match names.as_slice() {
         [] => "_".to_string(),

@@ -4,8 +4,8 @@
 
 use super::angles::{Calls, WIDTH};
 use super::instruction::{Build, Writer};
-use super::pieces::{Outputs, Piece, Statement, storage};
-use super::signature::{Signature, filled, matrix_arguments};
+use super::pieces::{Outputs, Piece, Statement, storage_constructor};
+use super::signature::{Signature, filled_matrix_count, matrix_arguments};
 use super::statements::{BLOCK, write_let, write_statements};
 use super::{matrices, stores};
 use crate::catalogue::{Argument, Called, Shape};
@@ -22,8 +22,8 @@ const LINE: usize = 72;
 /// Writes the function body without its braces. If `is_parameter` is true, the arithmetic `Ops` is a type
 /// parameter of the function; otherwise `Ops` is the arithmetic of the compilation target.
 pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_parameter: bool, build: Build) {
-    if let Some(count) = filled(f) {
-        out.push_str(&matrices::called(f, count, s));
+    if let Some(count) = filled_matrix_count(f) {
+        out.push_str(&matrices::call_filling_variant(f, count, s));
         return;
     }
     // Functions of several states already fill the lanes.
@@ -32,7 +32,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     let mut w = Writer {
         build,
         program,
-        lanes: program.lanes(),
+        lanes: program.lane_counts(),
         scalar: s.scalar,
         arguments: f.arguments.iter().copied().chain(Called::ALL.map(Argument::Called)).collect(),
         statements: Vec::new(),
@@ -42,12 +42,13 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
         named: is_parameter.then(BTreeSet::new),
     };
     w.write_instructions();
-    let outputs: Vec<Piece> = program.outputs.iter().map(|o| w.output(*o)).collect();
-    let mut helpers: Vec<&str> = s.scalar.helpers().collect();
+    let outputs: Vec<Piece> = program.outputs.iter().map(|o| w.output_text(*o)).collect();
+    let mut helpers: Vec<&str> = s.scalar.helper_names().collect();
     if !is_parameter {
         helpers.extend(["Arithmetic", "Compiled as Ops"]);
     }
-    let is_empty = program.instructions.is_empty() && program.outputs.is_empty() && !f.shape.calls();
+    let is_empty =
+        program.instructions.is_empty() && program.outputs.is_empty() && !f.shape.is_assembled_from_calls();
     if !helpers.is_empty() && (!is_empty || s.scalar.is_in_lanes()) {
         let _ = writeln!(out, "use ::linkwork::__private::{{{}}};", helpers.join(", "));
     }
@@ -66,7 +67,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
     if !matrix_arguments(f).is_empty() {
         let (statements, left) = stores::with_stores(f, program, rest, &results);
         write_statements(out, &statements, &left);
-        out.push_str(&matrices::finish(f, s, &results));
+        out.push_str(&matrices::finishing_code(f, s, &results));
         return;
     }
     write_statements(out, &rest, &outputs);
@@ -75,7 +76,7 @@ pub fn write_body(out: &mut String, f: &Function, s: &Signature<'_>, is_paramete
 
 impl Writer<'_> {
     fn write_instructions(&mut self) {
-        let angles = Angles::find(self.program);
+        let angles = Angles::find_angles(self.program);
         for k in 0..self.program.instructions.len() {
             if angles.before[k] {
                 self.write_instruction(k);
@@ -94,15 +95,15 @@ impl Writer<'_> {
     }
 
     fn write_instruction(&mut self, k: usize) {
-        let piece = self.instruction(self.program.instructions[k], self.lanes[k]);
+        let piece = self.instruction_text(self.program.instructions[k], self.lanes[k]);
         if self.program.uses[k] == 1 && piece.text.len() <= LINE {
             self.pieces[k] = Some(piece);
         } else {
-            self.bind(k, piece);
+            self.bind_value(k, piece);
         }
     }
 
-    fn bind(&mut self, k: usize, piece: Piece) {
+    fn bind_value(&mut self, k: usize, piece: Piece) {
         self.statements.push(Statement {
             names: vec![k],
             pattern: format!("t{k}"),
@@ -122,7 +123,7 @@ impl Writer<'_> {
         angles.list.iter().for_each(|angle| note(angle.angle));
         for (op, before) in self.program.instructions.iter().zip(&angles.before) {
             if *before {
-                op.operands(&mut note);
+                op.visit_operands(&mut note);
             }
         }
         let is_needed = |a: &Argument| symbols.iter().any(|s| a.index(Quantity::from_symbol(*s)).is_some());
@@ -137,7 +138,7 @@ impl Writer<'_> {
             let (mut inputs, mut todo) = (0, vec![angle.angle]);
             while let Some(o) = todo.pop().filter(|_| inputs < 2) {
                 match o {
-                    Operand::Value(k) => self.program.instructions[k].operands(|o| todo.push(o)),
+                    Operand::Value(k) => self.program.instructions[k].visit_operands(|o| todo.push(o)),
                     Operand::Symbol(_) | Operand::Gather(_) => inputs += 1,
                     Operand::Const(_) | Operand::Tuple(_) => {}
                 }
@@ -149,33 +150,33 @@ impl Writer<'_> {
             !self.program.gathers.is_empty() || (of_state && angles.list.iter().any(is_angle_sum));
         let mut calls = Calls::new(in_vectors, of_state);
         let mut needs = Vec::new();
-        for angle in angles.widest_first(self.program, |o| self.width(o)) {
-            let texts = self.angle(angle.angle, &mut needs);
-            calls.add(angle, texts, self.width(angle.angle) == WIDTH);
+        for angle in angles.widest_first(self.program, |o| self.lane_count(o)) {
+            let texts = self.texts_of_angle_lanes(angle.angle, &mut needs);
+            calls.add(angle, texts, self.lane_count(angle.angle) == WIDTH);
         }
         if calls.names.is_empty() {
             return;
         }
-        let (names, text) = calls.text(&self.constant(0.0));
+        let (names, text) = calls.tuple_of_expressions(&self.constant_text(0.0));
         let list: Vec<String> = names.iter().map(|k| format!("t{k}")).collect();
         self.statements.push(Statement { pattern: format!("({},)", list.join(", ")), names, text, needs });
     }
 
     /// Returns the texts of the lanes of an angle; of an angle with four lanes, the text of the vector.
-    fn angle(&mut self, angle: Operand, needs: &mut Vec<usize>) -> Vec<String> {
-        let lanes = self.width(angle);
+    fn texts_of_angle_lanes(&mut self, angle: Operand, needs: &mut Vec<usize>) -> Vec<String> {
+        let lanes = self.lane_count(angle);
         if let Operand::Gather(g) = angle
             && lanes != WIDTH
         {
-            return self.program.gathers[g].iter().map(|s| self.symbol(*s)).collect();
+            return self.program.gathers[g].iter().map(|s| self.symbol_text(*s)).collect();
         }
         if let Operand::Value(k) = angle
             && !(lanes == 1 || lanes == WIDTH)
             && let Some(piece) = self.pieces[k].take()
         {
-            self.bind(k, piece);
+            self.bind_value(k, piece);
         }
-        let piece = self.operand(angle);
+        let piece = self.operand_text(angle);
         needs.extend(piece.needs);
         match lanes {
             1 | WIDTH => vec![piece.text],
@@ -188,7 +189,7 @@ impl Writer<'_> {
 /// gathers.
 fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: &Writer<'_>) {
     let in_lanes = s.scalar.is_in_lanes();
-    let used = w.program.symbols();
+    let used = w.program.used_symbols();
     for argument in arguments {
         let (n, given) = match argument {
             Argument::T => {
@@ -205,11 +206,16 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
         };
         let name = match argument {
             Argument::Called(f) => {
-                format!("self.{}{}({}q, v)", f.function(), s.suffix(), if s.time { "t, " } else { "" })
+                format!(
+                    "self.{}{}({}q, v)",
+                    f.function_name(),
+                    s.call_suffix(),
+                    if s.time { "t, " } else { "" }
+                )
             }
-            _ => argument.name().to_string(),
+            _ => argument.argument_name().to_string(),
         };
-        let Some(list) = pattern(*argument, n, &used) else { continue };
+        let Some(list) = argument_pattern(*argument, n, &used) else { continue };
         let _ = match (given, in_lanes) {
             (true, false) => writeln!(out, "let [{list}] = *{name};"),
             (true, true) => writeln!(out, "let [{list}] = *Ops::each({name});"),
@@ -218,7 +224,7 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
         };
         for (k, gather) in w.program.gathers.iter().enumerate() {
             if gather.iter().any(|s| argument.index(Quantity::from_symbol(*s)).is_some()) {
-                let _ = writeln!(out, "let lanes{k} = {};", w.gathered(gather));
+                let _ = writeln!(out, "let lanes{k} = {};", w.gathered_vector(gather));
             }
         }
     }
@@ -226,12 +232,12 @@ fn write_inputs(out: &mut String, arguments: &[Argument], s: &Signature<'_>, w: 
 
 /// Returns the array pattern that binds the entries of an argument that a program uses, or `None` if it uses
 /// none. Unused entries are not bound, because rustc takes long for unused variables.
-fn pattern(argument: Argument, n: usize, used: &BTreeSet<Symbol>) -> Option<String> {
+fn argument_pattern(argument: Argument, n: usize, used: &BTreeSet<Symbol>) -> Option<String> {
     let mut list = Vec::new();
     for k in used.iter().filter_map(|s| argument.index(Quantity::from_symbol(*s))).filter(|k| *k < n) {
         let length = list.len().max(k + 1);
         list.resize(length, "_".to_string());
-        list[k] = format!("{}{k}", argument.name());
+        list[k] = format!("{}{k}", argument.argument_name());
     }
     if list.is_empty() {
         return None;
@@ -245,17 +251,21 @@ fn pattern(argument: Argument, n: usize, used: &BTreeSet<Symbol>) -> Option<Stri
 fn write_result(out: &mut String, f: &Function, outputs: &Outputs<'_>, s: &Signature<'_>) {
     match f.shape {
         Shape::Scalar => outputs.pieces.iter().for_each(|piece| out.push_str(&piece.text)),
-        Shape::Array(_) => out.push_str(&outputs.list(0..outputs.pieces.len())),
+        Shape::Array(_) => out.push_str(&outputs.array_of_outputs(0..outputs.pieces.len())),
         Shape::Vector(n) => {
-            let _ = writeln!(out, "{}", storage(&format!("[{}]", outputs.list(0..n)), "SVector"));
+            let _ = writeln!(
+                out,
+                "{}",
+                storage_constructor(&format!("[{}]", outputs.array_of_outputs(0..n)), "SVector")
+            );
         }
         Shape::Square(n) => {
-            let _ = writeln!(out, "{}", outputs.matrix(0, n, n));
+            let _ = writeln!(out, "{}", outputs.matrix_of_outputs(0, n, n));
         }
         Shape::Matrix(rows, columns) => {
-            let _ = writeln!(out, "{}", outputs.matrix(0, rows, columns));
+            let _ = writeln!(out, "{}", outputs.matrix_of_outputs(0, rows, columns));
         }
-        Shape::Record(record) => out.push_str(&outputs.record(record)),
+        Shape::Record(record) => out.push_str(&outputs.record_of_outputs(record)),
         Shape::Symmetric(_) => {}
         Shape::Inverse(_)
         | Shape::Pair(_)
@@ -266,6 +276,6 @@ fn write_result(out: &mut String, f: &Function, outputs: &Outputs<'_>, s: &Signa
         | Shape::Linear(..)
         | Shape::Accelerated(_)
         | Shape::CalledForward(_)
-        | Shape::CalledLinear(..) => out.push_str(&matrices::compose(f, s, outputs)),
+        | Shape::CalledLinear(..) => out.push_str(&matrices::compose_result(f, s, outputs)),
     }
 }

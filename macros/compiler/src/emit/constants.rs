@@ -40,7 +40,7 @@ pub fn write_constants(out: &mut String, i: &Interface<'_>, equations: &Written,
         let (n, list) = (list.len(), list.join(", "));
         let _ = writeln!(out, "/// {docs}\npub const {name}: [{item}; {n}] = [{list}];");
     }
-    let structure = structure(i);
+    let structure = structure_of_equations(i);
     let (is_short, equations) =
         match equations.plain.is_empty() && !i.velocities.is_empty() && !i.facts.kinematic {
             true => (true, &structure),
@@ -96,7 +96,7 @@ pub fn write_frame_index(out: &mut String, failed: bool) {
 }
 
 /// Returns the structure of the equations of motion, for mechanisms whose terms are not printed.
-fn structure(i: &Interface<'_>) -> Written {
+fn structure_of_equations(i: &Interface<'_>) -> Written {
     let time = if i.facts.time { "t, " } else { "" };
     let constrained = i.facts.constraints.is_some();
     let (held, held_latex) = if constrained { (" + J^T lambda", " + J^T \\lambda") } else { ("", "") };

@@ -39,7 +39,7 @@ pub struct Constraints {
 impl Constraints {
     /// Returns one unnamed constraint for a mechanism whose constraints are unknown because of an error; with
     /// `slips`, a constraint of a sliding contact.
-    pub fn unknown(slips: bool) -> Constraints {
+    pub fn unknown_constraints(slips: bool) -> Constraints {
         Constraints {
             names: vec![String::new()],
             holonomic: 1,
@@ -63,7 +63,7 @@ impl Constraints {
         };
         Constraints {
             names: model.constraints.iter().map(|c| c.name.clone()).collect(),
-            holonomic: model.holonomic(),
+            holonomic: model.holonomic_count(),
             redundant: model.redundant.clone(),
             freedom: model.freedom,
             groups: model.constraints.iter().map(|c| c.group).collect(),
@@ -97,12 +97,12 @@ struct Words {
 
 impl Words {
     fn new(c: &Constraints, s: &Signature<'_>) -> Words {
-        let scalar = s.scalar.name();
+        let scalar = s.scalar.scalar_name();
         Words {
-            q: s.vector(s.nq),
-            v: s.vector(s.nv),
-            residuals: s.vector(c.holonomic),
-            multipliers: s.vector(c.names.len()),
+            q: s.vector_type(s.nq),
+            v: s.vector_type(s.nv),
+            residuals: s.vector_type(c.holonomic),
+            multipliers: s.vector_type(c.names.len()),
             t: if s.time { format!("t: {scalar}, ") } else { String::new() },
             pass: if s.time { "t, " } else { "" },
             any: if s.time {
@@ -205,7 +205,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
     }
     let Words { q, v, multipliers, t, pass, any, .. } = Words::new(c, s);
     let (nv, nc) = (s.nv, c.names.len());
-    let scalar = s.scalar.name();
+    let scalar = s.scalar.scalar_name();
     let format_constrained_call = |function: &str, more: &str| {
         format!("::linkwork::Constrained::{function}(self, {any}, q, held{more})")
     };
@@ -289,7 +289,7 @@ pub fn write_methods(out: &mut String, c: &Constraints, functions: &[Function], 
         pub fn project_velocity(&self, {t}q: &{q}, v: &{v}) -> ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             ::linkwork::Constrained::project_velocity(self, {any}, q, v)
         }}",
-        correction = solution(c, false, &format!("careful_response(self, &Self::__STRUCTURE, {any}, q, force, bias)")),
+        correction = constrained_solution_expression(c, false, &format!("careful_response(self, &Self::__STRUCTURE, {any}, q, force, bias)")),
         groups = c.groups,
         determining = c.determining,
         rank = s.nv.saturating_sub(c.freedom.velocities),
@@ -326,7 +326,7 @@ fn write_inverse_dynamics(out: &mut String, c: &Constraints, s: &Signature<'_>) 
 /// Returns the expression for accelerations and multipliers from the result `found` of the elimination. The
 /// rank-revealing call `careful` is used if the elimination would lose digits. Corrections always use
 /// multipliers.
-fn solution(c: &Constraints, independent: bool, careful: &str) -> String {
+fn constrained_solution_expression(c: &Constraints, independent: bool, careful: &str) -> String {
     let quick = if c.overdetermined {
         "least_solution(&Self::__STRUCTURE.groups, Self::__STRUCTURE.rank, &found)"
     } else if independent {
@@ -346,7 +346,7 @@ fn solution(c: &Constraints, independent: bool, careful: &str) -> String {
 fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, multipliers, t, pass, any, .. } = Words::new(c, s);
     let careful = format!("careful_dynamics(self, &Self::__STRUCTURE, {any}, q, v, tau)");
-    let solution = solution(c, c.independent, &careful);
+    let solution = constrained_solution_expression(c, c.independent, &careful);
     format!(
         "/// Returns the acceleration and the multipliers `λ` of the constraints, in the units of the table \
          of constraints. Multipliers of redundant constraints have minimum norm.
@@ -361,7 +361,7 @@ fn held_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
 /// Returns the functions of constrained dynamics of a mechanism with sliding contacts.
 fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
     let Words { q, v, multipliers, t, pass, .. } = Words::new(c, s);
-    let (scalar, slipping) = (s.scalar.name(), &c.slipping);
+    let (scalar, slipping) = (s.scalar.scalar_name(), &c.slipping);
     format!(
         "/// Returns the acceleration and the multipliers `λ` of the constraints, in the units of the table \
          of constraints. Multipliers of sliding contacts are normal forces; friction is proportional to \
@@ -389,9 +389,9 @@ fn slipping_dynamics(c: &Constraints, s: &Signature<'_>) -> String {
 /// Writes the derivatives of constrained motion and the linearisation.
 fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, t, pass, .. } = Words::new(c, s);
-    let (scalar, nv, nc, nu, nh) = (s.scalar.name(), s.nv, c.names.len(), s.nu, c.holonomic);
+    let (scalar, nv, nc, nu, nh) = (s.scalar.scalar_name(), s.nv, c.names.len(), s.nu, c.holonomic);
     let Freedom { coordinates: np, velocities: ns } = c.freedom;
-    let square = s.shape(Shape::Square(nv));
+    let square = s.shape_type(Shape::Square(nv));
     let solve = if c.slipping.is_empty() {
         format!(
             "|force: &[{scalar}; {nv}], bias: &[{scalar}; {nc}]| self.__constraint_solution({pass}q, force, bias)"
@@ -448,7 +448,7 @@ fn write_derivatives(out: &mut String, c: &Constraints, s: &Signature<'_>) {
             }}.independent()
         }}",
         multipliers = multiplier_derivatives(c, s),
-        u = s.vector(nu),
+        u = s.vector_type(nu),
         nx = np + ns,
         motion = if c.slipping.is_empty() {
             format!("constrained_dynamics({pass}q, v, &{forces})")
@@ -465,7 +465,7 @@ fn multiplier_derivatives(c: &Constraints, s: &Signature<'_>) -> String {
         return String::new();
     }
     let Words { q, v, t, any, .. } = Words::new(c, s);
-    let rows = s.shape(Shape::Matrix(c.names.len(), s.nv));
+    let rows = s.shape_type(Shape::Matrix(c.names.len(), s.nv));
     format!(
         "/// `(∂λ/∂q, ∂λ/∂v, ∂λ/∂τ)` of the multipliers of [`constrained_dynamics`](Self::constrained_dynamics): a row for each constraint.
         ///
@@ -498,7 +498,7 @@ pub fn write_projection(out: &mut String, c: &Constraints, s: &Signature<'_>) {
         fn is_nearly_singular(&self, t: {scalar}, q: &{q}, dv: &{v}) -> bool {{
             ::linkwork::__private::nearly_singular(self, &Self::__STRUCTURE, t, q, dv)
         }}",
-        scalar = s.scalar.name(),
+        scalar = s.scalar.scalar_name(),
     );
     if !c.slipping.is_empty() {
         out.push_str("const SLIPPING: bool = true;\n");
@@ -517,15 +517,15 @@ pub fn write_forward_dynamics(out: &mut String, c: &Constraints, s: &Signature<'
          ::core::result::Result<{v}, ::linkwork::ConstraintError> {{
             self.try_constrained_dynamics({pass}q, v, tau).map(|(a, _)| a)
         }}",
-        scalar = s.scalar.name(),
+        scalar = s.scalar.scalar_name(),
     );
 }
 
 /// Writes the functions of the trait `Constrained`, which call the inherent functions.
 pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, residuals, multipliers, pass, .. } = Words::new(c, s);
-    let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());
-    let t = Argument::T.name();
+    let (scalar, nv, nc) = (s.scalar.scalar_name(), s.nv, c.names.len());
+    let t = Argument::T.argument_name();
     let _ = writeln!(
         out,
         "const CONSTRAINTS: [&'static str; {nc}] = Self::CONSTRAINTS;
@@ -551,15 +551,16 @@ pub fn write_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
 /// Writes the derivatives of the stabilised motion, in which constraint violations decay. Integration methods
 /// call them through the trait `Constrained`.
 pub fn write_stabilized(out: &mut String, s: &Signature<'_>) {
-    let (scalar, q, v, u) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv), s.vector(s.nu));
+    let (scalar, q, v, u) =
+        (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv), s.vector_type(s.nu));
     let _ = writeln!(
         out,
         "#[inline]\nfn stabilized_derivatives(&self, t: {scalar}, state: (&{q}, &{v}), u: &{u}, rate: \
          {scalar}) -> ::core::option::Option<({square}, {square}, {inputs})> {{
             ::linkwork::__private::stabilized_derivatives(self, t, state, u, rate)
         }}",
-        square = s.shape(Shape::Square(s.nv)),
-        inputs = s.shape(Shape::Matrix(s.nv, s.nu)),
+        square = s.shape_type(Shape::Square(s.nv)),
+        inputs = s.shape_type(Shape::Matrix(s.nv, s.nu)),
     );
 }
 
@@ -579,7 +580,7 @@ pub fn write_visit(out: &mut String, c: &Constraints, s: &Signature<'_>) {
              visitor: V) -> ::core::option::Option<V::Output> {{
                 ::core::option::Option::Some(::linkwork::constraint::Visitor::visit(visitor, self))
             }}",
-            s.scalar.name(),
+            s.scalar.scalar_name(),
             s.nq,
             s.nv,
             s.nu
@@ -590,8 +591,8 @@ pub fn write_visit(out: &mut String, c: &Constraints, s: &Signature<'_>) {
 /// Writes `equation_derivatives`, the function of the trait `ConstrainedDerivatives` without a default.
 pub fn write_derivatives_trait(out: &mut String, c: &Constraints, s: &Signature<'_>) {
     let Words { q, v, multipliers, pass, .. } = Words::new(c, s);
-    let (scalar, nv, nc) = (s.scalar.name(), s.nv, c.names.len());
-    let t = Argument::T.name();
+    let (scalar, nv, nc) = (s.scalar.scalar_name(), s.nv, c.names.len());
+    let t = Argument::T.argument_name();
     let _ = writeln!(
         out,
         "#[inline]\nfn equation_derivatives(&self, {t}: {scalar}, q: &{q}, v: &{v}, a: &{v}, lambda: \

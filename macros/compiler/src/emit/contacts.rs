@@ -37,14 +37,14 @@ impl UnilateralContact {
             pressed_by: c.pressed_by,
             turns: c.turns,
             of_impulses: c.of_impulses,
-            laws: [c.friction, c.restitution, c.stiction].map(|law| law.value()),
+            laws: [c.friction, c.restitution, c.stiction].map(|law| law.constant_value()),
             has_stiction: c.stiction != c.friction,
         };
         model.contacts.iter().map(contact_from_model).collect()
     }
 
     /// Returns one unnamed contact for a mechanism whose contacts are unknown because of an error.
-    pub fn unknown() -> UnilateralContact {
+    pub fn unknown_contact() -> UnilateralContact {
         UnilateralContact {
             name: String::new(),
             rates: 1,
@@ -82,9 +82,9 @@ pub fn write_constants(out: &mut String, contacts: &[UnilateralContact]) {
 /// Writes the items of the trait `Contacts`.
 pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let ContactSizes { count, rates: rows } = i.facts.contacts;
-    let (scalar, q, v, nv) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv), s.nv);
+    let (scalar, q, v, nv) = (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv), s.nv);
     let pass = if s.time { "t, " } else { "" };
-    let (gaps, rates) = (s.vector(count), s.vector(rows));
+    let (gaps, rates) = (s.vector_type(count), s.vector_type(rows));
     let laws: Vec<String> = (0..count)
         .map(|k| {
             let of_impulses = i.contacts.get(k).is_some_and(|contact| contact.of_impulses);
@@ -98,7 +98,7 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
             )
         })
         .collect();
-    let is_written = i.facts.meet(Need::Inertia) && i.facts.meet(Need::FewContacts);
+    let is_written = i.facts.meets_need(Need::Inertia) && i.facts.meets_need(Need::FewContacts);
     let responses = if is_written {
         format!(
             "#[inline]\nfn contact_responses(&self, t: {scalar}, q: &{q}, _: &[bool; {count}]) \
@@ -115,7 +115,7 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         String::new()
     };
     if i.facts.requests.derivatives {
-        let (u, square) = (s.vector(s.nu), s.shape(Shape::Square(nv)));
+        let (u, square) = (s.vector_type(s.nu), s.shape_type(Shape::Square(nv)));
         let _ = writeln!(
             out,
             "#[inline]\nfn held_derivatives(&self, t: {scalar}, state: (&{q}, &{v}), u: &{u}, touches: \
@@ -123,7 +123,7 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
              ::core::option::Option<({square}, {square}, {inputs})> {{
                 ::linkwork::__private::held_derivatives(self, t, state, u, touches, gains)
             }}",
-            inputs = s.shape(Shape::Matrix(nv, s.nu)),
+            inputs = s.shape_type(Shape::Matrix(nv, s.nu)),
         );
     }
     let _ = writeln!(
@@ -149,7 +149,7 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
 /// Writes `contact_derivatives`, the function of the trait `ContactDerivatives`.
 pub fn write_derivatives(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let rows = i.facts.contacts.rates;
-    let (scalar, q, v, nv) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv), s.nv);
+    let (scalar, q, v, nv) = (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv), s.nv);
     let pass = if s.time { "t, " } else { "" };
     let _ = writeln!(
         out,
@@ -158,7 +158,7 @@ pub fn write_derivatives(out: &mut String, i: &Interface<'_>, s: &Signature<'_>)
             ::linkwork::contact::FirstOrder::from(self.__contact_derivatives({pass}q, v, a, \
                 &forces.data.0[0]))
         }}",
-        s.vector(rows)
+        s.vector_type(rows)
     );
 }
 
@@ -167,7 +167,7 @@ pub fn write_steps(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     if i.contacts.is_empty() {
         return;
     }
-    let (scalar, q, v) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv));
+    let (scalar, q, v) = (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv));
     let _ = writeln!(
         out,
         "const CONTACTING: bool = true;
@@ -184,14 +184,14 @@ pub fn write_steps(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
             V) -> ::core::option::Option<V::Output> {{
             ::core::option::Option::Some(::linkwork::contact::Visitor::visit(visitor, self))
         }}",
-        carry(i, s), s.nv, s.nq, s.nv, s.nq, s.nv, s.nu
+        velocity_transport_hook(i, s), s.nv, s.nq, s.nv, s.nq, s.nv, s.nu
     );
 }
 
 /// Returns the hook that expresses a velocity in the axes, and in the generalized speeds, of another
 /// configuration.
-fn carry(i: &Interface<'_>, s: &Signature<'_>) -> String {
-    let (scalar, q, v) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv));
+fn velocity_transport_hook(i: &Interface<'_>, s: &Signature<'_>) -> String {
+    let (scalar, q, v) = (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv));
     let (name, body) = match i.facts.speeds {
         false => ("_q", "self.__carry(dv, v)"),
         true => (

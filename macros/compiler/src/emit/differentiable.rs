@@ -39,7 +39,7 @@ pub fn write_methods(
         out,
         "#[doc(hidden)]\npub const __TURNED: ::core::option::Option<(usize, usize)> = {turned};"
     );
-    let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
+    let (v, square) = (s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
     for (name, about, arguments, first) in [
         (
             "integrate",
@@ -76,7 +76,7 @@ pub fn write_methods(
         }
         out.push_str("}\n");
     }
-    let inputs = s.shape(Shape::Matrix(s.nv, s.nu));
+    let inputs = s.shape_type(Shape::Matrix(s.nv, s.nu));
     let pass = if s.time { "t, " } else { "" };
     let format_matrix_from_columns = |list: &str| {
         format!(
@@ -93,7 +93,7 @@ pub fn write_methods(
             let found = self.__input_derivatives({pass}q, v, u);
             ({}, {}, {})
         }}",
-        s.parameters(&s.timed(&[Argument::Q, Argument::V, Argument::U])),
+        s.parameter_list(&s.with_time_argument(&[Argument::Q, Argument::V, Argument::U])),
         format_matrix_from_columns("by_q"),
         format_matrix_from_columns("by_v"),
         format_matrix_from_columns("by_u"),
@@ -122,13 +122,13 @@ pub fn write_second(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_
     if !has_second(i) {
         return;
     }
-    if curves(i, s) {
+    if has_curved_configurations(i, s) {
         write_rate_curvature(out, charts, s);
     }
-    let (square, pass) = (s.shape(Shape::Square(s.nv)), if s.time { "t, " } else { "" });
-    let arguments = s.timed(&[Argument::Q, Argument::V, Argument::Tau, Argument::Factors(s.nv)]);
+    let (square, pass) = (s.shape_type(Shape::Square(s.nv)), if s.time { "t, " } else { "" });
+    let arguments = s.with_time_argument(&[Argument::Q, Argument::V, Argument::Tau, Argument::Factors(s.nv)]);
     let (source, body) = if i.facts.constraints.is_some() {
-        let zero = format!("::linkwork::__private::constant::<{}>(0.0)", s.scalar.name());
+        let zero = format!("::linkwork::__private::constant::<{}>(0.0)", s.scalar.scalar_name());
         let t = if s.time { "t" } else { &zero };
         (
             "They combine the second derivatives of the equations of motion and of the constraints, `M v̇ + h − Jᵀ μ = τ` and `J v̇ + b = 0`, contracted with `−w` and `−z`, where `M w + Jᵀ z = λ` and `J \
@@ -160,7 +160,7 @@ pub fn write_second(out: &mut String, charts: Option<&[Chart]>, i: &Interface<'_
         pub fn forward_dynamics_second_derivatives({}) -> ({square}, {square}, {square}, {square}) {{
             {body}
         }}",
-        s.parameters(&arguments),
+        s.parameter_list(&arguments),
     );
 }
 
@@ -173,13 +173,13 @@ pub fn has_second(i: &Interface<'_>) -> bool {
 
 /// Returns true if the configuration space is curved and the second derivatives of the rate of displacements
 /// are therefore generated. They are not generated with generalized speeds.
-fn curves(i: &Interface<'_>, s: &Signature<'_>) -> bool {
+fn has_curved_configurations(i: &Interface<'_>, s: &Signature<'_>) -> bool {
     s.nq != s.nv && !i.facts.speeds
 }
 
 /// Writes the second derivatives of the rate of displacements.
 fn write_rate_curvature(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
-    let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
+    let (v, square) = (s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
     let _ = writeln!(
         out,
         "#[doc(hidden)]\n#[inline]\n#[must_use]\npub fn __tangent_rate_second_derivatives(&self, dv: &{v}, v: &{v}, lambda: &{v}) -> ({square}, {square}) {{"
@@ -197,9 +197,9 @@ fn write_rate_curvature(out: &mut String, charts: Option<&[Chart]>, s: &Signatur
 
 /// Writes `equation_second_derivatives`, the function of the trait `ConstrainedSecondDerivatives`.
 pub fn write_constrained_second_trait(out: &mut String, nc: usize, s: &Signature<'_>) {
-    let (scalar, nv) = (s.scalar.name(), s.nv);
-    let (q, v, multipliers) = (s.vector(s.nq), s.vector(nv), s.vector(nc));
-    let (t, pass) = (Argument::T.name(), if s.time { "t, " } else { "" });
+    let (scalar, nv) = (s.scalar.scalar_name(), s.nv);
+    let (q, v, multipliers) = (s.vector_type(s.nq), s.vector_type(nv), s.vector_type(nc));
+    let (t, pass) = (Argument::T.argument_name(), if s.time { "t, " } else { "" });
     let _ = writeln!(
         out,
         "#[inline]\nfn equation_second_derivatives(&self, {t}: {scalar}, q: &{q}, v: &{v}, a: &{v}, lambda: \
@@ -259,14 +259,14 @@ pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>
              {}, {}>>(&self, visitor: V) -> ::core::option::Option<V::Output> {{
                 ::core::option::Option::Some(::linkwork::constraint::CurvatureVisitor::visit(visitor, self))
             }}",
-            s.scalar.name(),
+            s.scalar.scalar_name(),
             s.nq,
             s.nv,
             s.nu
         );
     }
-    if curves(i, s) {
-        let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
+    if has_curved_configurations(i, s) {
+        let (v, square) = (s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
         let _ = writeln!(
             out,
             "#[inline]\nfn tangent_rate_second_derivatives(&self, dv: &{v}, v: &{v}, lambda: &{v}) \
@@ -283,12 +283,12 @@ pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>
         ("generalized_forces_second_derivatives", U, Shape::InputHessian(n, s.nu)),
     ] {
         let arguments = [Q, V, third, Argument::Factors(n)];
-        let names: Vec<&str> = s.timed(&arguments).iter().map(|a| a.name()).collect();
+        let names: Vec<&str> = s.with_time_argument(&arguments).iter().map(|a| a.argument_name()).collect();
         let _ = writeln!(
             out,
             "#[inline]\nfn {name}({}) -> {} {{ Self::{name}(self, {}) }}",
-            s.parameters(&[&[Argument::T], &arguments[..]].concat()),
-            s.shape(shape),
+            s.parameter_list(&[&[Argument::T], &arguments[..]].concat()),
+            s.shape_type(shape),
             names.join(", ")
         );
     }
@@ -297,7 +297,7 @@ pub fn write_second_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>
 /// Writes the functions of the trait `Derivatives`, which call the inherent functions.
 pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     use Argument::{A, Q, Tau, U, V};
-    let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
+    let (v, square) = (s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
     if i.facts.speeds {
         super::speeds::write_derivatives(out, s);
     } else {
@@ -309,7 +309,7 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
                 Self::tangent_rate_derivatives(self, dv, v) }}"
         );
     }
-    let inputs = s.shape(Shape::Matrix(s.nv, s.nu));
+    let inputs = s.shape_type(Shape::Matrix(s.nv, s.nu));
     let pair = format!("({square}, {square})");
     let mut functions = vec![
         ("coriolis_matrix", vec![Q, V], square.clone()),
@@ -333,11 +333,11 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
         functions.push(("forward_dynamics_derivatives_into", [vec![Q, V, Tau], into.to_vec()].concat(), v));
     }
     for (name, arguments, result) in functions {
-        let names: Vec<&str> = s.timed(&arguments).iter().map(|a| a.name()).collect();
+        let names: Vec<&str> = s.with_time_argument(&arguments).iter().map(|a| a.argument_name()).collect();
         let _ = writeln!(
             out,
             "#[inline]\nfn {name}({}) -> {result} {{ Self::{name}(self, {}) }}",
-            s.parameters(&[vec![Argument::T], arguments].concat()),
+            s.parameter_list(&[vec![Argument::T], arguments].concat()),
             names.join(", ")
         );
     }
@@ -352,8 +352,8 @@ pub fn write_accelerations(out: &mut String, s: &Signature<'_>) {
          {inputs})> {{
             ::linkwork::__private::acceleration_derivatives(self, t, q, v, u)
         }}",
-        s.parameters(&[Argument::T, Q, V, U]),
-        square = s.shape(Shape::Square(s.nv)),
-        inputs = s.shape(Shape::Matrix(s.nv, s.nu)),
+        s.parameter_list(&[Argument::T, Q, V, U]),
+        square = s.shape_type(Shape::Square(s.nv)),
+        inputs = s.shape_type(Shape::Matrix(s.nv, s.nu)),
     );
 }

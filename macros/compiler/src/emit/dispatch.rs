@@ -6,7 +6,7 @@ use super::function::{write_function, write_head};
 use super::instruction::Build;
 use super::interface::{ALLOW, Head};
 use super::lanes;
-use super::signature::{Signature, filled};
+use super::signature::{Signature, filled_matrix_count};
 use crate::derive::Function;
 use crate::machine::DISPATCHED_OPERATIONS;
 use std::fmt::Write;
@@ -43,7 +43,8 @@ struct Body {
 /// multiplies their matrices and counts as large.
 fn is_large(f: &Function) -> bool {
     // A function that only calls its variant with matrix arguments has no arithmetic of its own.
-    filled(f).is_none() && (f.shape.calls() || f.program.instructions.len() >= DISPATCHED_OPERATIONS)
+    filled_matrix_count(f).is_none()
+        && (f.shape.is_assembled_from_calls() || f.program.instructions.len() >= DISPATCHED_OPERATIONS)
 }
 
 impl Bodies {
@@ -58,8 +59,8 @@ impl Bodies {
         if !self.wanted || !is_large(f) {
             return write_function(out, f, s, false);
         }
-        let types: Vec<String> = f.arguments.iter().map(|a| s.argument(*a)).collect();
-        let names: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
+        let types: Vec<String> = f.arguments.iter().map(|a| s.argument_type(*a)).collect();
+        let names: Vec<&str> = f.arguments.iter().map(|a| a.argument_name()).collect();
         let format_tuple =
             |list: String| if list.is_empty() { "()".to_string() } else { format!("({list},)") };
         let (types, names) = (format_tuple(types.join(", ")), format_tuple(names.join(", ")));
@@ -75,18 +76,25 @@ impl Bodies {
         let debug = match s.scalar.is_in_lanes() {
             true => lanes::one_by_one(f),
             // Calls of other functions are followed by products of their matrices, which are large.
-            false if f.shape.calls() || f.program.instructions.len() > LARGEST => None,
+            false if f.shape.is_assembled_from_calls() || f.program.instructions.len() > LARGEST => None,
             false => {
                 let mut text = String::new();
                 write_body(&mut text, f, s, true, Build::Debug);
                 Some(text)
             }
         };
-        self.list.push(Body { types, names, result: s.result(f), simd: s.scalar.is_in_lanes(), text, debug });
+        self.list.push(Body {
+            types,
+            names,
+            result: s.result_type(f),
+            simd: s.scalar.is_in_lanes(),
+            text,
+            debug,
+        });
     }
 
     /// Writes the bodies of the functions of the type `name`.
-    pub fn write(&self, out: &mut String, name: &str, head: &Head) {
+    pub fn write_function_bodies(&self, out: &mut String, name: &str, head: &Head) {
         let Head { generics, arguments, bounds } = head;
         for (k, body) in self.list.iter().enumerate() {
             let Body { types, names, result, text, debug, .. } = body;

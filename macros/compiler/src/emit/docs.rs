@@ -26,7 +26,7 @@ pub enum Part {
 pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut text = String::from("\n\n");
-    declaration(&mut text, interface);
+    add_declaration(&mut text, interface);
     text.push_str("# Mechanism\n\n");
     let _ = writeln!(
         text,
@@ -35,9 +35,9 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
         interface.velocities.len(),
         interface.inputs.len()
     );
-    list(&mut text, "Configuration `q`", &interface.configuration);
+    add_name_list(&mut text, "Configuration `q`", &interface.configuration);
     if interface.velocities != interface.configuration {
-        list(&mut text, "Velocity `v`", &interface.velocities);
+        add_name_list(&mut text, "Velocity `v`", &interface.velocities);
     } else if !interface.velocities.is_empty() {
         text.push_str("- Velocity `v`: their rates\n");
     }
@@ -46,16 +46,16 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
             "- Generalized speeds are among the velocities: `rates_of_speeds` returns the joint velocities\n",
         );
     }
-    list(&mut text, "Inputs `u`", &interface.inputs);
-    list(&mut text, "Frames", &interface.frames);
+    add_name_list(&mut text, "Inputs `u`", &interface.inputs);
+    add_name_list(&mut text, "Frames", &interface.frames);
     for name in &interface.frames {
-        if let Some(note) = note(interface, name) {
+        if let Some(note) = doc_comment_of_field(interface, name) {
             let _ = writeln!(text, "  - `{name}`: {note}");
         }
     }
-    units(&mut text, interface);
+    add_unit_table(&mut text, interface);
     limits::write_docs(&mut text, &interface.limits);
-    constraints(&mut text, interface);
+    add_constraint_section(&mut text, interface);
     contacts::write_docs(&mut text, &interface.contacts);
     if !interface.snapped.is_empty() {
         text.push_str("\n# Rounded numbers\n\nNumbers of the file that `snap` has rounded:\n\n");
@@ -90,11 +90,11 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
         }
     }
     if !output.equations.plain.is_empty() {
-        equations(&mut parts, &mut text, "Equations of motion", &output.equations, "<details>");
+        add_equation_section(&mut parts, &mut text, "Equations of motion", &output.equations, "<details>");
     }
     for linear in &output.linear_equations {
         // The text contains more than the equations.
-        equations(&mut parts, &mut text, "Linear equations", linear, "<details open>");
+        add_equation_section(&mut parts, &mut text, "Linear equations", linear, "<details open>");
     }
     if let Some(kept) = output.constants.iter().find(|c| c.name == "CONSERVED") {
         text.push_str("\n# Conserved\n\n");
@@ -103,14 +103,20 @@ pub fn struct_docs(interface: &Interface<'_>, output: &Output) -> Vec<Part> {
             let _ = writeln!(text, "- {}", name.trim_matches('"'));
         });
     }
-    text.push_str(&operations(&output.functions));
-    lanes(&mut text, interface, output);
+    text.push_str(&operation_count_table(&output.functions));
+    add_lane_section(&mut text, interface, output);
     parts.push(Part::Everywhere(text));
     parts
 }
 
 /// Adds a section with equations: typeset on pages, with the text folded below; in editors the text alone.
-fn equations(parts: &mut Vec<Part>, text: &mut String, title: &str, equations: &Written, details: &str) {
+fn add_equation_section(
+    parts: &mut Vec<Part>,
+    text: &mut String,
+    title: &str,
+    equations: &Written,
+    details: &str,
+) {
     let _ = writeln!(text, "\n# {title}");
     parts.push(Part::Everywhere(std::mem::take(text)));
     let plain = format!("\n```text\n{}\n```\n", equations.plain.trim_end());
@@ -125,11 +131,11 @@ fn equations(parts: &mut Vec<Part>, text: &mut String, title: &str, equations: &
 
 /// Returns a table of the operation counts of the functions, with the values from which a worst-case
 /// execution time is estimated; empty if no function has any operation.
-pub fn operations(functions: &[Function]) -> String {
+pub fn operation_count_table(functions: &[Function]) -> String {
     let mut lines = String::new();
     let mut row = |name: &str, program: &Program| {
         let c = program.counts;
-        let (held, branches) = (program.max_live(), program.branches());
+        let (held, branches) = (program.max_live(), program.branch_count());
         let _ = writeln!(
             lines,
             "| {name} | {} | {} | {} | {} | {held} | {branches} |",
@@ -144,7 +150,7 @@ pub fn operations(functions: &[Function]) -> String {
             _ if f.is_hidden() => continue,
             _ => format!("`{}`", f.name),
         };
-        if f.program.counts.total() + f.program.counts.calls > 0 {
+        if f.program.counts.total_operations() + f.program.counts.calls > 0 {
             row(&name, &f.program);
         }
         if let Some(program) = &f.program.simd {
@@ -166,7 +172,7 @@ pub fn operations(functions: &[Function]) -> String {
 }
 
 /// Adds the section on constraints and degrees of freedom.
-fn constraints(text: &mut String, i: &Interface<'_>) {
+fn add_constraint_section(text: &mut String, i: &Interface<'_>) {
     let c = &i.constraints;
     if c.names.is_empty() {
         return;
@@ -188,7 +194,7 @@ fn constraints(text: &mut String, i: &Interface<'_>) {
         let _ = writeln!(text, "| `λ[{k}]` | `{name}` | {what} | {residual} | {multiplier} |");
     }
     text.push('\n');
-    list(text, "Omitted, because they depend on these", &c.redundant);
+    add_name_list(text, "Omitted, because they depend on these", &c.redundant);
     let dependent = (speeds + c.names.len()).saturating_sub(i.velocities.len());
     if dependent > 0 {
         let _ = writeln!(
@@ -200,7 +206,7 @@ fn constraints(text: &mut String, i: &Interface<'_>) {
 
 /// Adds the section on SIMD lanes: the functions that evaluate identical limbs or joints as lanes, and the
 /// coordinates of these limbs.
-fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
+fn add_lane_section(text: &mut String, i: &Interface<'_>, output: &Output) {
     let shown = output.functions.iter().filter(|f| !f.name.starts_with("__"));
     let in_lanes: Vec<(&str, &Program)> =
         shown.filter_map(|f| Some((f.name.as_str(), f.program.simd.as_deref()?))).collect();
@@ -229,9 +235,9 @@ fn lanes(text: &mut String, i: &Interface<'_>, output: &Output) {
 }
 
 /// Adds the table of the units of parameters, coordinates, inputs, tables and outputs.
-fn units(text: &mut String, i: &Interface<'_>) {
+fn add_unit_table(text: &mut String, i: &Interface<'_>) {
     let strip_raw_prefix = |name: String| name.trim_start_matches("r#").to_string();
-    let parameters: Vec<String> = i.shell.accesses().into_iter().map(strip_raw_prefix).collect();
+    let parameters: Vec<String> = i.shell.parameter_accesses().into_iter().map(strip_raw_prefix).collect();
     let lists: [(&str, &[String], &[String]); 4] = [
         ("", &parameters, &i.units.parameters),
         ("q", &i.configuration, &i.units.configuration),
@@ -248,7 +254,7 @@ fn units(text: &mut String, i: &Interface<'_>) {
         let _ = write!(text, "| {what} | `{name}` | {unit} |");
         if !i.shell.notes.is_empty() {
             // The note of a joint is printed once, for the first of its coordinates.
-            let note = note(i, name).filter(|note| !said.contains(note));
+            let note = doc_comment_of_field(i, name).filter(|note| !said.contains(note));
             said.extend(note);
             let _ = write!(text, " {} |", note.unwrap_or_default().replace('|', "\\|"));
         }
@@ -271,14 +277,14 @@ fn units(text: &mut String, i: &Interface<'_>) {
 }
 
 /// Returns the user's doc comment of the field to which a name belongs.
-pub fn note<'a>(i: &'a Interface<'_>, name: &str) -> Option<&'a str> {
+pub fn doc_comment_of_field<'a>(i: &'a Interface<'_>, name: &str) -> Option<&'a str> {
     let field = name.split('.').next().unwrap_or(name);
     i.shell.notes.iter().find(|(known, _)| known == field).map(|(_, note)| note.as_str())
 }
 
 /// Returns the documentation of an output's function: the user's doc comment, then the description `what`.
 pub fn output_docs(i: &Interface<'_>, name: &str, what: &str) -> String {
-    match note(i, name) {
+    match doc_comment_of_field(i, name) {
         Some(note) => format!(" {note}\n\n The output `{name}`, {what}"),
         None => format!(" The output `{name}`, {what}"),
     }
@@ -288,7 +294,7 @@ pub fn output_docs(i: &Interface<'_>, name: &str, what: &str) -> String {
 const UNFOLDED: usize = 40;
 
 /// Adds the user's declaration as source text to the documentation.
-fn declaration(text: &mut String, i: &Interface<'_>) {
+fn add_declaration(text: &mut String, i: &Interface<'_>) {
     let Some(code) = &i.shell.declaration else { return };
     // Doc comments may contain code.
     let mut fence = "```".to_string();
@@ -302,7 +308,7 @@ fn declaration(text: &mut String, i: &Interface<'_>) {
     };
 }
 
-fn list(text: &mut String, what: &str, names: &[String]) {
+fn add_name_list(text: &mut String, what: &str, names: &[String]) {
     if !names.is_empty() {
         let names: Vec<String> = names.iter().map(|n| format!("`{n}`")).collect();
         let _ = writeln!(text, "- {what}: {}", names.join(", "));

@@ -2,7 +2,7 @@
 //! set them.
 
 use super::interface::{ALLOW, Head, Interface};
-use super::item::runtime;
+use super::item::runtime_path;
 use super::scalar::ScalarSpelling;
 use crate::catalogue::Need;
 use crate::syntax::Word;
@@ -13,9 +13,9 @@ use std::fmt::Write;
 use syn::Ident;
 
 /// Returns the fields of the struct for values of the file.
-pub fn fields(i: &Interface<'_>) -> Vec<TokenStream> {
-    let runtime = runtime(i.shell);
-    let scalar = scalar(i);
+pub fn struct_fields(i: &Interface<'_>) -> Vec<TokenStream> {
+    let runtime = runtime_path(i.shell);
+    let scalar = scalar_type(i);
     let field_tokens = |field: &FileField| {
         let (name, about) = (Ident::new(&field.ident, Span::call_site()), &field.about);
         let kind = match field.kind {
@@ -29,7 +29,7 @@ pub fn fields(i: &Interface<'_>) -> Vec<TokenStream> {
 }
 
 /// Returns the scalar type of the fields.
-fn scalar(i: &Interface<'_>) -> Ident {
+fn scalar_type(i: &Interface<'_>) -> Ident {
     let name = ScalarSpelling::new(i.scalar.clone(), Vec::new(), Vec::new());
     format_ident!("{}", name.one())
 }
@@ -37,13 +37,17 @@ fn scalar(i: &Interface<'_>) -> Ident {
 /// Writes the constructors from the values of the file, and the functions that get and set the inertial
 /// parameters of all links.
 pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
-    if !i.facts.meet(Need::FileParameters) {
+    if !i.facts.meets_need(Need::FileParameters) {
         return;
     }
     let own: Vec<String> =
         i.shell.parameters.iter().filter_map(|f| f.ident.as_ref().map(ToString::to_string)).collect();
-    let values: Vec<String> =
-        i.shell.file_fields.iter().map(|field| format!("{}: {}", field.ident, value(field, s))).collect();
+    let values: Vec<String> = i
+        .shell
+        .file_fields
+        .iter()
+        .map(|field| format!("{}: {}", field.ident, field_value_expression(field, s)))
+        .collect();
     let tables = i
         .shell
         .tables
@@ -76,10 +80,10 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
         #[inline]\n#[must_use]\npub {constant}fn from_file({}) -> Self {{\n{before}Self {{ {all} }}\n}}",
         arguments.join(", ")
     );
-    if !i.facts.meet(Need::FileInertials) {
+    if !i.facts.meets_need(Need::FileInertials) {
         return;
     }
-    let links = links(i);
+    let links = inertial_fields(i);
     let (n, names): (usize, Vec<&String>) = (links.len(), links.iter().map(|field| &field.of).collect());
     let get: Vec<String> = links.iter().map(|field| format!("self.{}", field.ident)).collect();
     let set: Vec<String> =
@@ -96,7 +100,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
         get.join(", "),
         set.join("\n")
     );
-    if i.facts.meet(Need::Asks(Word::Regressor)) {
+    if i.facts.meets_need(Need::Asks(Word::Regressor)) {
         let _ = writeln!(
             out,
             "/// Sets the mass properties of all `LINKS` to the physically consistent values that have these \
@@ -120,11 +124,11 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, s: &ScalarSpelling) {
 
 /// Writes the trait `Identifiable`, which sets inertial parameters from base parameters.
 pub fn write_trait(out: &mut String, head: &Head, i: &Interface<'_>, s: &ScalarSpelling) {
-    if ![Need::FileInertials, Need::Asks(Word::Regressor)].iter().all(|need| i.facts.meet(*need)) {
+    if ![Need::FileInertials, Need::Asks(Word::Regressor)].iter().all(|need| i.facts.meets_need(*need)) {
         return;
     }
     let Head { generics, arguments, bounds } = head;
-    let (n, base, one) = (links(i).len(), i.facts.base, s.one());
+    let (n, base, one) = (inertial_fields(i).len(), i.facts.base, s.one());
     let _ = writeln!(
         out,
         "{ALLOW}impl{generics} ::linkwork::identification::Identifiable<{n}, {base}> for {}{arguments} \
@@ -141,13 +145,13 @@ pub fn write_trait(out: &mut String, head: &Head, i: &Interface<'_>, s: &ScalarS
 }
 
 /// Returns the fields that hold inertial parameters.
-fn links<'a>(i: &'a Interface<'_>) -> Vec<&'a FileField> {
+fn inertial_fields<'a>(i: &'a Interface<'_>) -> Vec<&'a FileField> {
     i.shell.file_fields.iter().filter(|field| field.kind == FileFieldKind::Inertial).collect()
 }
 
 /// Returns the expression of a field's value in the file.
-fn value(field: &FileField, s: &ScalarSpelling) -> String {
-    let numbers: Vec<String> = field.values.iter().map(|x| s.constant(*x)).collect();
+fn field_value_expression(field: &FileField, s: &ScalarSpelling) -> String {
+    let numbers: Vec<String> = field.values.iter().map(|x| s.constant_expression(*x)).collect();
     match (field.kind, numbers.as_slice()) {
         (FileFieldKind::Inertial, [mass, x, y, z, xx, xy, xz, yy, yz, zz]) => format!(
             "::linkwork::Inertial {{ mass: {mass}, com: [{x}, {y}, {z}], ixx: {xx}, ixy: {xy}, ixz: {xz}, \

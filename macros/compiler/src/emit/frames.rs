@@ -37,8 +37,8 @@ pub fn write_frames(
         pub fn frame_placements({}) -> [::linkwork::nalgebra::IsometryMatrix3<{}>; {}] {{",
         steps.declarations,
         steps.methods,
-        s.parameters(&s.timed(&[Argument::Q])),
-        s.scalar.name(),
+        s.parameter_list(&s.with_time_argument(&[Argument::Q])),
+        s.scalar.scalar_name(),
         frames.len()
     );
     write_all_placements(out, links, frames, s);
@@ -50,7 +50,7 @@ pub fn write_frames(
              {bounds} {{\ntype Scalar = {};",
             s.nq,
             s.nv,
-            s.scalar.name()
+            s.scalar.scalar_name()
         );
         write_frame_impl(out, k, frame, links, speeds, s);
         out.push_str("}\n");
@@ -79,15 +79,15 @@ impl StepMethods {
 fn write_steps(links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) -> StepMethods {
     let mut steps = StepMethods::default();
     let mut step = |name: String, arguments: Vec<Argument>, n: usize, program: &Program| {
-        let f = Function::part(name, arguments, n, program.clone());
+        let f = Function::hidden_part_function(name, arguments, n, program.clone());
         let mut body = String::new();
         write_body(&mut body, &f, s, false, Build::Optimised);
-        let signature = format!("fn {}({}) -> {}", f.name, s.parameters(&f.arguments), s.result(&f));
+        let signature = format!("fn {}({}) -> {}", f.name, s.parameter_list(&f.arguments), s.result_type(&f));
         steps.add("", &signature, &body);
     };
     for (k, link) in links.iter().enumerate() {
         let from_parent = |arguments: &[Argument], given: Argument| {
-            let mut all = s.timed(arguments);
+            let mut all = s.with_time_argument(arguments);
             all.extend(link.parent.map(|_| given));
             all
         };
@@ -97,7 +97,7 @@ fn write_steps(links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) ->
         let acceleration =
             from_parent(&[Argument::Q, Argument::V, Argument::A], Argument::Given("p", Supplied::Parent, 12));
         step(format!("__link{k}_acceleration"), acceleration, 6, &link.acceleration);
-        let mut columns = if link.driven { s.timed(&[Argument::Q]) } else { Vec::new() };
+        let mut columns = if link.driven { s.with_time_argument(&[Argument::Q]) } else { Vec::new() };
         columns
             .extend([Argument::Given("p", Supplied::Parent, 12), Argument::Given("o", Supplied::Origin, 3)]);
         step(format!("__link{k}_columns"), columns, 6 * link.velocities.len(), &link.columns);
@@ -120,12 +120,12 @@ fn write_steps(links: &[LinkSteps], frames: &[FrameSteps], s: &Signature<'_>) ->
 }
 
 /// Returns `t, `, the first argument of a call, if functions take time; otherwise an empty text.
-fn time(s: &Signature<'_>) -> &'static str {
+fn time_argument_prefix(s: &Signature<'_>) -> &'static str {
     if s.time { "t, " } else { "" }
 }
 
 /// Returns the links from the ground to a link, that link included.
-fn path(links: &[LinkSteps], mut link: Option<usize>) -> Vec<usize> {
+fn path_from_ground(links: &[LinkSteps], mut link: Option<usize>) -> Vec<usize> {
     let mut path = Vec::new();
     while let Some(k) = link {
         path.push(k);
@@ -136,7 +136,7 @@ fn path(links: &[LinkSteps], mut link: Option<usize>) -> Vec<usize> {
 }
 
 fn write_link_placement(out: &mut String, k: usize, link: &LinkSteps, s: &Signature<'_>) {
-    let t = time(s);
+    let t = time_argument_prefix(s);
     let parent = link.parent.map_or(String::new(), |p| format!(", &x{p}"));
     let _ = writeln!(out, "let x{k} = self.__link{k}_placement({t}q{parent});");
 }
@@ -172,7 +172,7 @@ fn write_frame_impl(
     speeds: bool,
     s: &Signature<'_>,
 ) {
-    let scalar = s.scalar.name();
+    let scalar = s.scalar.scalar_name();
     // The steps take joint velocities.
     let (rates, accelerations) = match speeds {
         true => ("let v = &self.rates_of_speeds(q, v);\n", "let a = &self.__rate_accelerations(q, v, a);\n"),
@@ -180,9 +180,9 @@ fn write_frame_impl(
     };
     let write_frame_method = |out: &mut String, name: &str, arguments: &[Argument], result: &str| {
         let all: Vec<Argument> = std::iter::once(Argument::T).chain(arguments.iter().copied()).collect();
-        let _ = writeln!(out, "#[inline]\nfn {name}({}) -> {result} {{", s.parameters(&all));
+        let _ = writeln!(out, "#[inline]\nfn {name}({}) -> {result} {{", s.parameter_list(&all));
     };
-    let t = time(s);
+    let t = time_argument_prefix(s);
     write_frame_method(out, "placement", &[Argument::Q], &format!("[{scalar}; 12]"));
     write_path_placement(out, frame.link, s);
     let _ = writeln!(out, "{}\n}}", frame_placement(k, frame));
@@ -214,7 +214,7 @@ fn write_frame_impl(
 /// Writes the statement that binds the placement of the frame's link.
 fn write_path_placement(out: &mut String, link: Option<usize>, s: &Signature<'_>) {
     if let Some(k) = link {
-        let _ = writeln!(out, "let x{k} = self.__link{k}_path_placement({}q);", time(s));
+        let _ = writeln!(out, "let x{k} = self.__link{k}_path_placement({}q);", time_argument_prefix(s));
     }
 }
 
@@ -222,9 +222,9 @@ fn write_path_placement(out: &mut String, link: Option<usize>, s: &Signature<'_>
 /// twist, and twist and acceleration together.
 fn write_path(steps: &mut StepMethods, k: usize, link: &LinkSteps, s: &Signature<'_>) {
     use Argument::{A, Q, V};
-    let (scalar, t) = (s.scalar.name(), time(s));
+    let (scalar, t) = (s.scalar.scalar_name(), time_argument_prefix(s));
     let mut method = |name: &str, arguments: &[Argument], n: usize, body: &str| {
-        let parameters = s.parameters(&s.timed(arguments));
+        let parameters = s.parameter_list(&s.with_time_argument(arguments));
         steps.add("(always)", &format!("fn __link{k}_path_{name}({parameters}) -> [{scalar}; {n}]"), body);
     };
     let of_parent = |name: &str, state: &str| {
@@ -256,11 +256,14 @@ fn write_jacobian(
     speeds: bool,
     s: &Signature<'_>,
 ) {
-    let (scalar, nv, t) = (s.scalar.name(), s.nv, time(s));
+    let (scalar, nv, t) = (s.scalar.scalar_name(), s.nv, time_argument_prefix(s));
     let matrix = format!("::linkwork::nalgebra::SMatrix<{scalar}, 6, {nv}>");
     let zero = format!("::linkwork::__private::constant::<{scalar}>(0.0)");
-    let _ =
-        writeln!(out, "#[inline]\nfn jacobian({}) -> {matrix} {{", s.parameters(&[Argument::T, Argument::Q]));
+    let _ = writeln!(
+        out,
+        "#[inline]\nfn jacobian({}) -> {matrix} {{",
+        s.parameter_list(&[Argument::T, Argument::Q])
+    );
     let _ = writeln!(out, "let mut columns = [[{zero}; 6]; {nv}];");
     if let Some(l) = frame.link {
         let placement = match frame.is_link {
@@ -287,8 +290,8 @@ fn write_jacobian(
 /// to it, and its columns for a point at `o`. Each method calls that of the parent link, so that the code of
 /// a chain does not grow quadratically with its length.
 fn write_path_columns(steps: &mut StepMethods, k: usize, links: &[LinkSteps], s: &Signature<'_>) {
-    let (scalar, t, link, count) = (s.scalar.name(), time(s), &links[k], links.len());
-    let state = s.parameters(&s.timed(&[Argument::Q]));
+    let (scalar, t, link, count) = (s.scalar.scalar_name(), time_argument_prefix(s), &links[k], links.len());
+    let state = s.parameter_list(&s.with_time_argument(&[Argument::Q]));
     let (before, parent) = match link.parent {
         Some(p) => (format!("self.__link{p}_path_placements({t}q, x);\n"), format!(", &x[{p}]")),
         None => Default::default(),
@@ -303,7 +306,7 @@ fn write_path_columns(steps: &mut StepMethods, k: usize, links: &[LinkSteps], s:
         let _ = writeln!(body, "self.__link{p}_path_columns({t}q, x, o, columns);");
     }
     let mut written = vec![false; s.nv];
-    for &before in path(links, link.parent).iter().flat_map(|l| &links[*l].velocities) {
+    for &before in path_from_ground(links, link.parent).iter().flat_map(|l| &links[*l].velocities) {
         written[before] = true;
     }
     write_columns(&mut body, k, link, &mut written, s);
@@ -317,7 +320,7 @@ fn write_path_columns(steps: &mut StepMethods, k: usize, links: &[LinkSteps], s:
 
 /// Writes the columns of a link. Coupled coordinates share a column: their contributions are added.
 fn write_columns(out: &mut String, k: usize, link: &LinkSteps, written: &mut [bool], s: &Signature<'_>) {
-    let state = if link.driven { format!("{}q, ", time(s)) } else { String::new() };
+    let state = if link.driven { format!("{}q, ", time_argument_prefix(s)) } else { String::new() };
     let call = format!("self.__link{k}_columns({state}&x[{k}], o)");
     let mut write = |column: usize, value: &str, out: &mut String| {
         let value = match std::mem::replace(&mut written[column], true) {
@@ -341,7 +344,7 @@ fn write_columns(out: &mut String, k: usize, link: &LinkSteps, written: &mut [bo
 /// Writes the functions of the trait `Frames`, which select an implementation of `NamedFrame` by index.
 pub fn write_trait(out: &mut String, frames: usize, s: &Signature<'_>) {
     use Argument::{A, Q, T, V};
-    let (scalar, nq, nv) = (s.scalar.name(), s.nq, s.nv);
+    let (scalar, nq, nv) = (s.scalar.scalar_name(), s.nq, s.nv);
     let _ = writeln!(out, "type Scalar = {scalar};\nconst FRAMES: &'static [&'static str] = &Self::FRAMES;");
     let six = format!("::linkwork::nalgebra::SVector<{scalar}, 6>");
     for (name, function, arguments, result, make) in [
@@ -362,8 +365,8 @@ pub fn write_trait(out: &mut String, frames: usize, s: &Signature<'_>) {
             "(",
         ),
     ] {
-        let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
-        let parameters = s.parameters(&arguments).replacen("&self, ", "&self, frame: usize, ", 1);
+        let names: Vec<&str> = arguments.iter().map(|a| a.argument_name()).collect();
+        let parameters = s.parameter_list(&arguments).replacen("&self, ", "&self, frame: usize, ", 1);
         let _ = writeln!(
             out,
             "#[inline]\nfn {name}({parameters}) -> ::core::option::Option<{result}> {{\n\

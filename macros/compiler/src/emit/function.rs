@@ -14,15 +14,15 @@ pub fn write_head(out: &mut String, f: &Function, s: &Signature<'_>) {
     if !f.docs.is_empty() {
         let _ = writeln!(out, "#[doc = {:?}]", format!(" {}", f.docs.join("\n\n ")));
     }
-    let result = s.result(f);
+    let result = s.result_type(f);
     // The caller may need only the matrix arguments and ignore the result.
     let must_use = if matrix_arguments(f).is_empty() { "#[must_use]\n" } else { "" };
     let _ = writeln!(
         out,
         "#[inline]\n{must_use}pub fn {}{}({}) -> {result} {{",
         f.name,
-        s.generics(),
-        s.parameters(&f.arguments),
+        s.generics_text(),
+        s.parameter_list(&f.arguments),
     );
 }
 

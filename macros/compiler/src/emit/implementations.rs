@@ -1,6 +1,6 @@
 //! Implementations of a type: its inherent functions and the runtime's traits.
 
-use super::interface::{ALLOW, Head, Interface, needed};
+use super::interface::{ALLOW, Head, Interface, inherent_arguments};
 use super::signature::Signature;
 use super::{constraints, contacts, differentiable, lanes, limits};
 use crate::catalogue::{self, Argument, ContactSizes};
@@ -42,7 +42,7 @@ pub fn write_impls(
         out,
         "{ALLOW}impl{generics} ::linkwork::integrate::Hooks<{}, {}, {}, {}> for {name}{arguments} {bounds} \
          {{",
-        s.scalar.name(),
+        s.scalar.scalar_name(),
         s.nq,
         s.nv,
         s.nu
@@ -129,7 +129,7 @@ fn write_constraints(head: &Head, out: &mut String, name: &str, i: &Interface<'_
 /// Writes the items of the trait `Mechanism`. Its functions call the inherent functions, which take only the
 /// arguments that they need.
 fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
-    let _ = writeln!(out, "type Scalar = {};", s.scalar.name());
+    let _ = writeln!(out, "type Scalar = {};", s.scalar.scalar_name());
     for (name, n) in [("CONFIGURATION", s.nq), ("VELOCITIES", s.nv), ("INPUTS", s.nu)] {
         let _ = writeln!(out, "const {name}: [&'static str; {n}] = Self::{name};");
     }
@@ -141,15 +141,15 @@ fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
             let _ = writeln!(out, "const {name}: [&'static str; {n}] = {units:?};");
         }
     }
-    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
     for (row, arguments) in catalogue::of_trait() {
-        let (name, result) = (row.name, s.shape((row.declare)(&i.facts).shape));
-        let needed = needed(row, i);
-        let names: Vec<&str> = s.timed(&needed).iter().map(|a| a.name()).collect();
+        let (name, result) = (row.name, s.shape_type((row.declare)(&i.facts).shape));
+        let needed = inherent_arguments(row, i);
+        let names: Vec<&str> = s.with_time_argument(&needed).iter().map(|a| a.argument_name()).collect();
         let _ = writeln!(
             out,
             "#[inline]\nfn {name}({}) -> {result} {{ Self::{name}(self, {}) }}",
-            s.parameters(&[&[Argument::T], arguments].concat()),
+            s.parameter_list(&[&[Argument::T], arguments].concat()),
             names.join(", ")
         );
     }

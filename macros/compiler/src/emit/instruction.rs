@@ -47,13 +47,13 @@ pub struct Writer<'a> {
 
 impl Writer<'_> {
     /// Returns the vector of the inputs of a gather.
-    pub fn gathered(&self, gather: &[Symbol]) -> String {
-        let symbols: Vec<String> = gather.iter().map(|s| self.symbol(*s)).collect();
+    pub fn gathered_vector(&self, gather: &[Symbol]) -> String {
+        let symbols: Vec<String> = gather.iter().map(|s| self.symbol_text(*s)).collect();
         format!("Ops::lanes([{}])", symbols.join(", "))
     }
 
     /// Returns the number of lanes of an operand.
-    pub fn width(&self, o: Operand) -> usize {
+    pub fn lane_count(&self, o: Operand) -> usize {
         match o {
             Operand::Const(_) | Operand::Symbol(_) => 1,
             Operand::Value(k) => self.lanes[k],
@@ -63,13 +63,13 @@ impl Writer<'_> {
     }
 
     /// Returns an operand of an operation on `lanes` lanes; a scalar is broadcast to all lanes.
-    fn widened(&mut self, o: Operand, lanes: usize) -> Piece {
-        let own = self.width(o);
-        let piece = self.operand(o);
+    fn broadcast_operand(&mut self, o: Operand, lanes: usize) -> Piece {
+        let own = self.lane_count(o);
+        let piece = self.operand_text(o);
         if own == lanes {
             return piece;
         }
-        let text = match self.name("splat", lanes) {
+        let text = match self.name_of_operation("splat", lanes) {
             Some(splat) => format!("{splat}({})", piece.text),
             None => format!("Ops::splat::<_, {lanes}>({})", piece.text),
         };
@@ -77,14 +77,14 @@ impl Writer<'_> {
     }
 
     /// Returns the text of an operand. The text of an unbound value is taken out of `pieces`.
-    pub fn operand(&mut self, o: Operand) -> Piece {
+    pub fn operand_text(&mut self, o: Operand) -> Piece {
         let piece_without_needs = |text| Piece { text, needs: Vec::new(), level: Level::Whole };
         match o {
-            Operand::Const(c) => piece_without_needs(self.constant(c)),
-            Operand::Symbol(s) => piece_without_needs(self.symbol(s)),
+            Operand::Const(c) => piece_without_needs(self.constant_text(c)),
+            Operand::Symbol(s) => piece_without_needs(self.symbol_text(s)),
             Operand::Tuple(k) => {
                 let tuple: Vec<String> =
-                    self.program.tuples[k].iter().map(|c| self.scalar.constant(*c)).collect();
+                    self.program.tuples[k].iter().map(|c| self.scalar.constant_expression(*c)).collect();
                 piece_without_needs(format!("Ops::lanes([{}])", tuple.join(", ")))
             }
             Operand::Gather(k) => {
@@ -94,7 +94,7 @@ impl Writer<'_> {
                 // Gathers of arguments are bound to names; gathers of parameters are not.
                 piece_without_needs(match self.arguments.iter().any(is_input) {
                     true => format!("lanes{k}"),
-                    false => self.gathered(gather),
+                    false => self.gathered_vector(gather),
                 })
             }
             Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| Piece {
@@ -106,11 +106,11 @@ impl Writer<'_> {
     }
 
     /// Returns the text of an output. For several states, a vector register is converted to lanes.
-    pub fn output(&mut self, o: Operand) -> Piece {
-        let piece = self.operand(o);
+    pub fn output_text(&mut self, o: Operand) -> Piece {
+        let piece = self.operand_text(o);
         match self.scalar.is_in_lanes() {
             true => Piece {
-                text: format!("{}.lanes()", wrap(&piece, Level::Whole)),
+                text: format!("{}.lanes()", wrap_in_parentheses(&piece, Level::Whole)),
                 level: Level::Whole,
                 ..piece
             },
@@ -119,56 +119,58 @@ impl Writer<'_> {
     }
 
     /// Returns the text of a constant, in parentheses if it is negative.
-    pub fn constant(&mut self, c: f64) -> String {
-        let text = self.scalar.constant(c);
+    pub fn constant_text(&mut self, c: f64) -> String {
+        let text = self.scalar.constant_expression(c);
         if c < 0.0 { format!("({text})") } else { text }
     }
 
     /// Returns the text of an input: a parameter, a prepared value or an entry of an argument.
-    pub fn symbol(&self, s: Symbol) -> String {
+    pub fn symbol_text(&self, s: Symbol) -> String {
         let quantity = Quantity::from_symbol(s);
         if quantity == Quantity::Time {
             return if self.scalar.is_in_lanes() { "time" } else { "t" }.to_string();
         }
         match quantity {
-            Quantity::Parameter(k) => return self.scalar.value(k),
-            Quantity::Prepared(k) => return self.scalar.spread(format!("self.numbers[{k}]")),
+            Quantity::Parameter(k) => return self.scalar.parameter_value(k),
+            Quantity::Prepared(k) => return self.scalar.broadcast_number(format!("self.numbers[{k}]")),
             _ => {}
         }
         self.arguments
             .iter()
-            .find_map(|a| a.index(quantity).map(|k| format!("{}{k}", a.name())))
+            .find_map(|a| a.index(quantity).map(|k| format!("{}{k}", a.argument_name())))
             .unwrap_or_else(|| "missing".to_string())
     }
 
     /// Returns the text of an instruction whose result has `lanes` lanes.
-    pub fn instruction(&mut self, op: Op, lanes: usize) -> Piece {
+    pub fn instruction_text(&mut self, op: Op, lanes: usize) -> Piece {
         match op {
             Op::Neg(a) => {
-                let a = self.operand(a);
-                let text = format!("-{}", wrap(&a, Level::Whole));
+                let a = self.operand_text(a);
+                let text = format!("-{}", wrap_in_parentheses(&a, Level::Whole));
                 Piece { text, needs: a.needs, level: Level::Product }
             }
-            Op::Add(a, b) => self.infix([a, b], "+", lanes, [Level::Sum, Level::Product]),
-            Op::Sub(a, b) => self.infix([a, b], "-", lanes, [Level::Sum, Level::Product]),
-            Op::Mul(a, b) => self.infix([a, b], "*", lanes, [Level::Product, Level::Whole]),
-            Op::Div(a, b) => self.infix([a, b], "/", lanes, [Level::Product, Level::Whole]),
+            Op::Add(a, b) => self.infix_operation([a, b], "+", lanes, [Level::Sum, Level::Product]),
+            Op::Sub(a, b) => self.infix_operation([a, b], "-", lanes, [Level::Sum, Level::Product]),
+            Op::Mul(a, b) => self.infix_operation([a, b], "*", lanes, [Level::Product, Level::Whole]),
+            Op::Div(a, b) => self.infix_operation([a, b], "/", lanes, [Level::Product, Level::Whole]),
             Op::MulAdd(a, b, c) if self.build == Build::Debug => self.product_and([a, b], "+", c),
             Op::MulSub(a, b, c) if self.build == Build::Debug => self.product_and([a, b], "-", c),
             Op::NegMulAdd(a, b, c) if self.build == Build::Debug => self.less_product(c, [a, b]),
-            Op::MulAdd(a, b, c) => self.fused(["mul_add", "scale_add"], [a, b, c], lanes),
-            Op::MulSub(a, b, c) => self.fused(["mul_sub", "scale_sub"], [a, b, c], lanes),
-            Op::NegMulAdd(a, b, c) => self.fused(["neg_mul_add", "neg_scale_add"], [a, b, c], lanes),
-            Op::Call(f, a) => self.call(f.name(), &[a], lanes),
-            Op::Atan2(a, b) => self.call("atan2", &[a, b], lanes),
-            Op::Pow(a, b) => self.call("powf", &[a, b], lanes),
-            Op::Extreme(f, a, b) => self.call(f.name(), &[a, b], lanes),
-            Op::Table(lookup, a, b, c) => self.lookup(lookup, [a, b, c], lanes),
-            Op::Sum(n, a) if n == self.width(a) => self.suffix(a, ".sum()"),
-            Op::Sum(n, a) => self.suffix(a, &format!(".first::<{n}>().sum()")),
-            Op::Lane(k, a) => self.suffix(a, &format!(".lane::<{k}>()")),
+            Op::MulAdd(a, b, c) => self.fused_operation(["mul_add", "scale_add"], [a, b, c], lanes),
+            Op::MulSub(a, b, c) => self.fused_operation(["mul_sub", "scale_sub"], [a, b, c], lanes),
+            Op::NegMulAdd(a, b, c) => {
+                self.fused_operation(["neg_mul_add", "neg_scale_add"], [a, b, c], lanes)
+            }
+            Op::Call(f, a) => self.call_text(f.function_name(), &[a], lanes),
+            Op::Atan2(a, b) => self.call_text("atan2", &[a, b], lanes),
+            Op::Pow(a, b) => self.call_text("powf", &[a, b], lanes),
+            Op::Extreme(f, a, b) => self.call_text(f.function_name(), &[a, b], lanes),
+            Op::Table(lookup, a, b, c) => self.table_lookup_text(lookup, [a, b, c], lanes),
+            Op::Sum(n, a) if n == self.lane_count(a) => self.suffix_operation(a, ".sum()"),
+            Op::Sum(n, a) => self.suffix_operation(a, &format!(".first::<{n}>().sum()")),
+            Op::Lane(k, a) => self.suffix_operation(a, &format!(".lane::<{k}>()")),
             Op::Join(n, a, b) => {
-                let (a, b) = (self.widened(a, n), self.widened(b, n));
+                let (a, b) = (self.broadcast_operand(a, n), self.broadcast_operand(b, n));
                 let text = match n {
                     1 => format!("Ops::lanes([{}, {}])", a.text, b.text),
                     _ => format!("Ops::join::<_, {n}, {}>({}, {})", 2 * n, a.text, b.text),
@@ -178,20 +180,30 @@ impl Writer<'_> {
         }
     }
 
-    fn suffix(&mut self, a: Operand, suffix: &str) -> Piece {
-        let a = self.operand(a);
-        Piece { text: format!("{}{suffix}", wrap(&a, Level::Whole)), needs: a.needs, level: Level::Whole }
+    fn suffix_operation(&mut self, a: Operand, suffix: &str) -> Piece {
+        let a = self.operand_text(a);
+        Piece {
+            text: format!("{}{suffix}", wrap_in_parentheses(&a, Level::Whole)),
+            needs: a.needs,
+            level: Level::Whole,
+        }
     }
 
-    fn infix(&mut self, [a, b]: [Operand; 2], op: &str, lanes: usize, [level, right]: [Level; 2]) -> Piece {
+    fn infix_operation(
+        &mut self,
+        [a, b]: [Operand; 2],
+        op: &str,
+        lanes: usize,
+        [level, right]: [Level; 2],
+    ) -> Piece {
         if op == "*"
-            && let Some(scaled) = self.scaled([a, b], lanes)
+            && let Some(scaled) = self.scalar_and_vector_factors([a, b], lanes)
         {
-            let name = self.name("scale", lanes).unwrap_or_else(|| "Ops::scale".to_string());
+            let name = self.name_of_operation("scale", lanes).unwrap_or_else(|| "Ops::scale".to_string());
             return self.call_with(&name, scaled);
         }
-        let (a, b) = (self.widened(a, lanes), self.widened(b, lanes));
-        let text = format!("{} {op} {}", wrap(&a, level), wrap(&b, right));
+        let (a, b) = (self.broadcast_operand(a, lanes), self.broadcast_operand(b, lanes));
+        let text = format!("{} {op} {}", wrap_in_parentheses(&a, level), wrap_in_parentheses(&b, right));
         let mut needs = a.needs;
         needs.extend(b.needs);
         Piece { text, needs, level }
@@ -199,52 +211,52 @@ impl Writer<'_> {
 
     /// Returns `a * b + c` or `a * b - c`.
     fn product_and(&mut self, product: [Operand; 2], op: &str, c: Operand) -> Piece {
-        let product = self.infix(product, "*", 1, [Level::Product, Level::Whole]);
-        let c = self.operand(c);
-        let text = format!("{} {op} {}", product.text, wrap(&c, Level::Product));
+        let product = self.infix_operation(product, "*", 1, [Level::Product, Level::Whole]);
+        let c = self.operand_text(c);
+        let text = format!("{} {op} {}", product.text, wrap_in_parentheses(&c, Level::Product));
         Piece { text, needs: [product.needs, c.needs].concat(), level: Level::Sum }
     }
 
     /// Returns the expression `c - a * b`.
     fn less_product(&mut self, c: Operand, product: [Operand; 2]) -> Piece {
-        let c = self.operand(c);
-        let product = self.infix(product, "*", 1, [Level::Product, Level::Whole]);
-        let text = format!("{} - {}", wrap(&c, Level::Sum), product.text);
+        let c = self.operand_text(c);
+        let product = self.infix_operation(product, "*", 1, [Level::Product, Level::Whole]);
+        let text = format!("{} - {}", wrap_in_parentheses(&c, Level::Sum), product.text);
         Piece { text, needs: [c.needs, product.needs].concat(), level: Level::Sum }
     }
 
     /// Returns a fused operation. The product of a scalar and a vector has an operation of its own, which
     /// saves rustc the check of a broadcast.
-    fn fused(
+    fn fused_operation(
         &mut self,
         [function, scaled]: [&'static str; 2],
         [a, b, c]: [Operand; 3],
         lanes: usize,
     ) -> Piece {
-        let Some(factors) = self.scaled([a, b], lanes) else {
-            let name = self.name(function, lanes).unwrap_or_else(|| format!("Ops::{function}"));
+        let Some(factors) = self.scalar_and_vector_factors([a, b], lanes) else {
+            let name = self.name_of_operation(function, lanes).unwrap_or_else(|| format!("Ops::{function}"));
             return self.call_by(&name, &[a, b, c], lanes);
         };
-        let name = self.name(scaled, lanes).unwrap_or_else(|| format!("Ops::{scaled}"));
-        let c = self.widened(c, lanes);
+        let name = self.name_of_operation(scaled, lanes).unwrap_or_else(|| format!("Ops::{scaled}"));
+        let c = self.broadcast_operand(c, lanes);
         self.call_with(&name, factors.into_iter().chain([c]).collect())
     }
 
     /// Returns the factors of a product of a scalar and a vector, the scalar first; `None` for other
     /// products.
-    fn scaled(&mut self, [a, b]: [Operand; 2], lanes: usize) -> Option<Vec<Piece>> {
-        let [x, v] = match (self.width(a), self.width(b)) {
+    fn scalar_and_vector_factors(&mut self, [a, b]: [Operand; 2], lanes: usize) -> Option<Vec<Piece>> {
+        let [x, v] = match (self.lane_count(a), self.lane_count(b)) {
             _ if lanes == 1 => return None,
             (1, own) if own == lanes => [a, b],
             (own, 1) if own == lanes => [b, a],
             _ => return None,
         };
-        Some(vec![self.operand(x), self.operand(v)])
+        Some(vec![self.operand_text(x), self.operand_text(v)])
     }
 
     /// Returns the name to which an operation on `lanes` lanes is bound; `None` if operations are called
     /// directly.
-    fn name(&mut self, function: &'static str, lanes: usize) -> Option<String> {
+    fn name_of_operation(&mut self, function: &'static str, lanes: usize) -> Option<String> {
         self.named.as_mut()?.insert((function, lanes));
         Some(if lanes == 1 { function.to_string() } else { format!("{function}{lanes}") })
     }
@@ -270,20 +282,21 @@ impl Writer<'_> {
         }
     }
 
-    fn call(&mut self, function: &str, arguments: &[Operand], lanes: usize) -> Piece {
+    fn call_text(&mut self, function: &str, arguments: &[Operand], lanes: usize) -> Piece {
         self.call_by(&format!("Ops::{function}"), arguments, lanes)
     }
 
     /// Returns the expression of a table's value, or of one of its derivatives.
-    fn lookup(&mut self, lookup: Lookup, x: [Operand; 3], lanes: usize) -> Piece {
-        let (field, orders) = (self.scalar.table(lookup.table()).to_string(), lookup.orders());
-        let list = self.call_by("", x.get(..lookup.variables()).unwrap_or_default(), lanes);
+    fn table_lookup_text(&mut self, lookup: Lookup, x: [Operand; 3], lanes: usize) -> Piece {
+        let (field, orders) =
+            (self.scalar.table_field(lookup.table_index()).to_string(), lookup.derivative_orders());
+        let list = self.call_by("", x.get(..lookup.variable_count()).unwrap_or_default(), lanes);
         let inner = list.text.strip_prefix('(').and_then(|text| text.strip_suffix(')')).unwrap_or_default();
         Piece { text: format!("Ops::tabulated(&self.{field}, [{inner}], {orders:?})"), ..list }
     }
 
     fn call_by(&mut self, function: &str, arguments: &[Operand], lanes: usize) -> Piece {
-        let list = arguments.iter().map(|a| self.widened(*a, lanes)).collect();
+        let list = arguments.iter().map(|a| self.broadcast_operand(*a, lanes)).collect();
         self.call_with(function, list)
     }
 
@@ -297,6 +310,6 @@ impl Writer<'_> {
     }
 }
 
-fn wrap(piece: &Piece, level: Level) -> String {
+fn wrap_in_parentheses(piece: &Piece, level: Level) -> String {
     if piece.level < level { format!("({})", piece.text) } else { piece.text.clone() }
 }

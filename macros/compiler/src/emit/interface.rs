@@ -97,6 +97,6 @@ impl Head {
 }
 
 /// Returns the arguments of the trait function that the inherent function takes.
-pub fn needed(row: &Row, i: &Interface<'_>) -> Vec<Argument> {
+pub fn inherent_arguments(row: &Row, i: &Interface<'_>) -> Vec<Argument> {
     (row.declare)(&i.facts).arguments
 }

@@ -42,10 +42,17 @@ impl Emitted {
     }
 }
 
+/// Code that does not compile if the runtime's arithmetic depends on the processor.
+const REPRODUCIBLE: &str = "const _: () = {
+    const fn require<T: ::linkwork::__private::absent::HasReproducibleArithmetic>() {}
+    require::<()>()
+};
+";
+
 /// Returns the generated code of a mechanism without errors.
 pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
-    let spelling = spelling(interface);
-    let s = signature(interface, &spelling);
+    let spelling = scalar_spelling(interface);
+    let s = function_signature(interface, &spelling);
     let mut methods = String::new();
     write_constants(&mut methods, interface, &output.equations, &output.constants);
     write_frame_index(&mut methods, false);
@@ -70,8 +77,9 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
     differentiable::write_second(&mut methods, Some(&output.charts), interface, &s);
     lanes::write_methods(&mut methods, &mut bodies, interface, &output.functions, Some(&output.charts), &s);
     // A parameter that drops out of the equations must not cause a warning about an unused field.
-    let fields: Vec<String> =
-        (0..interface.shell.accesses().len()).map(|k| format!("&self.{}", spelling.parameter(k))).collect();
+    let fields: Vec<String> = (0..interface.shell.parameter_accesses().len())
+        .map(|k| format!("&self.{}", spelling.parameter_field(k)))
+        .collect();
     let fields: Vec<String> = fields
         .into_iter()
         .chain(interface.shell.table_names().iter().map(|name| format!("&self.{name}")))
@@ -90,8 +98,15 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
         interface.facts.speeds,
         &s,
     );
-    bodies.write(&mut emitted.text, &interface.shell.ident.to_string(), &Head::new(interface, &s));
+    bodies.write_function_bodies(
+        &mut emitted.text,
+        &interface.shell.ident.to_string(),
+        &Head::new(interface, &s),
+    );
     write_absent(&mut emitted.text, interface, &s);
+    if interface.facts.requests.reproducible {
+        emitted.text.push_str(REPRODUCIBLE);
+    }
     measurements::write_impls(
         &mut emitted.text,
         &interface.shell.ident.to_string(),
@@ -112,8 +127,8 @@ pub fn emit_mechanism(interface: &Interface<'_>, output: &Output) -> Emitted {
 /// Returns stubs for the interface of a mechanism with an error, so that the error is not reported again at
 /// every use of the mechanism.
 pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants: &[Constant]) -> Emitted {
-    let spelling = spelling(interface);
-    let s = signature(interface, &spelling);
+    let spelling = scalar_spelling(interface);
+    let s = function_signature(interface, &spelling);
     let mut methods = String::new();
     write_constants(&mut methods, interface, &Written::default(), constants);
     write_frame_index(&mut methods, true);
@@ -137,8 +152,8 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
     lanes::write_methods(&mut methods, &mut Bodies::new(false), interface, functions, None, &s);
     validate::write_method(&mut methods, interface, true);
     file::write_methods(&mut methods, interface, &spelling);
-    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
-    let (scalar, nv) = (spelling.name(), s.nv);
+    let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
+    let (scalar, nv) = (spelling.scalar_name(), s.nv);
     let placement = format!("::linkwork::nalgebra::IsometryMatrix3<{scalar}>");
     let t = if s.time { format!("t: {scalar}, ") } else { String::new() };
     let _ = writeln!(
@@ -171,11 +186,15 @@ pub fn emit_failed(interface: &Interface<'_>, functions: &[Function], constants:
     emitted
 }
 
-fn spelling(interface: &Interface<'_>) -> ScalarSpelling {
-    ScalarSpelling::new(interface.scalar.clone(), interface.shell.accesses(), interface.shell.table_names())
+fn scalar_spelling(interface: &Interface<'_>) -> ScalarSpelling {
+    ScalarSpelling::new(
+        interface.scalar.clone(),
+        interface.shell.parameter_accesses(),
+        interface.shell.table_names(),
+    )
 }
 
-fn signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signature<'a> {
+fn function_signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signature<'a> {
     Signature {
         scalar,
         nq: interface.configuration.len(),
@@ -188,10 +207,10 @@ fn signature<'a>(interface: &Interface<'_>, scalar: &'a ScalarSpelling) -> Signa
 /// Writes the functions for one frame, which `frame!(Robot, "tool")` selects by name; the compiler checks the
 /// name.
 fn write_frame_access(out: &mut String, s: &Signature<'_>) {
-    let scalar = s.scalar.name();
+    let scalar = s.scalar.scalar_name();
     let frame = format!("impl ::linkwork::FrameName<Self, {}, {}, Scalar = {scalar}>", s.nq, s.nv);
     let six = format!("::linkwork::nalgebra::SVector<{scalar}, 6>");
-    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
     // A mechanism that does not depend on time takes zero.
     let (t, at) = match s.time {
         true => (format!("t: {scalar}, "), "t".to_string()),
@@ -234,7 +253,7 @@ fn alias_of(ident: &syn::Ident) -> String {
 }
 
 /// Returns the path of the runtime as tokens.
-pub(super) fn runtime(shell: &Shell) -> TokenStream {
+pub(super) fn runtime_path(shell: &Shell) -> TokenStream {
     match shell.runtime {
         None => quote!(::linkwork),
         Some(_) => quote::format_ident!("{}", alias_of(&shell.ident)).to_token_stream(),
@@ -255,7 +274,7 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: usize, 
     let (.., struct_where) = i.shell.generics.split_for_impl();
     let struct_generics = &i.shell.generics.params;
     let struct_generics = if struct_generics.is_empty() { quote!() } else { quote!(<#struct_generics>) };
-    let of_file = file::fields(i);
+    let of_file = file::struct_fields(i);
     let fields = if parameters.is_empty() && tables.is_empty() && of_file.is_empty() {
         quote!(#struct_where;)
     } else {
@@ -275,7 +294,7 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: usize, 
         let alias = quote::format_ident!("{}", alias_of(ident));
         quote!(#[doc(hidden)] #[allow(unused_imports, non_snake_case, reason = "generated code")] use #path as #alias;)
     });
-    let runtime = runtime(i.shell);
+    let runtime = runtime_path(i.shell);
     let known = if frames == 0 {
         quote!()
     } else {
@@ -306,7 +325,7 @@ fn assemble(i: &Interface<'_>, s: &Signature<'_>, methods: &str, frames: usize, 
     write_frames_by_number(&mut text, frames, s);
     text.push_str("}\n");
     if i.facts.requests.drawing {
-        let scalar = s.scalar.name();
+        let scalar = s.scalar.scalar_name();
         let heights = match i.facts.heights {
             0 => String::new(),
             _ => format!(

@@ -3,7 +3,7 @@
 
 use super::dispatch::Bodies;
 use super::function::write_function;
-use super::interface::{Interface, needed};
+use super::interface::{Interface, inherent_arguments};
 use super::manifold::write_manifold;
 use super::signature::{Signature, matrix_arguments};
 use crate::catalogue::{self, Argument, Id, Shape};
@@ -34,8 +34,10 @@ pub fn write_methods(
     };
     for f in functions.iter().filter(is_batched) {
         let exact = match f.program.simd {
-            None => "bit for bit",
-            Some(_) => "up to rounding: the function of a single state uses the lanes for limbs or joints",
+            Some(_) if !i.facts.requests.reproducible => {
+                "up to rounding: the function of a single state uses the lanes for limbs or joints"
+            }
+            _ => "bit for bit",
         };
         let docs = vec![format!("[`{0}`](Self::{0}) of the state in every lane, {exact}.", f.name)];
         let docs = if f.is_hidden() { Vec::new() } else { docs };
@@ -59,7 +61,7 @@ pub fn one_by_one(f: &Function) -> Option<String> {
         Argument::T => Some("t.0[k]".to_string()),
         Argument::Into(name, _) => Some(format!("&mut one_{name}")),
         Argument::Given(..) => None,
-        a => Some(format!("&lane({}, k)", a.name())),
+        a => Some(format!("&lane({}, k)", a.argument_name())),
     };
     let arguments: Option<Vec<String>> = f.arguments.iter().map(lane_argument).collect();
     let call = format!("self.{}({})", f.name, arguments?.join(", "));
@@ -114,13 +116,13 @@ pub fn one_by_one(f: &Function) -> Option<String> {
 /// of a single state.
 fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     let nv = s.nv;
-    let arguments = s.timed(&[Argument::Q, Argument::V, Argument::Tau]);
-    let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
+    let arguments = s.with_time_argument(&[Argument::Q, Argument::V, Argument::Tau]);
+    let names: Vec<&str> = arguments.iter().map(|a| a.argument_name()).collect();
     let one: Vec<String> = arguments
         .iter()
         .map(|a| match a {
             Argument::T => "t.0[k]".to_string(),
-            _ => format!("&lane({}, k)", a.name()),
+            _ => format!("&lane({}, k)", a.argument_name()),
         })
         .collect();
     let single = format!("lane_by_lane(|k| self.forward_dynamics({}))", one.join(", "));
@@ -134,15 +136,15 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
                 use ::linkwork::__private::{{lane, lane_by_lane}};
                 {single}
             }}",
-            s.parameters(&arguments),
-            s.vector(nv),
+            s.parameter_list(&arguments),
+            s.vector_type(nv),
         );
         return;
     }
     let slipping = &i.constraints.slipping;
     let sides = match slipping.len() {
         0 => String::new(),
-        k => format!(", &[::linkwork::__private::constant::<{}>(1.0); {k}]", s.scalar.name()),
+        k => format!(", &[::linkwork::__private::constant::<{}>(1.0); {k}]", s.scalar.scalar_name()),
     };
     let quick = match i.constraints.independent {
         true => "independent_solution(&found)".to_string(),
@@ -160,8 +162,8 @@ fn write_constrained(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
                 ::core::option::Option::None => {single},
             }}
         }}",
-        s.parameters(&arguments),
-        s.vector(nv),
+        s.parameter_list(&arguments),
+        s.vector_type(nv),
         names.join(", "),
     );
 }
@@ -174,17 +176,17 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
     for (row, arguments) in catalogue::of_trait() {
         let name = row.name;
         let all: Vec<Argument> = [&[Argument::T], arguments].concat();
-        let needed = s.timed(&needed(row, i));
-        let names: Vec<&str> = needed.iter().map(|a| a.name()).collect();
+        let needed = s.with_time_argument(&inherent_arguments(row, i));
+        let names: Vec<&str> = needed.iter().map(|a| a.argument_name()).collect();
         let _ = writeln!(
             out,
             "#[inline]\nfn {name}_lanes<const LANES: usize>({}) -> {} {{ Self::{name}_lanes(self, {}) }}",
-            s.parameters(&all),
-            s.shape((row.declare)(&i.facts).shape),
+            s.parameter_list(&all),
+            s.shape_type((row.declare)(&i.facts).shape),
             names.join(", ")
         );
     }
-    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
     let _ = writeln!(
         out,
         "#[inline]\nfn integrate_lanes<const LANES: usize>(&self, q: &{q}, dv: &{v}) -> {q} {{ \

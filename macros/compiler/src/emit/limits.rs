@@ -25,7 +25,7 @@ impl CoordinateLimits {
         let mut next = 0;
         let mut place = |limit: &Limit<'_>| {
             let bounds = limit.bounds().map(|bound| {
-                let found = (next, bound?.value());
+                let found = (next, bound?.constant_value());
                 next += 1;
                 Some(found)
             });
@@ -52,7 +52,7 @@ const FUNCTIONS: [(&str, &str); 4] = [
 
 /// Writes the functions of the trait `Limits`. Omitted functions have defaults, which return no limits.
 pub fn write_trait(out: &mut String, limited: &[CoordinateLimits], speeds: bool, s: &Signature<'_>) {
-    let (scalar, q, v) = (s.scalar.name(), s.vector(s.nq), s.vector(s.nv));
+    let (scalar, q, v) = (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv));
     let _ = writeln!(out, "type Scalar = {scalar};");
     for (which, (name, infinity)) in FUNCTIONS.into_iter().enumerate() {
         if limited.iter().all(|limit| limit.index(which).is_none()) {
@@ -87,7 +87,7 @@ pub fn write_trait(out: &mut String, limited: &[CoordinateLimits], speeds: bool,
             let of_rates = self.__speed_matrix(q);
             let [q] = q.data.0;
             ::core::option::Option::Some((::linkwork::nalgebra::SVector::from_array_storage(::linkwork::nalgebra::ArrayStorage([[{}]])), of_rates))\n}}",
-            s.shape(Shape::Square(s.nv)),
+            s.shape_type(Shape::Square(s.nv)),
             entries.join(", ")
         );
     }

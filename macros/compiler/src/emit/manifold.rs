@@ -9,7 +9,7 @@ use std::fmt::Write;
 ///
 /// With generalized speeds these functions are hidden, and the public functions call them.
 pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, s: &Signature<'_>) {
-    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
     let on_manifold = |name, about, signature: String, arguments: [(&'static str, usize); 2], result| {
         ManifoldFunction { name, about, signature, arguments, result }
     };
@@ -41,7 +41,7 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, 
     ];
     let prefix = if speeds { "__" } else { "" };
     for function in &functions {
-        function.write(out, prefix, charts, s);
+        function.write_manifold_function(out, prefix, charts, s);
     }
     if speeds {
         super::speeds::write_manifold(out, charts.is_none(), s);
@@ -50,7 +50,7 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, 
 
 /// Writes the hidden function that transports velocities, which contacts need.
 pub fn write_carry(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
-    let v = s.vector(s.nv);
+    let v = s.vector_type(s.nv);
     let carry = ManifoldFunction {
         name: "carry",
         about: "The velocity `v` in the axes that ball and free joints have after the displacement `dv`.",
@@ -58,7 +58,7 @@ pub fn write_carry(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>
         arguments: [("dv", s.nv), ("v", s.nv)],
         result: s.nv,
     };
-    carry.write(out, "__", charts, s);
+    carry.write_manifold_function(out, "__", charts, s);
 }
 
 /// Function on the configuration manifold, for the emitter.
@@ -76,14 +76,20 @@ struct ManifoldFunction {
 }
 
 impl ManifoldFunction {
-    fn write(&self, out: &mut String, prefix: &str, charts: Option<&[Chart]>, s: &Signature<'_>) {
+    fn write_manifold_function(
+        &self,
+        out: &mut String,
+        prefix: &str,
+        charts: Option<&[Chart]>,
+        s: &Signature<'_>,
+    ) {
         let hidden = if prefix.is_empty() { "" } else { "#[doc(hidden)]\n" };
         let _ = writeln!(
             out,
             "{hidden}/// {}\n#[inline]\n#[must_use]\npub fn {prefix}{}{}(&self, {} {{",
             self.about,
             self.name,
-            s.generics(),
+            s.generics_text(),
             self.signature
         );
         match charts {

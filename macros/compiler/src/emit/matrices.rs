@@ -15,33 +15,37 @@ const NOTHING: &str = "&mut []";
 
 /// Returns the end of a function with matrix arguments: the code after the outputs are stored in the
 /// matrices.
-pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
+pub fn finishing_code(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
     let given: Vec<String> = matrix_arguments(f).iter().map(|name| format!("*{name}")).collect();
     match (f.shape, given.as_slice()) {
         (Shape::Forward(n), [by_q, by_v, inverse]) => format!(
             "{}{}{}\n",
-            completed([inverse, NOTHING], f, n, 2 * n * n, s, outputs),
-            solved([by_q, by_v], inverse, n, s, &f.structure),
-            outputs.matrix(f.shape.outputs(&f.structure) - n, n, 1)
+            inverse_completion([inverse, NOTHING], f, n, 2 * n * n, s, outputs),
+            acceleration_conversion([by_q, by_v], inverse, n, s, &f.structure),
+            outputs.matrix_of_outputs(f.shape.output_count(&f.structure) - n, n, 1)
         ),
         (Shape::CalledForward(n), [by_q, by_v, inverse]) => {
-            let (t, lanes) = (if s.time { "t, " } else { "" }, s.suffix());
+            let (t, lanes) = (if s.time { "t, " } else { "" }, s.call_suffix());
             format!(
                 "let a = self.__accelerations_and_inverse{lanes}({t}q, v, tau, &mut {inverse});
                 self.inverse_dynamics_derivatives_into{lanes}({t}q, v, &a, &mut {by_q}, &mut \
                     {by_v});\n{}{}a\n",
-                solved([by_q, by_v], inverse, n, s, &f.structure),
+                acceleration_conversion([by_q, by_v], inverse, n, s, &f.structure),
                 store_known_columns(f, outputs, n)
             )
         }
         (Shape::Accelerated(n), [inverse]) => match &f.structure.inverse {
             InverseForm::BlockArrow { .. } => format!(
                 "let mut solved = [{}];\n{}{STORAGE}(solved))\n",
-                outputs.list(0..n),
-                completed([inverse, "&mut solved"], f, n, n, s, outputs)
+                outputs.array_of_outputs(0..n),
+                inverse_completion([inverse, "&mut solved"], f, n, n, s, outputs)
             ),
             _ => {
-                format!("{}{}\n", completed([inverse, NOTHING], f, n, n, s, outputs), outputs.matrix(0, n, 1))
+                format!(
+                    "{}{}\n",
+                    inverse_completion([inverse, NOTHING], f, n, n, s, outputs),
+                    outputs.matrix_of_outputs(0, n, 1)
+                )
             }
         },
         _ => String::new(),
@@ -49,13 +53,13 @@ pub fn finish(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String 
 }
 
 /// Returns the expression of the result, composed of the outputs.
-pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
-    let format_square_matrix = |k: usize, n: usize| outputs.matrix(k * n * n, n, n);
+pub fn compose_result(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
+    let format_square_matrix = |k: usize, n: usize| outputs.matrix_of_outputs(k * n * n, n, n);
     match f.shape {
         Shape::Pair(n) => format!("({}, {})\n", format_square_matrix(0, n), format_square_matrix(1, n)),
         Shape::Jacobians(rows, n, m) => {
-            let format_jacobian = |k: usize| outputs.matrix(k * rows * n, rows, n);
-            let by_u = outputs.matrix(3 * rows * n, rows, m);
+            let format_jacobian = |k: usize| outputs.matrix_of_outputs(k * rows * n, rows, n);
+            let by_u = outputs.matrix_of_outputs(3 * rows * n, rows, m);
             format!(
                 "::linkwork::OutputJacobians {{ by_q: {}, by_v: {}, by_a: {}, by_u: {by_u} }}\n",
                 format_jacobian(0),
@@ -73,9 +77,9 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
             )
         }
         Shape::InputHessian(n, m) => {
-            let format_mixed_matrix = |k: usize| outputs.matrix(3 * n * n + k * n * m, n, m);
+            let format_mixed_matrix = |k: usize| outputs.matrix_of_outputs(3 * n * n + k * n * m, n, m);
             let state = [0, 1, 2].map(|k| format_square_matrix(k, n)).join(", ");
-            let inputs = outputs.matrix(3 * n * n + 2 * n * m, m, m);
+            let inputs = outputs.matrix_of_outputs(3 * n * n + 2 * n * m, m, m);
             format!("({state}, {}, {}, {inputs})\n", format_mixed_matrix(0), format_mixed_matrix(1))
         }
         // The matrices are composed in the returned tuple, so that each of them is moved at most once.
@@ -85,19 +89,21 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
             format_square_matrix(0, n),
             format_square_matrix(1, n),
             format_square_matrix(2, n),
-            completed(["all.2", NOTHING], f, n, 2 * n * n, s, outputs),
-            solved(["all.0", "all.1"], "all.2", n, s, &f.structure),
+            inverse_completion(["all.2", NOTHING], f, n, 2 * n * n, s, outputs),
+            acceleration_conversion(["all.0", "all.1"], "all.2", n, s, &f.structure),
         ),
         // The mechanism has no velocities.
-        Shape::Linear(0, m) => format!("({}, {})\n", outputs.matrix(0, 0, 0), outputs.matrix(0, 0, m)),
+        Shape::Linear(0, m) => {
+            format!("({}, {})\n", outputs.matrix_of_outputs(0, 0, 0), outputs.matrix_of_outputs(0, 0, m))
+        }
         Shape::Linear(n, m) => {
             format!(
                 "let inverse = {};\nlet (mut by_q, mut by_v) = ({}, {});\n{}{}",
                 format_square_matrix(2, n),
                 format_square_matrix(0, n),
                 format_square_matrix(1, n),
-                solved(["by_q", "by_v"], "inverse", n, s, &f.structure),
-                assembled(n, m, 3 * n * n, s, outputs)
+                acceleration_conversion(["by_q", "by_v"], "inverse", n, s, &f.structure),
+                linear_system_expression(n, m, 3 * n * n, s, outputs)
             )
         }
         Shape::CalledLinear(n, m) => {
@@ -105,16 +111,16 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
             let depend = (n..of_inputs(2)).any(|k| !outputs.is_zero(k));
             let by_state = format!(
                 "let (mut more_by_q, mut more_by_v) = ({}, {});\n{}by_q -= more_by_q;\nby_v -= more_by_v;\n",
-                outputs.matrix(of_inputs(0), n, n),
-                outputs.matrix(of_inputs(1), n, n),
-                solved(["more_by_q", "more_by_v"], "inverse", n, s, &f.structure)
+                outputs.matrix_of_outputs(of_inputs(0), n, n),
+                outputs.matrix_of_outputs(of_inputs(1), n, n),
+                acceleration_conversion(["more_by_q", "more_by_v"], "inverse", n, s, &f.structure)
             );
             format!(
                 "let tau = &{};\n{}{}{}",
-                outputs.matrix(0, n, 1),
-                accelerated(depend, s),
+                outputs.matrix_of_outputs(0, n, 1),
+                acceleration_derivative_call(depend, s),
                 if depend { by_state.as_str() } else { "" },
-                assembled(n, m, of_inputs(2), s, outputs)
+                linear_system_expression(n, m, of_inputs(2), s, outputs)
             )
         }
         _ => String::new(),
@@ -123,14 +129,14 @@ pub fn compose(f: &Function, s: &Signature<'_>, outputs: &Outputs<'_>) -> String
 
 /// Returns the statements that bind `inverse` to `M⁻¹`, from the outputs from index `first` on.
 fn inverse(f: &Function, n: usize, first: usize, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
-    let rest = completed(["inverse", NOTHING], f, n, first, s, outputs);
-    format!("let mut inverse = {};\n{rest}", outputs.matrix(first, n, n))
+    let rest = inverse_completion(["inverse", NOTHING], f, n, first, s, outputs);
+    format!("let mut inverse = {};\n{rest}", outputs.matrix_of_outputs(first, n, n))
 }
 
 /// Returns the statement that completes `M⁻¹` from a factored form whose columns are in the matrix `place`
 /// and start at output `first`; empty for an explicit inverse. With a block arrow form, the columns `solved`
 /// are multiplied by the inverse, too.
-fn completed(
+fn inverse_completion(
     [place, solved]: [&str; 2],
     f: &Function,
     n: usize,
@@ -141,9 +147,9 @@ fn completed(
     let additional_values = |width: usize| TrailingRows { first: first + n * n, rows: n, width, outputs };
     match &f.structure.inverse {
         InverseForm::Explicit => String::new(),
-        InverseForm::LowRankUpdate(trunk) => additional_values(trunk.len()).completion(place, trunk, s),
+        InverseForm::LowRankUpdate(trunk) => additional_values(trunk.len()).trunk_completion(place, trunk, s),
         InverseForm::BlockArrow { trunk, limbs } => {
-            additional_values(trunk.len()).inversion([place, solved], trunk, limbs, s)
+            additional_values(trunk.len()).inversion_statement([place, solved], trunk, limbs, s)
         }
     }
 }
@@ -164,37 +170,39 @@ struct TrailingRows<'a> {
 
 impl TrailingRows<'_> {
     /// Returns the indices of the outputs of a row.
-    fn range(&self, row: usize) -> std::ops::Range<usize> {
+    fn range_of_row(&self, row: usize) -> std::ops::Range<usize> {
         self.first + row * self.width..self.first + (row + 1) * self.width
     }
 
     /// Returns the range of the values of a row outside which all are constant zeros; `None` if all are.
-    fn used(&self, row: usize) -> Option<Span> {
-        let first = self.range(row).start;
+    fn nonzero_range(&self, row: usize) -> Option<Span> {
+        let first = self.range_of_row(row).start;
         let is_nonzero_entry = |t: &usize| !self.outputs.is_zero(first + t);
         Some(((0..self.width).find(is_nonzero_entry)?, (0..self.width).rfind(is_nonzero_entry)? + 1))
     }
 
     /// Returns the statement that adds the product of the trunk's columns and these factors to the matrix
     /// `place`; empty if all factors are zero.
-    fn completion(&self, place: &str, trunk: &[usize], s: &Signature<'_>) -> String {
-        let used: Vec<(usize, Span)> = (0..self.rows).filter_map(|k| Some((k, self.used(k)?))).collect();
+    fn trunk_completion(&self, place: &str, trunk: &[usize], s: &Signature<'_>) -> String {
+        let used: Vec<(usize, Span)> =
+            (0..self.rows).filter_map(|k| Some((k, self.nonzero_range(k)?))).collect();
         let runs = factor_runs(used.iter().enumerate().map(|(place, (k, used))| (*k, *used, place)));
         if runs.is_empty() {
             return String::new();
         }
-        let factors: Vec<String> = used.iter().map(|(k, _)| self.outputs.list(self.range(*k))).collect();
+        let factors: Vec<String> =
+            used.iter().map(|(k, _)| self.outputs.array_of_outputs(self.range_of_row(*k))).collect();
         format!(
             "{RUNTIME}::complete::<Ops, {}, {}, _, _, _>(&mut {place}, {trunk:?}, &[{}], &{runs:?});\n",
-            s.scalar.name(),
-            parts(|_| self.rows.to_string()),
+            s.scalar.scalar_name(),
+            tiling_types(|_| self.rows.to_string()),
             factors.join(", "),
         )
     }
 
     /// Returns the statement that inverts the matrix `place`, using these entries of the mass matrix, and
     /// multiplies the columns `solved` by the inverse.
-    fn inversion(
+    fn inversion_statement(
         &self,
         [place, solved]: [&str; 2],
         trunk: &[usize],
@@ -202,15 +210,16 @@ impl TrailingRows<'_> {
         s: &Signature<'_>,
     ) -> String {
         let length = self.width.next_multiple_of(4);
-        let padding = vec![number("0.0", s); length - self.width];
+        let padding = vec![constant_conversion_call("0.0", s); length - self.width];
         let format_border_row = |k: usize| {
-            let entries = self.outputs.pieces.get(self.range(k)).unwrap_or(&[]).iter().map(|p| &p.text);
+            let entries =
+                self.outputs.pieces.get(self.range_of_row(k)).unwrap_or(&[]).iter().map(|p| &p.text);
             let all: Vec<&str> = entries.chain(&padding).map(String::as_str).collect();
             format!("[{}]", all.join(", "))
         };
         let mut used = vec![None; self.rows];
         for limb in limbs {
-            let ends = limb.iter().filter_map(|k| self.used(*k));
+            let ends = limb.iter().filter_map(|k| self.nonzero_range(*k));
             let all = ends.reduce(|(a, b), (from, to)| (a.min(from), b.max(to)));
             limb.iter().for_each(|k| used[*k] = all);
         }
@@ -224,9 +233,9 @@ impl TrailingRows<'_> {
             "{RUNTIME}::invert::<Ops, {}, {}, {}, {}, {}, {length}, _>(
                 &mut {place}, {trunk:?}, &[{}], &[{}], &{runs:?}, {solved},
             );\n",
-            s.scalar.name(),
-            parts(|_| self.rows.to_string()),
-            parts(|_| length.to_string()),
+            s.scalar.scalar_name(),
+            tiling_types(|_| self.rows.to_string()),
+            tiling_types(|_| length.to_string()),
             self.rows,
             self.width,
             (0..self.rows).map(format_border_row).collect::<Vec<_>>().join(", "),
@@ -257,30 +266,43 @@ fn store_known_columns(f: &Function, outputs: &Outputs<'_>, n: usize) -> String 
     let columns = matrix_arguments(f).into_iter().zip(&f.structure.known);
     let columns = columns.flat_map(|(matrix, known)| known.iter().map(move |column| (matrix, column)));
     let texts = columns.enumerate().map(|(k, (matrix, column))| {
-        format!("{matrix}.data.0[{column}] = {};\n", outputs.list(k * n..(k + 1) * n))
+        format!("{matrix}.data.0[{column}] = {};\n", outputs.array_of_outputs(k * n..(k + 1) * n))
     });
     texts.collect()
 }
 
 /// Returns the statement that replaces derivatives of forces by derivatives of accelerations, `−M⁻¹ ∂τ/∂x`.
-fn solved(forces: [&str; 2], inverse: &str, n: usize, s: &Signature<'_>, structure: &Structure) -> String {
+fn acceleration_conversion(
+    forces: [&str; 2],
+    inverse: &str,
+    n: usize,
+    s: &Signature<'_>,
+    structure: &Structure,
+) -> String {
     let is_known = |k: usize| structure.known[k / (n * n)].contains(&(k / n % n));
     let is_known_or_zero = |k: usize| is_known(k) || structure.zeros.get(k).is_some_and(|zero| *zero);
-    let format_factor_groups =
-        |k: usize| format!("(&mut {}, {})", forces[k], groups(n, n, k * n * n, &is_known_or_zero));
-    products(inverse, n, n, &[format_factor_groups(0), format_factor_groups(1)], s)
+    let format_factor_groups = |k: usize| {
+        format!("(&mut {}, {})", forces[k], column_runs_source(n, n, k * n * n, &is_known_or_zero))
+    };
+    inverse_product_statement(inverse, n, n, &[format_factor_groups(0), format_factor_groups(1)], s)
 }
 
 /// Returns the statement that replaces the factors, each with the given number of columns, by minus their
 /// products with the inverse; empty without velocities.
-fn products(inverse: &str, n: usize, columns: usize, factors: &[String], s: &Signature<'_>) -> String {
+fn inverse_product_statement(
+    inverse: &str,
+    n: usize,
+    columns: usize,
+    factors: &[String],
+    s: &Signature<'_>,
+) -> String {
     if n == 0 {
         return String::new();
     }
     format!(
         "::linkwork::__private::minus_products::<Ops, {}, {}, {n}, {columns}, {}>(&{inverse}, [{}]);\n",
-        s.scalar.name(),
-        parts(|wide| format!("::linkwork::__private::rows({n}, {wide})")),
+        s.scalar.scalar_name(),
+        tiling_types(|wide| format!("::linkwork::__private::rows({n}, {wide})")),
         factors.len(),
         factors.join(", ")
     )
@@ -289,7 +311,7 @@ fn products(inverse: &str, n: usize, columns: usize, factors: &[String], s: &Sig
 /// Returns the types of the tilings of a matrix: for processors with registers of eight numbers, and for
 /// processors with registers of four numbers. `rows` returns for each the number of rows that are computed
 /// together.
-fn parts(rows: impl Fn(bool) -> String) -> String {
+fn tiling_types(rows: impl Fn(bool) -> String) -> String {
     let format_tile_type = |wide: bool| {
         let n = rows(wide);
         format!(
@@ -311,7 +333,7 @@ struct Run {
 /// Groups neighbouring columns with zeros in nearly the same rows, for the matrix that starts at entry
 /// `first`. The first list holds column and row of each zero entry in a row where another column of its group
 /// is nonzero.
-fn runs(
+fn column_runs(
     n: usize,
     columns: usize,
     first: usize,
@@ -344,18 +366,18 @@ fn runs(
     (runs.iter().flat_map(zeros_filled_by_run).collect(), runs)
 }
 
-/// Returns the result of [`runs`] as source text.
-fn groups(n: usize, columns: usize, first: usize, is_zero: &dyn Fn(usize) -> bool) -> String {
-    let (filled, runs) = runs(n, columns, first, is_zero);
+/// Returns the result of [`column_runs`] as source text.
+fn column_runs_source(n: usize, columns: usize, first: usize, is_zero: &dyn Fn(usize) -> bool) -> String {
+    let (filled, runs) = column_runs(n, columns, first, is_zero);
     let texts: Vec<String> = runs.iter().map(|run| format!("({:?}, &{:?})", run.columns, run.rows)).collect();
     format!("&{filled:?}, &[{}]", texts.join(", "))
 }
 
 /// Returns the body of a function that calls its variant with `count` matrix arguments, so that no large
 /// value is moved.
-pub fn called(f: &Function, count: usize, s: &Signature<'_>) -> String {
-    let arguments: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
-    let zeros = vec![format!("<{}>::zeros()", s.shape(Shape::Square(s.nv))); count];
+pub fn call_filling_variant(f: &Function, count: usize, s: &Signature<'_>) -> String {
+    let arguments: Vec<&str> = f.arguments.iter().map(|a| a.argument_name()).collect();
+    let zeros = vec![format!("<{}>::zeros()", s.shape_type(Shape::Square(s.nv))); count];
     let given: Vec<String> = (0..count).map(|k| format!("&mut all.{k}")).collect();
     format!(
         "let mut all = ({});
@@ -363,16 +385,16 @@ pub fn called(f: &Function, count: usize, s: &Signature<'_>) -> String {
         all\n",
         zeros.join(", "),
         f.name,
-        s.suffix(),
+        s.call_suffix(),
         arguments.join(", "),
         given.join(", ")
     )
 }
 
 /// Returns the statement that calls the derivatives of forward dynamics under the forces `tau`.
-fn accelerated(mutable: bool, s: &Signature<'_>) -> String {
+fn acceleration_derivative_call(mutable: bool, s: &Signature<'_>) -> String {
     let t = if s.time { "t, " } else { "" };
-    let lanes = s.suffix();
+    let lanes = s.call_suffix();
     let mutable = if mutable { "mut " } else { "" };
     format!(
         "let ({mutable}by_q, {mutable}by_v, inverse) = self.forward_dynamics_derivatives{lanes}({t}q, v, \
@@ -380,14 +402,20 @@ fn accelerated(mutable: bool, s: &Signature<'_>) -> String {
     )
 }
 
-fn number(x: &str, s: &Signature<'_>) -> String {
-    format!("::linkwork::__private::constant::<{}>({x})", s.scalar.name())
+fn constant_conversion_call(x: &str, s: &Signature<'_>) -> String {
+    format!("::linkwork::__private::constant::<{}>({x})", s.scalar.scalar_name())
 }
 
 /// Returns the expression of the two matrices of a linear system. Starting at output `first`, the outputs are
 /// the derivatives by the inputs and the matrix `T` in the rate `ξ̇ = δv + T ξ` of displacements `ξ`.
-fn assembled(n: usize, m: usize, first: usize, s: &Signature<'_>, outputs: &Outputs<'_>) -> String {
-    let factor = format!("(&mut by_u, {})", groups(n, m, first, &|k| outputs.is_zero(k)));
+fn linear_system_expression(
+    n: usize,
+    m: usize,
+    first: usize,
+    s: &Signature<'_>,
+    outputs: &Outputs<'_>,
+) -> String {
+    let factor = format!("(&mut by_u, {})", column_runs_source(n, m, first, &|k| outputs.is_zero(k)));
     format!(
         "let mut by_u = {by_u};
         {product}        let turning = {turning};
@@ -405,11 +433,11 @@ fn assembled(n: usize, m: usize, first: usize, s: &Signature<'_>, outputs: &Outp
             for i in 0..{n} {{ b[j][{n} + i] = -by_u.data.0[j][i]; }}
         }}
         ({storage}(a)), {storage}(b)))\n",
-        by_u = outputs.matrix(first, n, m),
-        product = products("inverse", n, m, &[factor], s),
-        turning = outputs.matrix(first + n * m, n, n),
-        zero = number("0.0", s),
-        one = number("1.0", s),
+        by_u = outputs.matrix_of_outputs(first, n, m),
+        product = inverse_product_statement("inverse", n, m, &[factor], s),
+        turning = outputs.matrix_of_outputs(first + n * m, n, n),
+        zero = constant_conversion_call("0.0", s),
+        one = constant_conversion_call("1.0", s),
         twice = 2 * n,
         storage = STORAGE,
     )

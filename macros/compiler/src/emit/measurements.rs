@@ -36,16 +36,17 @@ pub fn write_impls(
     s: &Signature<'_>,
 ) {
     // Rates of states and matrices are not part of the vector of outputs.
-    let is_rate_of_state = |f: &Function| i.states.iter().any(|(name, _)| f.name == states::rate(name));
+    let is_rate_of_state =
+        |f: &Function| i.states.iter().any(|(name, _)| f.name == states::rate_function_name(name));
     let outputs: Vec<&Function> = functions
         .iter()
         .filter(|f| f.id == Id::Output && !is_rate_of_state(f) && !matches!(f.shape, Shape::Matrix(..)))
         .collect();
-    let count: usize = outputs.iter().map(|f| rows(f)).sum();
+    let count: usize = outputs.iter().map(|f| entry_count(f)).sum();
     if count == 0 {
         return;
     }
-    let parameters = s.parameters(&[Argument::T, Argument::Q, Argument::V, Argument::A, Argument::U]);
+    let parameters = s.parameter_list(&[Argument::T, Argument::Q, Argument::V, Argument::A, Argument::U]);
     let measurements = Measurements { name, outputs, count, head: Head::new(i, s), i, s, parameters };
     measurements.write_outputs(out);
     if !i.facts.requests.derivatives {
@@ -60,7 +61,7 @@ pub fn write_impls(
 
 impl Measurements<'_> {
     /// Writes the head of the implementation of the trait `of` with these sizes.
-    fn begin(&self, out: &mut String, of: &str, sizes: &[usize]) {
+    fn begin_trait_impl(&self, out: &mut String, of: &str, sizes: &[usize]) {
         let Head { generics, arguments, bounds } = &self.head;
         let sizes = sizes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
         let _ = writeln!(
@@ -71,7 +72,7 @@ impl Measurements<'_> {
     }
 
     /// Returns the sizes of configuration, velocity, inputs and outputs.
-    fn sizes(&self) -> [usize; 4] {
+    fn trait_sizes(&self) -> [usize; 4] {
         [self.s.nq, self.s.nv, self.s.nu, self.count]
     }
 
@@ -81,36 +82,39 @@ impl Measurements<'_> {
         let mut first = 0;
         for f in &self.outputs {
             let _ = writeln!(out, "{}", statement(first, f));
-            first += rows(f);
+            first += entry_count(f);
         }
         out.push_str("all\n}\n}\n");
     }
 
     /// Writes the trait of the values, with names and units.
     fn write_outputs(&self, out: &mut String) {
-        let (count, vector) = (self.count, self.s.vector(self.count));
+        let (count, vector) = (self.count, self.s.vector_type(self.count));
         let names: Vec<String> =
-            self.outputs.iter().flat_map(|f| entries(f)).map(|name| format!("{name:?}")).collect();
+            self.outputs.iter().flat_map(|f| entry_names(f)).map(|name| format!("{name:?}")).collect();
         let unit_of_output = |f: &Function| {
             let place = self.i.outputs.iter().position(|name| *name == f.name);
             place.and_then(|k| self.i.units.outputs.get(k)).map_or("", |unit| unit)
         };
-        let units: Vec<&str> =
-            self.outputs.iter().flat_map(|f| std::iter::repeat_n(unit_of_output(f), rows(f))).collect();
-        self.begin(out, "Outputs", &self.sizes());
+        let units: Vec<&str> = self
+            .outputs
+            .iter()
+            .flat_map(|f| std::iter::repeat_n(unit_of_output(f), entry_count(f)))
+            .collect();
+        self.begin_trait_impl(out, "Outputs", &self.trait_sizes());
         let _ = writeln!(
             out,
             "type Scalar = {};\nconst OUTPUTS: [&'static str; {count}] = [{}];
         const OUTPUT_UNITS: [&'static str; {count}] = {units:?};
         #[inline]\nfn outputs({}) -> {vector} {{\nlet mut all = <{vector}>::zeros();",
-            self.s.scalar.name(),
+            self.s.scalar.scalar_name(),
             names.join(", "),
             self.parameters,
         );
         self.write_each(out, |first, f| {
             let value = match f.shape {
-                Shape::Scalar => format!("::linkwork::nalgebra::SVector::from([{}])", call(f, "")),
-                _ => call(f, ""),
+                Shape::Scalar => format!("::linkwork::nalgebra::SVector::from([{}])", output_call(f, "")),
+                _ => output_call(f, ""),
             };
             format!("::linkwork::__private::put_rows(&mut all, {first}, &{value});")
         });
@@ -118,23 +122,23 @@ impl Measurements<'_> {
 
     /// Writes the implementation of the trait `OutputDerivatives`.
     fn write_derivatives(&self, out: &mut String) {
-        self.begin(out, "OutputDerivatives", &self.sizes());
-        let of = self.s.shape(Shape::Jacobians(self.count, self.s.nv, self.s.nu));
+        self.begin_trait_impl(out, "OutputDerivatives", &self.trait_sizes());
+        let of = self.s.shape_type(Shape::Jacobians(self.count, self.s.nv, self.s.nu));
         let _ = writeln!(
             out,
             "#[inline]\nfn output_derivatives({}) -> {of} {{\nlet mut all = <{of}>::zeros();",
             self.parameters
         );
-        self.write_each(out, |first, f| format!("all.put_rows({first}, &{});", call(f, DERIVATIVES)));
+        self.write_each(out, |first, f| format!("all.put_rows({first}, &{});", output_call(f, DERIVATIVES)));
     }
 
     /// Writes the trait of the derivatives by states of first order.
     fn write_by_states(&self, out: &mut String) {
-        let [nq, nv, nu, count] = self.sizes();
+        let [nq, nv, nu, count] = self.trait_sizes();
         let n = self.i.states.len();
-        let of = self.s.shape(Shape::Matrix(count, n));
+        let of = self.s.shape_type(Shape::Matrix(count, n));
         let which: Vec<String> = self.i.states.iter().map(|(_, k)| k.to_string()).collect();
-        self.begin(out, "OutputsByStates", &[nq, nv, nu, n, count]);
+        self.begin_trait_impl(out, "OutputsByStates", &[nq, nv, nu, n, count]);
         let _ = writeln!(
             out,
             "        #[inline]\nfn outputs_by_states({}) -> {of} {{\nlet mut all = <{of}>::zeros();",
@@ -144,7 +148,7 @@ impl Measurements<'_> {
             format!(
                 "::linkwork::__private::put_rows(&mut all, {first}, &::linkwork::__private::columns(&{}, \
                  [{}]));",
-                call(f, BY_PARAMETERS),
+                output_call(f, BY_PARAMETERS),
                 which.join(", "),
             )
         });
@@ -152,13 +156,13 @@ impl Measurements<'_> {
 }
 
 /// Returns the expression that calls an output, or its derivatives with this suffix.
-fn call(f: &Function, suffix: &str) -> String {
-    let names: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
+fn output_call(f: &Function, suffix: &str) -> String {
+    let names: Vec<&str> = f.arguments.iter().map(|a| a.argument_name()).collect();
     format!("Self::{}{suffix}(self, {})", f.name, names.join(", "))
 }
 
 /// Returns the number of entries of an output.
-fn rows(f: &Function) -> usize {
+fn entry_count(f: &Function) -> usize {
     match f.shape {
         Shape::Vector(n) => n,
         _ => 1,
@@ -166,7 +170,7 @@ fn rows(f: &Function) -> usize {
 }
 
 /// Returns the names of an output's entries: its own name, or the names of its spatial components.
-fn entries(f: &Function) -> Vec<String> {
+fn entry_names(f: &Function) -> Vec<String> {
     match f.shape {
         Shape::Vector(_) => ["x", "y", "z"].map(|axis| format!("{}.{axis}", f.name)).to_vec(),
         _ => vec![f.name.clone()],

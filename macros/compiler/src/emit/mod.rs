@@ -35,7 +35,7 @@ mod states;
 mod stores;
 mod validate;
 
-pub use absent::absent;
+pub use absent::absent_items;
 pub use constraints::Constraints;
 pub use contacts::UnilateralContact;
 pub use derived::error_type;

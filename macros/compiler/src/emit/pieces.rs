@@ -48,30 +48,30 @@ pub struct Outputs<'a> {
 
 impl Outputs<'_> {
     /// Returns an array of a range of outputs.
-    pub fn list(&self, range: std::ops::Range<usize>) -> String {
-        array(self.pieces.get(range).unwrap_or(&[]).iter().map(|p| p.text.as_str()).collect())
+    pub fn array_of_outputs(&self, range: std::ops::Range<usize>) -> String {
+        array_expression(self.pieces.get(range).unwrap_or(&[]).iter().map(|p| p.text.as_str()).collect())
     }
 
     /// Returns an array of columns, starting at output `first`.
-    fn columns(&self, first: usize, rows: usize, columns: usize) -> String {
+    fn array_of_columns(&self, first: usize, rows: usize, columns: usize) -> String {
         let columns: Vec<String> =
-            (0..columns).map(|k| self.list(first + k * rows..first + (k + 1) * rows)).collect();
-        array(columns.iter().map(String::as_str).collect())
+            (0..columns).map(|k| self.array_of_outputs(first + k * rows..first + (k + 1) * rows)).collect();
+        array_expression(columns.iter().map(String::as_str).collect())
     }
 
     /// Returns the matrix with these numbers of rows and columns, by columns, starting at output `first`.
-    pub fn matrix(&self, first: usize, rows: usize, columns: usize) -> String {
-        storage(&self.columns(first, rows, columns), "SMatrix")
+    pub fn matrix_of_outputs(&self, first: usize, rows: usize, columns: usize) -> String {
+        storage_constructor(&self.array_of_columns(first, rows, columns), "SMatrix")
     }
 
     /// Returns a struct whose fields are the outputs in order.
-    pub fn record(&self, record: Record) -> String {
-        let mut text = format!("::linkwork::__private::{} {{\n", record.name().0);
+    pub fn record_of_outputs(&self, record: Record) -> String {
+        let mut text = format!("::linkwork::__private::{} {{\n", record.struct_name_and_sizes().0);
         let mut first = 0;
-        for field in record.fields() {
+        for field in record.record_fields() {
             let value = match field.columns {
-                None => self.list(first..first + field.rows),
-                Some(n) => self.columns(first, field.rows, n),
+                None => self.array_of_outputs(first..first + field.rows),
+                Some(n) => self.array_of_columns(first, field.rows, n),
             };
             let _ = writeln!(text, "{}: {value},", field.name);
             first += field.length();
@@ -87,7 +87,7 @@ impl Outputs<'_> {
 }
 
 /// Returns an array expression; if all items are equal, in the form with one item and a count.
-fn array(texts: Vec<&str>) -> String {
+fn array_expression(texts: Vec<&str>) -> String {
     match texts.as_slice() {
         [first, rest @ ..] if rest.len() > 1 && rest.iter().all(|text| text == first) => {
             format!("[{first}; {}]", texts.len())
@@ -97,7 +97,7 @@ fn array(texts: Vec<&str>) -> String {
 }
 
 /// Returns the constructor of a vector or matrix from an array of columns.
-pub fn storage(columns: &str, matrix: &str) -> String {
+pub fn storage_constructor(columns: &str, matrix: &str) -> String {
     format!(
         "::linkwork::nalgebra::{matrix}::from_array_storage(::linkwork::nalgebra::ArrayStorage({columns}))"
     )

@@ -4,7 +4,7 @@
 use super::absent::write_absent_of_prepared;
 use super::constants::write_sizes;
 use super::dispatch::Bodies;
-use super::docs::operations;
+use super::docs::operation_count_table;
 use super::function::write_function;
 use super::implementations::write_impls;
 use super::interface::{ALLOW, Head, Interface};
@@ -66,7 +66,7 @@ pub fn write_prepared(
     differentiable::write_second(&mut methods, content.charts, i, s);
     lanes::write_methods(&mut methods, &mut bodies, i, functions, content.charts, s);
     write_impls(&head, out, &name, &methods, i, s);
-    bodies.write(out, &name, &head);
+    bodies.write_function_bodies(out, &name, &head);
     write_absent_of_prepared(out, &name, i, s);
     measurements::write_impls(out, &name, functions, i, s);
 
@@ -83,7 +83,8 @@ pub fn write_prepared(
             self.__prepared_numbers(){tables} }} }}"
     );
     let program = content.numbers.cloned().unwrap_or_default();
-    let numbers = Function::part("__prepared_numbers".to_string(), Vec::new(), count, program);
+    let numbers =
+        Function::hidden_part_function("__prepared_numbers".to_string(), Vec::new(), count, program);
     write_function(out, &numbers, s, content.numbers.is_none());
     out.push_str("}\n");
 }
@@ -102,7 +103,7 @@ fn write_struct(
     let docs = format!(
         "[`{ident}`] with precomputed values of everything that depends only on its parameters, created by \
          [`prepare`]({ident}::prepare). It has the same functions, except those of frames.\n{}",
-        operations(functions)
+        operation_count_table(functions)
     );
     let tables: String = i
         .shell
@@ -120,6 +121,6 @@ fn write_struct(
          {{ numbers: [{}; {count}]{tables} }}",
         spell_tokens(&i.shell.visibility),
         spell_tokens(&generics.where_clause),
-        s.scalar.name()
+        s.scalar.scalar_name()
     );
 }

@@ -25,7 +25,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function]
         let tau = match (s.nu > 0, i.facts.velocity_inputs) {
             (true, true) => format!("self.generalized_forces({t}q, v, u)"),
             (true, false) => format!("self.generalized_forces({t}q, u)"),
-            _ => format!("<{}>::zeros()", s.vector(s.nv)),
+            _ => format!("<{}>::zeros()", s.vector_type(s.nv)),
         };
         let solve = match c.names.is_empty() {
             true => format!("let a = self.forward_dynamics({t}q, v, &tau);"),
@@ -42,8 +42,10 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function]
         }
         let call = format!("self.{}({t}{pass})", f.name);
         let (docs, shape, result) = match diagram {
-            Some(diagram) => (diagram_docs(diagram, s), diagram_type(diagram, s), made(diagram, &call)),
-            None => (reaction_docs(i, s), s.shape(f.shape), call),
+            Some(diagram) => {
+                (diagram_docs(diagram, s), diagram_type(diagram, s), diagram_expression(diagram, &call))
+            }
+            None => (reaction_docs(i, s), s.shape_type(f.shape), call),
         };
         let _ = writeln!(
             out,
@@ -55,7 +57,7 @@ pub fn write_methods(out: &mut String, i: &Interface<'_>, functions: &[Function]
                 {result}
             }}",
             output_docs(i, name, &docs),
-            s.parameters(&s.timed(&arguments)),
+            s.parameter_list(&s.with_time_argument(&arguments)),
         );
     }
 }
@@ -69,14 +71,14 @@ fn write_touched_diagram(
     (arguments, tau, solve, call): (&[Argument], &str, &str, &str),
     s: &Signature<'_>,
 ) {
-    let (scalar, kind) = (s.scalar.name(), diagram_type(diagram, s));
-    let parameters = s.parameters(&s.timed(arguments));
+    let (scalar, kind) = (s.scalar.scalar_name(), diagram_type(diagram, s));
+    let parameters = s.parameter_list(&s.with_time_argument(arguments));
     let (pass, t) = match s.time {
         true => ("t, ", "t".to_string()),
         false => ("", format!("::linkwork::__private::constant::<{scalar}>(0.0)")),
     };
     let (own, inputs) = match s.nu {
-        0 => ("q, v", format!("&<{}>::zeros()", s.vector(0))),
+        0 => ("q, v", format!("&<{}>::zeros()", s.vector_type(0))),
         _ => ("q, v, u", "u".to_string()),
     };
     let acting = format!(
@@ -104,8 +106,8 @@ fn write_touched_diagram(
         }}",
         output_docs(i, name, &acting),
         output_docs(i, name, &under),
-        s.vector(i.facts.contacts.rates),
-        made(diagram, call)
+        s.vector_type(i.facts.contacts.rates),
+        diagram_expression(diagram, call)
     );
 }
 
@@ -114,10 +116,10 @@ fn write_touched_diagram(
 pub fn write_unknown(out: &mut String, i: &Interface<'_>, functions: &[Function], s: &Signature<'_>) {
     let mut arguments = vec![Argument::Q, Argument::V];
     arguments.extend((s.nu > 0).then_some(Argument::U));
-    let parameters = s.parameters(&s.timed(&arguments));
+    let parameters = s.parameter_list(&s.with_time_argument(&arguments));
     for f in functions {
         let Some(name) = f.name.strip_prefix(TOUCHED) else { continue };
-        let shape = s.shape(f.shape);
+        let shape = s.shape_type(f.shape);
         let _ = writeln!(
             out,
             "pub fn {name}({parameters}) -> ::core::result::Result<{shape}, ::linkwork::ConstraintError> \
@@ -129,7 +131,7 @@ pub fn write_unknown(out: &mut String, i: &Interface<'_>, functions: &[Function]
         if i.contacts.is_empty() {
             let _ = writeln!(out, "pub fn {name}({parameters}) -> {kind} {{ loop {{}} }}");
         } else {
-            let forces = s.vector(i.facts.contacts.rates);
+            let forces = s.vector_type(i.facts.contacts.rates);
             let _ = writeln!(
                 out,
                 "pub fn {name}({parameters}) -> ::core::result::Result<{kind}, ::linkwork::ConstraintError> \
@@ -142,11 +144,11 @@ pub fn write_unknown(out: &mut String, i: &Interface<'_>, functions: &[Function]
 
 /// Returns the type of a free-body diagram.
 fn diagram_type(diagram: &Diagram, s: &Signature<'_>) -> String {
-    format!("::linkwork::free_body::Diagram<{}, {}>", s.scalar.name(), diagram.actions.len())
+    format!("::linkwork::free_body::Diagram<{}, {}>", s.scalar.scalar_name(), diagram.actions.len())
 }
 
 /// Returns the expression that constructs a free-body diagram from the expression `numbers` of its values.
-fn made(diagram: &Diagram, numbers: &str) -> String {
+fn diagram_expression(diagram: &Diagram, numbers: &str) -> String {
     let origin =
         |(name, origin): &(String, Origin)| format!("({name:?}, ::linkwork::free_body::Origin::{origin:?})");
     let actions: Vec<String> = diagram.actions.iter().map(origin).collect();
@@ -195,13 +197,13 @@ fn reaction_docs(i: &Interface<'_>, s: &Signature<'_>) -> String {
 /// Writes the functions of outputs that contain contact forces, which are computed from the motion first.
 pub fn write_touched(out: &mut String, i: &Interface<'_>, functions: &[Function], s: &Signature<'_>) {
     let pass = if s.time { "t, " } else { "" };
-    let scalar = s.scalar.name();
+    let scalar = s.scalar.scalar_name();
     let t =
         if s.time { "t".to_string() } else { format!("::linkwork::__private::constant::<{scalar}>(0.0)") };
     for f in functions {
         let Some(name) = f.name.strip_prefix(TOUCHED) else { continue };
         let mut arguments = vec![Argument::Q, Argument::V];
-        let (mut own, mut inputs) = ("q, v", format!("&<{}>::zeros()", s.vector(0)));
+        let (mut own, mut inputs) = ("q, v", format!("&<{}>::zeros()", s.vector_type(0)));
         if s.nu > 0 {
             arguments.push(Argument::U);
             (own, inputs) = ("q, v, u", "u".to_string());
@@ -214,8 +216,8 @@ pub fn write_touched(out: &mut String, i: &Interface<'_>, functions: &[Function]
                 ::core::result::Result::Ok(self.{}({pass}{own}, &forces.data.0[0]))
             }}",
             output_docs(i, name, ABOUT_FORCES),
-            s.parameters(&s.timed(&arguments)),
-            s.shape(f.shape),
+            s.parameter_list(&s.with_time_argument(&arguments)),
+            s.shape_type(f.shape),
             f.name
         );
     }

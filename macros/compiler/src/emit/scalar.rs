@@ -35,7 +35,7 @@ impl ScalarSpelling {
     }
 
     /// Returns the name of the scalar type.
-    pub fn name(&self) -> &str {
+    pub fn scalar_name(&self) -> &str {
         self.lanes.as_deref().unwrap_or_else(|| self.one())
     }
 
@@ -50,28 +50,28 @@ impl ScalarSpelling {
     }
 
     /// Returns the names of the runtime functions that constants may call.
-    pub fn helpers(&self) -> impl Iterator<Item = &'static str> {
+    pub fn helper_names(&self) -> impl Iterator<Item = &'static str> {
         self.is_generic().then_some("constant").into_iter()
     }
 
     /// Returns the name of a parameter's field.
-    pub fn parameter(&self, k: usize) -> &str {
+    pub fn parameter_field(&self, k: usize) -> &str {
         &self.parameters[k]
     }
 
     /// Returns the name of a table's field.
-    pub fn table(&self, k: usize) -> &str {
+    pub fn table_field(&self, k: usize) -> &str {
         self.tables.get(k).map_or("missing", String::as_str)
     }
 
     /// Returns the expression of a parameter's value.
-    pub fn value(&self, k: usize) -> String {
-        self.spread(format!("self.{}", self.parameters[k]))
+    pub fn parameter_value(&self, k: usize) -> String {
+        self.broadcast_number(format!("self.{}", self.parameters[k]))
     }
 
     /// Returns the expression of a constant.
-    pub fn constant(&self, c: f64) -> String {
-        self.spread(match &self.scalar {
+    pub fn constant_expression(&self, c: f64) -> String {
+        self.broadcast_number(match &self.scalar {
             ScalarType::Generic(name) => format!("constant::<{name}>({c:?})"),
             ScalarType::F32 if c != 0.0 && !(c.abs() as f32).is_normal() => format!("({c:?}f64 as f32)"),
             _ => format!("{c:?}"),
@@ -79,7 +79,7 @@ impl ScalarSpelling {
     }
 
     /// Returns the expression of a number, broadcast to all lanes for functions of several states.
-    pub fn spread(&self, number: String) -> String {
+    pub fn broadcast_number(&self, number: String) -> String {
         match self.is_in_lanes() {
             true => format!("Ops::splat::<{}, LANES>({number})", self.one()),
             false => number,

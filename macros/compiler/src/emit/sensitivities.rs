@@ -25,12 +25,12 @@ pub fn write_impl(out: &mut String, name: &str, i: &Interface<'_>, s: &Signature
         ("forward_dynamics_by_parameters", Tau),
         ("generalized_forces_by_parameters", U),
     ] {
-        let own: Vec<&str> = s.timed(&[Q, V, third]).iter().map(|a| a.name()).collect();
+        let own: Vec<&str> = s.with_time_argument(&[Q, V, third]).iter().map(|a| a.argument_name()).collect();
         let _ = writeln!(
             out,
             "#[inline]\nfn {function}({}) -> {} {{ Self::{function}(self, {}) }}",
-            s.parameters(&[Argument::T, Q, V, third]),
-            s.shape(Shape::Matrix(s.nv, np)),
+            s.parameter_list(&[Argument::T, Q, V, third]),
+            s.shape_type(Shape::Matrix(s.nv, np)),
             own.join(", ")
         );
     }

@@ -15,7 +15,7 @@ pub fn matrix_arguments(f: &Function) -> Vec<&'static str> {
 
 /// Returns the number of matrix arguments of the variant that the body of `f` calls, or `None` if `f` has a
 /// body of its own. The call avoids two copies of a long body, which rustc would have to process.
-pub fn filled(f: &Function) -> Option<usize> {
+pub fn filled_matrix_count(f: &Function) -> Option<usize> {
     let has_variant = f.id == Id::InverseDynamicsDerivatives;
     match f.shape {
         _ if !matrix_arguments(f).is_empty() => None,
@@ -42,48 +42,50 @@ pub struct Signature<'a> {
 
 impl Signature<'_> {
     /// Returns the type of a function's result.
-    pub fn result(&self, f: &Function) -> String {
+    pub fn result_type(&self, f: &Function) -> String {
         match f.shape {
-            Shape::Accelerated(n) => self.vector(n),
-            Shape::Forward(n) | Shape::CalledForward(n) if !matrix_arguments(f).is_empty() => self.vector(n),
-            shape if matrix_arguments(f).is_empty() => self.shape(shape),
+            Shape::Accelerated(n) => self.vector_type(n),
+            Shape::Forward(n) | Shape::CalledForward(n) if !matrix_arguments(f).is_empty() => {
+                self.vector_type(n)
+            }
+            shape if matrix_arguments(f).is_empty() => self.shape_type(shape),
             _ => "()".to_string(),
         }
     }
 
     /// Returns the type of an argument.
-    pub fn argument(&self, a: Argument) -> String {
+    pub fn argument_type(&self, a: Argument) -> String {
         let n = match a {
-            Argument::T => return self.scalar.name().to_string(),
+            Argument::T => return self.scalar.scalar_name().to_string(),
             Argument::Q => self.nq,
             Argument::V | Argument::A | Argument::Tau => self.nv,
             Argument::U => self.nu,
             Argument::Standard(n) | Argument::Factors(n) | Argument::Momenta(n) => n,
-            Argument::Given(_, _, count) => return format!("&[{}; {count}]", self.scalar.name()),
-            Argument::Into(_, n) => return format!("&mut {}", self.shape(Shape::Square(n))),
+            Argument::Given(_, _, count) => return format!("&[{}; {count}]", self.scalar.scalar_name()),
+            Argument::Into(_, n) => return format!("&mut {}", self.shape_type(Shape::Square(n))),
             Argument::Called(_) => return String::new(),
         };
-        format!("&{}", self.vector(n))
+        format!("&{}", self.vector_type(n))
     }
 
     /// Returns the type of a column vector.
-    pub fn vector(&self, n: usize) -> String {
-        format!("::linkwork::nalgebra::SVector<{}, {n}>", self.scalar.name())
+    pub fn vector_type(&self, n: usize) -> String {
+        format!("::linkwork::nalgebra::SVector<{}, {n}>", self.scalar.scalar_name())
     }
 
     /// Returns the type of a result of this shape.
-    pub fn shape(&self, shape: Shape) -> String {
-        let s = self.scalar.name();
+    pub fn shape_type(&self, shape: Shape) -> String {
+        let s = self.scalar.scalar_name();
         match shape {
             Shape::Scalar => s.to_string(),
-            Shape::Vector(n) => self.vector(n),
+            Shape::Vector(n) => self.vector_type(n),
             Shape::Square(n) | Shape::Inverse(n) => {
                 format!("::linkwork::nalgebra::SMatrix<{s}, {n}, {n}>")
             }
             Shape::Matrix(m, n) => format!("::linkwork::nalgebra::SMatrix<{s}, {m}, {n}>"),
             Shape::Array(n) => format!("[{s}; {n}]"),
             Shape::Record(record) => {
-                let (name, [m, n]) = record.name();
+                let (name, [m, n]) = record.struct_name_and_sizes();
                 format!("::linkwork::__private::{name}<{s}, {m}, {n}>")
             }
             Shape::Pair(_)
@@ -95,53 +97,53 @@ impl Signature<'_> {
             | Shape::Accelerated(_)
             | Shape::CalledForward(_)
             | Shape::CalledLinear(..)
-            | Shape::Symmetric(_) => several(shape, self),
+            | Shape::Symmetric(_) => type_of_several_matrices(shape, self),
         }
     }
 
     /// Returns the arguments, preceded by time if functions take it.
-    pub fn timed(&self, arguments: &[Argument]) -> Vec<Argument> {
+    pub fn with_time_argument(&self, arguments: &[Argument]) -> Vec<Argument> {
         self.time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect()
     }
 
     /// Returns the text after a function's name in its definition: for several states the suffix and the
     /// const parameter, otherwise nothing.
-    pub fn generics(&self) -> &'static str {
+    pub fn generics_text(&self) -> &'static str {
         if self.scalar.is_in_lanes() { "_lanes<const LANES: usize>" } else { "" }
     }
 
     /// Returns the suffix of a function's name in calls.
-    pub fn suffix(&self) -> &'static str {
+    pub fn call_suffix(&self) -> &'static str {
         if self.scalar.is_in_lanes() { "_lanes" } else { "" }
     }
 
     /// Returns the parameter list `&self, q: …, v: …`.
-    pub fn parameters(&self, arguments: &[Argument]) -> String {
+    pub fn parameter_list(&self, arguments: &[Argument]) -> String {
         let mut text = "&self".to_string();
         for a in arguments {
-            let _ = write!(text, ", {}: {}", a.name(), self.argument(*a));
+            let _ = write!(text, ", {}: {}", a.argument_name(), self.argument_type(*a));
         }
         text
     }
 }
 
 /// Returns the type of a result of several matrices.
-fn several(shape: Shape, s: &Signature<'_>) -> String {
-    let square_matrix_type = |n| s.shape(Shape::Square(n));
+fn type_of_several_matrices(shape: Shape, s: &Signature<'_>) -> String {
+    let square_matrix_type = |n| s.shape_type(Shape::Square(n));
     match shape {
         Shape::Pair(n) => format!("({0}, {0})", square_matrix_type(n)),
         Shape::Jacobians(rows, n, m) => {
-            format!("::linkwork::OutputJacobians<{}, {rows}, {n}, {m}>", s.scalar.name())
+            format!("::linkwork::OutputJacobians<{}, {rows}, {n}, {m}>", s.scalar.scalar_name())
         }
         Shape::Hessian(n) => format!("({0}, {0}, {0}, {0})", square_matrix_type(n)),
         Shape::InputHessian(n, m) => {
-            let mixed = s.shape(Shape::Matrix(n, m));
+            let mixed = s.shape_type(Shape::Matrix(n, m));
             format!("({0}, {0}, {0}, {mixed}, {mixed}, {1})", square_matrix_type(n), square_matrix_type(m))
         }
         Shape::Forward(n) | Shape::CalledForward(n) => format!("({0}, {0}, {0})", square_matrix_type(n)),
-        Shape::Accelerated(n) => s.vector(n),
+        Shape::Accelerated(n) => s.vector_type(n),
         Shape::Linear(n, m) | Shape::CalledLinear(n, m) => {
-            format!("({}, {})", square_matrix_type(2 * n), s.shape(Shape::Matrix(2 * n, m)))
+            format!("({}, {})", square_matrix_type(2 * n), s.shape_type(Shape::Matrix(2 * n, m)))
         }
         _ => String::new(),
     }

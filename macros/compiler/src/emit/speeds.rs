@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 /// Writes `integrate`, `difference` and `displacement_rate`, or stubs for a mechanism that failed to compile.
 pub fn write_manifold(out: &mut String, stub: bool, s: &Signature<'_>) {
-    let (q, v, lanes) = (s.vector(s.nq), s.vector(s.nv), s.suffix());
+    let (q, v, lanes) = (s.vector_type(s.nq), s.vector_type(s.nv), s.call_suffix());
     let functions = [
         (
             "integrate",
@@ -38,7 +38,7 @@ pub fn write_manifold(out: &mut String, stub: bool, s: &Signature<'_>) {
     ];
     for (name, about, signature, body) in functions {
         let body = if stub { "loop {}" } else { &body };
-        let generics = s.generics();
+        let generics = s.generics_text();
         let _ = writeln!(
             out,
             "/// {about}\n#[inline]\n#[must_use]\npub fn {name}{generics}(&self, {signature} {{\n{body}\n}}"
@@ -49,20 +49,20 @@ pub fn write_manifold(out: &mut String, stub: bool, s: &Signature<'_>) {
 /// Writes the functions of the trait `Mechanism` for which only mechanisms with generalized speeds override
 /// the default.
 pub fn write_trait(out: &mut String, s: &Signature<'_>) {
-    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
     let _ = writeln!(
         out,
         "#[inline]\nfn tangent_rate(&self, _dv: &{v}, _v: &{v}) -> {v} {{ {v}::repeat({nan}) }}
         #[inline]\nfn displacement_rate(&self, q: &{q}, dv: &{v}, v: &{v}) -> {v} {{ \
             Self::displacement_rate(self, q, dv, v) }}",
         v = turbofish(&v),
-        nan = nan(s),
+        nan = nan_expression(s),
     );
 }
 
 /// Writes the functions on the configuration space for the trait `Batch`.
 pub fn write_batch_trait(out: &mut String, s: &Signature<'_>) {
-    let (q, v) = (s.vector(s.nq), s.vector(s.nv));
+    let (q, v) = (s.vector_type(s.nq), s.vector_type(s.nv));
     let _ = writeln!(
         out,
         "#[inline]\nfn tangent_rate_lanes<const LANES: usize>(&self, _dv: &{v}, _v: &{v}) -> {v} {{ \
@@ -79,14 +79,14 @@ fn turbofish(v: &str) -> String {
 }
 
 /// Returns the expression of a NaN.
-fn nan(s: &Signature<'_>) -> String {
-    format!("::linkwork::__private::constant::<{}>(f64::NAN)", s.scalar.name())
+fn nan_expression(s: &Signature<'_>) -> String {
+    format!("::linkwork::__private::constant::<{}>(f64::NAN)", s.scalar.scalar_name())
 }
 
 /// Writes the functions of the trait `Derivatives` on the configuration space.
 pub fn write_derivatives(out: &mut String, s: &Signature<'_>) {
-    let (q, v, square) = (s.vector(s.nq), s.vector(s.nv), s.shape(Shape::Square(s.nv)));
-    let unknown = format!("{}::repeat({})", square.replacen("SMatrix<", "SMatrix::<", 1), nan(s));
+    let (q, v, square) = (s.vector_type(s.nq), s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
+    let unknown = format!("{}::repeat({})", square.replacen("SMatrix<", "SMatrix::<", 1), nan_expression(s));
     let _ = writeln!(
         out,
         "#[inline]\nfn integrate_derivatives(&self, _dv: &{v}) -> ({square}, {square}) {{ ({unknown}, \
@@ -129,8 +129,8 @@ pub fn write_derivatives(out: &mut String, s: &Signature<'_>) {
 
 /// Writes the function of the trait `SecondDerivatives` on the configuration space.
 pub fn write_second_derivatives(out: &mut String, s: &Signature<'_>) {
-    let (v, square) = (s.vector(s.nv), s.shape(Shape::Square(s.nv)));
-    let unknown = format!("{}::repeat({})", square.replacen("SMatrix<", "SMatrix::<", 1), nan(s));
+    let (v, square) = (s.vector_type(s.nv), s.shape_type(Shape::Square(s.nv)));
+    let unknown = format!("{}::repeat({})", square.replacen("SMatrix<", "SMatrix::<", 1), nan_expression(s));
     let _ = writeln!(
         out,
         "#[inline]\nfn tangent_rate_second_derivatives(&self, _dv: &{v}, _v: &{v}, _lambda: &{v}) \

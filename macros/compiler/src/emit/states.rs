@@ -8,15 +8,18 @@ use crate::syntax::RATE_OF_STATE;
 use std::fmt::Write;
 
 /// Returns the name of the function for a state's rate.
-pub fn rate(state: &str) -> String {
+pub fn rate_function_name(state: &str) -> String {
     format!("{state}{RATE_OF_STATE}")
 }
 
 /// Writes the implementations of the traits of first-order states, if the mechanism has such states and
 /// dynamics.
 pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, s: &Signature<'_>) {
-    let rates: Option<Vec<&Function>> =
-        i.states.iter().map(|(name, _)| functions.iter().find(|f| f.name == rate(name))).collect();
+    let rates: Option<Vec<&Function>> = i
+        .states
+        .iter()
+        .map(|(name, _)| functions.iter().find(|f| f.name == rate_function_name(name)))
+        .collect();
     let Some(rates) = rates.filter(|rates| !rates.is_empty() && !i.facts.kinematic) else { return };
     let (head, name, n) = (Head::new(i, s), i.shell.ident.to_string(), rates.len());
     let begin_impl_block = |out: &mut String, of: &str| {
@@ -43,8 +46,8 @@ pub fn write_impls(out: &mut String, functions: &[Function], i: &Interface<'_>, 
 }
 
 /// Returns the expression that calls a rate, or its derivatives with this suffix.
-fn call(f: &Function, suffix: &str) -> String {
-    let names: Vec<&str> = f.arguments.iter().map(|a| a.name()).collect();
+fn output_call(f: &Function, suffix: &str) -> String {
+    let names: Vec<&str> = f.arguments.iter().map(|a| a.argument_name()).collect();
     format!("Self::{}{suffix}(self, {})", f.name, names.join(", "))
 }
 
@@ -54,9 +57,10 @@ const TAKEN: [Argument; 4] = [Argument::T, Argument::Q, Argument::V, Argument::U
 /// Writes names, units, values and rates of the states of first order.
 fn write_values(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Signature<'_>) {
     let n = rates.len();
-    let (vector, parameters) = (s.vector(n), s.parameters(&TAKEN));
+    let (vector, parameters) = (s.vector_type(n), s.parameter_list(&TAKEN));
     let names: Vec<String> = i.states.iter().map(|(name, _)| format!("{name:?}")).collect();
-    let own: Vec<String> = i.states.iter().map(|(_, k)| format!("self.{}", s.scalar.parameter(*k))).collect();
+    let own: Vec<String> =
+        i.states.iter().map(|(_, k)| format!("self.{}", s.scalar.parameter_field(*k))).collect();
     // All fields are named, because the struct need not be `Clone`.
     let field_name = |field: &syn::Field| field.ident.as_ref().map(ToString::to_string);
     let of_struct = i.shell.parameters.iter().chain(&i.shell.tables).filter_map(field_name);
@@ -69,7 +73,7 @@ fn write_values(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Si
         }
     });
     let fields: Vec<String> = fields.collect();
-    let values: Vec<String> = rates.iter().map(|f| call(f, "")).collect();
+    let values: Vec<String> = rates.iter().map(|f| output_call(f, "")).collect();
     let unit_of_parameter = |k: usize| i.units.parameters.get(k).map_or("", |unit| unit);
     let units: Vec<&str> = i.states.iter().map(|(_, k)| unit_of_parameter(*k)).collect();
     let _ = writeln!(
@@ -96,25 +100,25 @@ fn write_extended(out: &mut String, n: usize, s: &Signature<'_>) {
             ::linkwork::__private::acceleration_derivatives(&::linkwork::FirstOrder::extended(self), t, q, \
                 v, u)
         }}",
-        scalar = s.scalar.name(),
-        q = s.vector(s.nq),
-        v = s.vector(all),
-        u = s.vector(s.nu),
-        square = s.shape(Shape::Square(all)),
-        inputs = s.shape(Shape::Matrix(all, s.nu)),
+        scalar = s.scalar.scalar_name(),
+        q = s.vector_type(s.nq),
+        v = s.vector_type(all),
+        u = s.vector_type(s.nu),
+        square = s.shape_type(Shape::Square(all)),
+        inputs = s.shape_type(Shape::Matrix(all, s.nu)),
     );
 }
 
 /// Writes the derivatives of the rates of the states, and the derivatives of the dynamics by the states.
 fn write_derivatives(out: &mut String, rates: &[&Function], i: &Interface<'_>, s: &Signature<'_>) {
-    let (n, scalar) = (rates.len(), s.scalar.name());
+    let (n, scalar) = (rates.len(), s.scalar.scalar_name());
     let which: Vec<String> = i.states.iter().map(|(_, k)| k.to_string()).collect();
     let which = which.join(", ");
     let record = format!("::linkwork::RateDerivatives<{scalar}, {}, {}, {n}>", s.nv, s.nu);
     let _ = writeln!(
         out,
         "#[inline]\nfn state_rate_derivatives({}) -> {record} {{\nlet mut all = <{record}>::zeros();",
-        s.parameters(&TAKEN)
+        s.parameter_list(&TAKEN)
     );
     for (k, f) in rates.iter().enumerate() {
         let _ = writeln!(
@@ -125,12 +129,12 @@ fn write_derivatives(out: &mut String, rates: &[&Function], i: &Interface<'_>, s
             ::linkwork::__private::put_rows(&mut all.by_u, {k}, &seen.by_u);
             ::linkwork::__private::put_rows(&mut all.by_x, {k}, &::linkwork::__private::columns(&{}, \
                 [{which}]));",
-            call(f, DERIVATIVES),
-            call(f, BY_PARAMETERS),
+            output_call(f, DERIVATIVES),
+            output_call(f, BY_PARAMETERS),
         );
     }
     out.push_str("all\n}\n");
-    let by_states = s.shape(Shape::Matrix(s.nv, n));
+    let by_states = s.shape_type(Shape::Matrix(s.nv, n));
     let time = if s.time { "t, " } else { "" };
     for (function, last) in [
         ("inverse_dynamics", Argument::A),
@@ -143,8 +147,8 @@ fn write_derivatives(out: &mut String, rates: &[&Function], i: &Interface<'_>, s
                 ::linkwork::__private::columns(&Self::{function}{BY_PARAMETERS}(self, {time}q, v, {}), \
                     [{which}])
             }}",
-            s.parameters(&[Argument::T, Argument::Q, Argument::V, last]),
-            last.name(),
+            s.parameter_list(&[Argument::T, Argument::Q, Argument::V, last]),
+            last.argument_name(),
         );
     }
 }

@@ -34,7 +34,7 @@ pub fn with_stores(
     statements: Vec<Statement>,
     outputs: &Outputs<'_>,
 ) -> (Vec<Statement>, Vec<Piece>) {
-    let places = places(f, outputs);
+    let places = stored_entries(f, outputs);
     let all = match !program.gathers.is_empty() && statements.len() <= TRANSPOSED_STATEMENTS {
         true => at_the_end(statements, &places, outputs),
         false => as_known(program, statements, &places, outputs),
@@ -48,7 +48,7 @@ pub fn with_stores(
 /// Returns the entries in which each output is stored. Constant zeros of derivatives are not stored; those of
 /// an inverse are, because terms are added to it later. Trunk columns of a block arrow inverse are not
 /// stored, because they are computed later.
-fn places(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
+fn stored_entries(f: &Function, outputs: &Outputs<'_>) -> Vec<Vec<Entry>> {
     let given = matrix_arguments(f);
     let [matrix, ..] = *given.as_slice() else { return Vec::new() };
     let (before, has_forces, n) = match f.shape {
@@ -98,13 +98,13 @@ fn as_known(
     let all_known =
         |needs: &[usize]| needs.iter().filter_map(|need| binding_statement(*need)).max().unwrap_or(0);
     let mut pairs: Vec<Vec<[Lane; 2]>> = ready.iter().map(|_| Vec::new()).collect();
-    for [one, next] in neighbours(lanes(program, places, &binding_statement)) {
+    for [one, next] in adjacent_lane_pairs(lanes_by_entry(program, places, &binding_statement)) {
         for lane in [&one, &next] {
             left[lane.output].retain(|place| *place != lane.place);
         }
         pairs[one.known.max(next.known)].push([one, next]);
     }
-    let widths = program.lanes();
+    let widths = program.lane_counts();
     for (pairs, ready) in pairs.iter().zip(&mut ready) {
         ready.extend(store_pairs(pairs, &widths));
     }
@@ -115,7 +115,7 @@ fn as_known(
                 format!("{text}\n{place} = entry;")
             }),
         };
-        ready[all_known(&piece.needs)].push(store(text, piece.needs.clone()));
+        ready[all_known(&piece.needs)].push(store_statement(text, piece.needs.clone()));
     }
     let mut ready = ready.into_iter();
     let mut all: Vec<Statement> = ready.next().into_iter().flatten().collect();
@@ -141,7 +141,11 @@ struct Lane {
 }
 
 /// Returns all results that are lanes of named vectors, sorted by their entries.
-fn lanes(program: &Program, places: &[Vec<Entry>], known: &dyn Fn(usize) -> Option<usize>) -> Vec<Lane> {
+fn lanes_by_entry(
+    program: &Program,
+    places: &[Vec<Entry>],
+    known: &dyn Fn(usize) -> Option<usize>,
+) -> Vec<Lane> {
     let mut all = Vec::new();
     for (output, (operand, places)) in program.outputs.iter().zip(places).enumerate() {
         if let Operand::Value(v) = operand
@@ -157,7 +161,7 @@ fn lanes(program: &Program, places: &[Vec<Entry>], known: &dyn Fn(usize) -> Opti
 
 /// Returns pairs of lanes that one instruction can store: their entries are adjacent in a column, and their
 /// vectors are computed at most [`NEAR_STATEMENTS`] statements apart.
-fn neighbours(lanes: Vec<Lane>) -> Vec<[Lane; 2]> {
+fn adjacent_lane_pairs(lanes: Vec<Lane>) -> Vec<[Lane; 2]> {
     let mut pairs = Vec::new();
     let mut rest = lanes.into_iter().peekable();
     while let Some(one) = rest.next() {
@@ -206,7 +210,7 @@ fn store_pairs(pairs: &[[Lane; 2]], widths: &[usize]) -> Vec<Statement> {
             let column = format!("{matrix}.data.0[{column}]");
             (format!("Ops::store_two::<{lanes}, {row}, _, _, _, _>(&mut {column}, t{a}, t{b});"), 1)
         };
-        statements.push(store(text, vec![a, b]));
+        statements.push(store_statement(text, vec![a, b]));
         rest = &rest[taken..];
     }
     statements
@@ -227,10 +231,10 @@ fn at_the_end(
     all.sort_unstable();
     text.extend(all.iter().map(|(place, k)| format!("{place} = entry{k};")));
     let needs = stored().flat_map(|(_, (piece, _))| piece.needs.clone()).collect();
-    statements.push(store(text.join("\n"), needs));
+    statements.push(store_statement(text.join("\n"), needs));
     statements
 }
 
-fn store(text: String, needs: Vec<usize>) -> Statement {
+fn store_statement(text: String, needs: Vec<usize>) -> Statement {
     Statement { names: Vec::new(), pattern: String::new(), text, needs }
 }

@@ -20,7 +20,7 @@ impl ParameterCondition {
     pub fn from_model(model: &Model<'_>) -> Vec<ParameterCondition> {
         let parameter_name = |k: &usize| model.parameters.get(*k).cloned();
         let parameter_condition = |requirement: &Requirement<'_>| ParameterCondition {
-            rule: requirement.rule.name(),
+            rule: requirement.rule.rule_name(),
             name: requirement.figure.clone(),
             parameters: requirement.parameters.iter().filter_map(parameter_name).collect(),
         };

@@ -1,10 +1,10 @@
 //! Printed form of Hamilton's equations: the Hamiltonian, and the rates of coordinates and momenta.
 
-use super::{Limits, Simplifier, quaternions, rank};
+use super::{Limits, Simplifier, quaternion_symbols, rank_of_symbol};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::expr::replace::replace_all;
-use crate::expr::sample::always;
+use crate::expr::sample::always_equals;
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::{Joint, symbols_in};
 use crate::mechanics::crba::Matrix;
@@ -27,7 +27,7 @@ pub struct Canonical {
 }
 
 /// Returns the symbol of determinant `k`.
-pub fn determinant(k: usize) -> Quantity {
+pub fn determinant_symbol(k: usize) -> Quantity {
     Quantity::Prepared(k)
 }
 
@@ -37,13 +37,17 @@ const COUPLED: usize = 3;
 
 /// Derives the canonical equations of a mechanism without constraints. Returns `None` if they would be too
 /// long.
-pub fn canonical<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) -> Option<Canonical> {
+pub fn canonical_equations<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    mass: &Matrix<'g>,
+) -> Option<Canonical> {
     let g = model.graph;
     let zero = vec![g.zero(); model.nv()];
     let p: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Momentum(k).expr(g)).collect();
     let driven = with_velocities(&momentum::generalized_momentum(model, joints, &zero), &zero);
     let relative: Vec<Expr<'g>> = p.iter().zip(&driven).map(|(p, driven)| *p - *driven).collect();
-    let mut normal = Normal::new(g, rank);
+    let mut normal = Normal::new(g, rank_of_symbol);
     normal.ring.allow_more();
     let (velocity, determinants) = velocities_of(mass, &relative, &mut normal)?;
     let potential = energy::potential_energy(model, joints);
@@ -60,8 +64,8 @@ pub fn canonical<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>)
     let all: Vec<Expr<'g>> =
         [hamiltonian].into_iter().chain(velocity).chain(rate).chain(determinants).collect();
     let all: Vec<Polynomial> = all.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?;
-    let mut short = Simplifier::new(normal.ring, quaternions(model), &Limits::ASKED);
-    let mut all = all.iter().map(|p| short.shorten(p)).collect::<Option<Vec<_>>>()?;
+    let mut short = Simplifier::new(normal.ring, quaternion_symbols(model), &Limits::ASKED);
+    let mut all = all.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<Vec<_>>>()?;
     let determinants = all.split_off(1 + 2 * model.nv());
     let momentum_rate = all.split_off(1 + model.nv());
     let velocity = all.split_off(1);
@@ -91,7 +95,7 @@ pub(super) fn velocities_of<'g>(
             let row = &mass[group[k]];
             // Some entries are zero only by trigonometric identities.
             let more: Vec<usize> =
-                (0..p.len()).filter(|j| !always(row[*j], 0.0) && !group.contains(j)).collect();
+                (0..p.len()).filter(|j| !always_equals(row[*j], 0.0) && !group.contains(j)).collect();
             group.extend(more);
             k += 1;
         }
@@ -112,7 +116,7 @@ pub(super) fn velocities_of<'g>(
                 && normal.normal_form(divisor)?.terms.len() > 1)
         {
             determinants.push(divisor);
-            divisor = determinant(determinants.len() - 1).expr(divisor.graph());
+            divisor = determinant_symbol(determinants.len() - 1).expr(divisor.graph());
         }
         for (i, k) in group.iter().enumerate() {
             let sum = (0..n).map(|j| cofactors[i][j] * p[group[j]]).reduce(|a, b| a + b)?;

@@ -9,25 +9,27 @@
 //! (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, ch. 6; the Gibbs-Appell equations in
 //! quasi-velocities).
 
-use super::written::{filled, name, names_with, rate_name, rates};
-use super::{Limits, Simplifier, quaternions, rank};
+use super::written::{
+    marks_of_coordinate_rates, name_and_derivative_order, names_with, rate_name, wrap_sentences,
+};
+use super::{Limits, Simplifier, quaternion_symbols, rank_of_symbol};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::diag::{Diagnostics, all_of};
-use crate::equations::print::aligned::aligned;
-use crate::equations::print::mathml::page;
-use crate::equations::print::names::primed;
-use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrapped};
+use crate::equations::print::aligned::format_aligned;
+use crate::equations::print::mathml::format_equations_as_html;
+use crate::equations::print::names::name_with_primes;
+use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrap_text};
 use crate::expr::eval::Tape;
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::mobility::sample_configurations;
 use crate::kinematics::redundancy::Basis;
-use crate::kinematics::speeds::{inverse, shortened};
+use crate::kinematics::speeds::{inverse, shorten_expression};
 use crate::kinematics::{Joint, Rows, random_configuration, time_derivative, value_of};
 use crate::mechanics::crba::Matrix;
 use crate::mechanics::speeds::InSpeeds;
-use crate::mechanics::{accelerations, constraints, forces, rnea, velocities};
+use crate::mechanics::{acceleration_symbols, constraints, forces, rnea, velocity_symbols};
 use crate::mechanism::{Model, Quantity};
 
 /// Maximum number of columns of the text.
@@ -71,7 +73,7 @@ pub enum KaneFailure {
 /// Derives Kane's equations of a mechanism with constraints. The independent velocities are those of the
 /// joints that the user named. Otherwise the dependent velocities are those whose determinant in the
 /// constraints is constant, or varies the least.
-pub fn kane<'g>(
+pub fn kane_equations<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     speeds: Option<&InSpeeds<'g>>,
@@ -82,22 +84,27 @@ pub fn kane<'g>(
         Some(pivots) if speeds.is_none() && pivots.len() == rows.len() => {
             pivots.iter().map(|pivot| pivot.velocity.0).collect()
         }
-        _ => chosen(model, own, &rows).ok_or(KaneFailure::Choice)?,
+        _ => choose_dependent_velocities(model, own, &rows).ok_or(KaneFailure::Choice)?,
     };
     let solved = Solved::new(own, &rows, dependent).ok_or(KaneFailure::Choice)?;
-    let v = velocities(model);
-    let mut needed = rnea::inverse_dynamics(model, joints, &v, Some(&accelerations(model)));
+    let v = velocity_symbols(model);
+    let mut needed = rnea::inverse_dynamics(model, joints, &v, Some(&acceleration_symbols(model)));
     let mut inputs = forces::generalized_forces(model, joints);
     let mut rates = Vec::new();
     if let Some(speeds) = speeds {
-        (needed, inputs) = (speeds.forces(&needed), speeds.forces(&inputs));
-        rates = speeds.replaced().into_iter().map(|k| (k, solved.written(&[speeds.rates[k]])[0])).collect();
+        (needed, inputs) = (speeds.transform_forces(&needed), speeds.transform_forces(&inputs));
+        rates = speeds
+            .replaced_velocities()
+            .into_iter()
+            .map(|k| (k, solved.express_in_independent(&[speeds.rates[k]])[0]))
+            .collect();
     }
-    let [motion, forces] = [needed, inputs].map(|all| solved.projected(&solved.written(&all)));
+    let [motion, forces] =
+        [needed, inputs].map(|all| solved.project_forces(&solved.express_in_independent(&all)));
     let residuals: Vec<Expr<'g>> = own.constraints.iter().filter_map(|c| c.residual).collect();
     let (replaced, rates): (Vec<usize>, Vec<Expr<'g>>) = rates.into_iter().unzip();
     let lists = [motion, forces, solved.values, rates, residuals];
-    let (ring, found) = polynomials(own, &lists).ok_or(KaneFailure::Length)?;
+    let (ring, found) = simplified_polynomials(own, &lists).ok_or(KaneFailure::Length)?;
     let [motion, forces, values, rates, residuals] = found;
     Ok(Kane {
         ring,
@@ -111,19 +118,19 @@ pub fn kane<'g>(
 }
 
 /// Converts lists of expressions to simplified polynomials of one ring. Returns `None` if they are too long.
-fn polynomials<'g, const N: usize>(
+fn simplified_polynomials<'g, const N: usize>(
     model: &Model<'g>,
     lists: &[Vec<Expr<'g>>; N],
 ) -> Option<(Ring, [Vec<Polynomial>; N])> {
     let all: Vec<Expr<'g>> = lists.concat();
-    if Tape::new(&all).steps() > Limits::ASKED.operations[1] {
+    if Tape::new(&all).node_count() > Limits::ASKED.operations[1] {
         return None;
     }
-    let mut normal = Normal::new(model.graph, rank);
+    let mut normal = Normal::new(model.graph, rank_of_symbol);
     normal.ring.allow_more();
     let all: Vec<Polynomial> = all.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?;
-    let mut short = Simplifier::new(normal.ring, quaternions(model), &Limits::ASKED);
-    let mut all = all.iter().map(|p| short.shorten(p)).collect::<Option<Vec<_>>>()?.into_iter();
+    let mut short = Simplifier::new(normal.ring, quaternion_symbols(model), &Limits::ASKED);
+    let mut all = all.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<Vec<_>>>()?.into_iter();
     let lists = std::array::from_fn(|k| all.by_ref().take(lists[k].len()).collect());
     Some((short.ring, lists))
 }
@@ -134,11 +141,15 @@ fn polynomials<'g, const N: usize>(
 /// angular velocity does not determine the other velocities. `None` if the constraints are linearly dependent
 /// there. `rows` is the constraint Jacobian in the velocities of `own`, which may be declared generalized
 /// speeds.
-fn chosen<'g>(model: &Model<'g>, own: &Model<'g>, rows: &Matrix<'g>) -> Option<Vec<usize>> {
+fn choose_dependent_velocities<'g>(
+    model: &Model<'g>,
+    own: &Model<'g>,
+    rows: &Matrix<'g>,
+) -> Option<Vec<usize>> {
     let (nc, nv) = (rows.len(), own.nv());
     let tape = Tape::new(&rows.concat());
     let sampled_rows = |q: &[f64], seed: u64| -> Vec<Vec<f64>> {
-        tape.values(&|s| value_of(s, q, seed)).chunks(nv.max(1)).map(<[f64]>::to_vec).collect()
+        tape.evaluate_at(&|s| value_of(s, q, seed)).chunks(nv.max(1)).map(<[f64]>::to_vec).collect()
     };
     let samples: Vec<Vec<Vec<f64>>> =
         (0..SAMPLES).map(|seed| sampled_rows(&random_configuration(model, seed), seed)).collect();
@@ -156,7 +167,7 @@ fn chosen<'g>(model: &Model<'g>, own: &Model<'g>, rows: &Matrix<'g>) -> Option<V
     let mut best: Option<((f64, usize), Vec<usize>)> = None;
     let mut columns: Vec<usize> = (0..nc).collect();
     for _ in 0..CHOICES {
-        let sizes = samples.iter().map(|rows| determinant(rows, &columns).abs());
+        let sizes = samples.iter().map(|rows| determinant_of_columns(rows, &columns).abs());
         let (least, most) = sizes.fold((f64::INFINITY, 0.0_f64), |(a, b), x| (a.min(x), b.max(x)));
         let even = if most > 0.0 { least / most } else { 0.0 };
         let even = if even > 1.0 - SAME { 1.0 } else { even };
@@ -176,7 +187,7 @@ fn chosen<'g>(model: &Model<'g>, own: &Model<'g>, rows: &Matrix<'g>) -> Option<V
 }
 
 /// Returns the determinant of a choice of columns, by elimination with pivoting.
-fn determinant(rows: &[Vec<f64>], columns: &[usize]) -> f64 {
+fn determinant_of_columns(rows: &[Vec<f64>], columns: &[usize]) -> f64 {
     let mut m: Vec<Vec<f64>> = rows.iter().map(|row| columns.iter().map(|k| row[*k]).collect()).collect();
     let (n, mut product) = (m.len(), 1.0);
     for k in 0..n {
@@ -219,7 +230,7 @@ impl<'g> Solved<'g> {
                 let terms = row.iter().enumerate().filter(|(_, e)| !e.is_zero());
                 terms.fold(g.zero(), |sum, (i, e)| sum - *e * column(i))
             };
-            inverse.iter().map(|row| shortened(model, dot_row_with_column(row))).collect()
+            inverse.iter().map(|row| shorten_expression(model, dot_row_with_column(row))).collect()
         };
         let at_zero_velocity = |e: Expr<'g>| {
             replace_all(&[e], &|s| {
@@ -239,18 +250,18 @@ impl<'g> Solved<'g> {
         }
         let mut found = Solved { independent, dependent, values, changes: Vec::new(), partial };
         let rate_of_dependent_speed = |(value, row): (&Expr<'g>, &Vec<Expr<'g>>)| {
-            let start = time_derivative(model.space(), *value);
+            let start = time_derivative(model.configuration_space(), *value);
             let terms = found.independent.iter().zip(row);
             terms.fold(start, |sum, (k, e)| sum + *e * Quantity::Acceleration(*k).expr(g))
         };
         let changes: Vec<Expr<'g>> =
             found.values.iter().zip(&found.partial).map(rate_of_dependent_speed).collect();
-        found.changes = found.written(&changes);
+        found.changes = found.express_in_independent(&changes);
         Some(found)
     }
 
     /// Expresses all velocities and accelerations in the independent ones.
-    fn written(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    fn express_in_independent(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let index_of_dependent_speed = |k: usize| self.dependent.iter().position(|d| *d == k);
         replace_all(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) => Some(self.values[index_of_dependent_speed(k)?]),
@@ -260,7 +271,7 @@ impl<'g> Solved<'g> {
     }
 
     /// Projects forces onto the independent velocities: `Zᵀ f`.
-    fn projected(&self, forces: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    fn project_forces(&self, forces: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let projected_force = |(n, k): (usize, &usize)| {
             let carried = self.dependent.iter().zip(&self.partial);
             carried.fold(forces[*k], |sum, (d, row)| sum + row[n] * forces[*d])
@@ -271,21 +282,21 @@ impl<'g> Solved<'g> {
 
 /// Formats Kane's equations as plain text, LaTeX and MathML.
 pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
-    let rates = rates(model);
+    let rates = marks_of_coordinate_rates(model);
     let names = names_with(model, &[]);
-    let name_of_symbol = |symbol: Symbol| name(model, &rates, symbol);
-    let primed_name = |symbol| primed(name_of_symbol(symbol));
+    let name_of_symbol = |symbol: Symbol| name_and_derivative_order(model, &rates, symbol);
+    let primed_name = |symbol| name_with_primes(name_of_symbol(symbol));
     let name_with_dots = |symbol| {
         let (name, dots) = name_of_symbol(symbol);
         (names.get(&name), dots)
     };
-    let rate_text = |k: usize| primed(rate_name(model, k));
+    let rate_text = |k: usize| name_with_primes(rate_name(model, k));
     let lines = Lines::new(kane, Plain { name: &primed_name }, &rate_text);
-    let wrapped_line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
+    let wrapped_line = |text: &String| wrap_text(text, WIDTH, "    ") + "\n";
     let mut plain: String = lines.velocities.iter().map(wrapped_line).collect();
     plain += "\n";
     plain.extend(lines.motion.iter().map(wrapped_line));
-    plain = plain + "\n" + &filled(&legend(model, kane, &primed_name)) + "\n";
+    plain = plain + "\n" + &wrap_sentences(&legend_sentences(model, kane, &primed_name)) + "\n";
     let rate_symbol = |k: usize| {
         let (name, dots) = rate_name(model, k);
         (names.get(&name), dots)
@@ -298,8 +309,8 @@ pub fn written_kane(model: &Model<'_>, kane: &Kane) -> Written {
     let mathml = Lines::new(kane, MathMl { name: &name_with_dots }, &mathml_rate_symbol);
     Written {
         plain,
-        latex: aligned(&[latex.velocities, latex.motion].concat()),
-        mathml: page(&[mathml.velocities, mathml.motion].concat()),
+        latex: format_aligned(&[latex.velocities, latex.motion].concat()),
+        mathml: format_equations_as_html(&[mathml.velocities, mathml.motion].concat()),
     }
 }
 
@@ -313,20 +324,22 @@ struct Lines {
 
 impl Lines {
     fn new<S: Style + Copy>(kane: &Kane, style: S, left: &dyn Fn(usize) -> String) -> Lines {
-        let writer = Writer::styled(&kane.ring, style);
-        let of_speeds = kane.rates.iter().map(|(k, p)| format!("{} = {}", left(*k), writer.polynomial(p)));
+        let writer = Writer::with_style(&kane.ring, style);
+        let of_speeds =
+            kane.rates.iter().map(|(k, p)| format!("{} = {}", left(*k), writer.format_polynomial(p)));
         let dependent = kane.dependent.iter().map(|(k, p)| {
-            format!("{} = {}", style.symbol(Quantity::Velocity(*k).symbol(), 1), writer.polynomial(p))
+            format!("{} = {}", style.symbol(Quantity::Velocity(*k).symbol(), 1), writer.format_polynomial(p))
         });
         let sides = kane.motion.iter().zip(&kane.forces);
-        let motion = sides.map(|(a, b)| format!("{} = {}", writer.polynomial(a), writer.polynomial(b)));
-        let held = kane.residuals.iter().map(|p| format!("{} = 0", writer.polynomial(p)));
+        let motion =
+            sides.map(|(a, b)| format!("{} = {}", writer.format_polynomial(a), writer.format_polynomial(b)));
+        let held = kane.residuals.iter().map(|p| format!("{} = 0", writer.format_polynomial(p)));
         Lines { velocities: of_speeds.chain(dependent).collect(), motion: motion.chain(held).collect() }
     }
 }
 
 /// Returns sentences that explain the equations.
-fn legend(model: &Model<'_>, kane: &Kane, marked: &dyn Fn(Symbol) -> String) -> String {
+fn legend_sentences(model: &Model<'_>, kane: &Kane, marked: &dyn Fn(Symbol) -> String) -> String {
     let independent: Vec<String> =
         kane.independent.iter().map(|k| marked(Quantity::Velocity(*k).symbol())).collect();
     let names: Vec<&str> = model.constraints.iter().map(|c| c.name.split('.').next().unwrap_or("")).collect();

@@ -16,7 +16,7 @@ use crate::expr::diff::Derivative;
 use crate::kinematics::Joint;
 use crate::mechanics::crba::Matrix;
 use crate::mechanics::derivatives::symbolic;
-use crate::mechanics::{added_mass, constraints, rnea, velocities};
+use crate::mechanics::{added_mass, constraints, rnea, velocity_symbols};
 use crate::mechanism::{Equilibrium, Model, Quantity};
 
 mod characteristic;
@@ -25,10 +25,10 @@ mod rest;
 mod stability;
 mod written;
 
-use parts::{Coefficients, multiplier, rank, rows};
+use parts::{Coefficients, linear_equation_rows, multiplier_symbol, rank_of_symbol};
 
 pub use characteristic::Characteristic;
-pub use parts::deviation;
+pub use parts::deviation_symbol;
 pub use stability::{Stability, Verdict};
 pub use written::written_linear;
 
@@ -49,53 +49,53 @@ pub struct Linear {
 
 /// Derives the linear equations about an equilibrium. `None` with an error in `cx` if the state is not an
 /// equilibrium or the equations cannot be printed.
-pub fn linear<'g>(
+pub fn derive_linear_equations<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &Matrix<'g>,
     at: &Equilibrium<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Linear> {
-    let balance = balance(model, joints);
-    let mut normal = Normal::new(model.graph, rank);
+    let balance = force_balance(model, joints);
+    let mut normal = Normal::new(model.graph, rank_of_symbol);
     normal.ring.allow_more();
-    let rest = rest::check(model, at, &balance, &mut normal, cx)?;
-    let all = coefficients(model, mass, at, &balance, &rest);
-    if let Some(what) = rest::unbounded(&all) {
-        cx.error(at.place.clone(), format!("the forces of `{}` have no derivatives at rest", at.name))
-            .help(what);
+    let rest = rest::check_equilibrium(model, at, &balance, &mut normal, cx)?;
+    let all = linear_coefficients(model, mass, at, &balance, &rest);
+    if let Some(what) = rest::reason_for_unbounded(&all) {
+        cx.report_error(at.place.clone(), format!("the forces of `{}` have no derivatives at rest", at.name))
+            .add_help(what);
         return None;
     }
     let found = written_out(model, at, &all, &rest, normal);
     if found.is_none() {
-        cx.error(
+        cx.report_error(
             at.place.clone(),
             format!("the linear equations of `{}` are too long to be written", at.name),
         )
-        .help(
+        .add_help(
             "the generated function `linearize` has them in numbers; ask for the printed ones of a smaller \
              mechanism",
         );
     }
     let found = found?;
-    if found.changes() {
-        cx.error(
+    if found.varies_in_time() {
+        cx.report_error(
             at.place.clone(),
             format!("`{}` does not stay at rest: its prescribed motion depends on time", at.name),
         )
-        .help("linear equations with constant coefficients need forces that stay the same");
+        .add_help("linear equations with constant coefficients need forces that stay the same");
         return None;
     }
     Some(found.with_stability(model, &all))
 }
 
 /// Returns the force balance `h − τ − Jᵀ λ` for each velocity, with symbols for the multipliers.
-fn balance<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
-    let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
+fn force_balance<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
+    let bias = rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None);
     bias.into_iter().zip(right_sides(model, joints)).map(|(bias, right)| bias - right).collect()
 }
 
-fn coefficients<'g>(
+fn linear_coefficients<'g>(
     model: &Model<'g>,
     mass: &Matrix<'g>,
     at: &Equilibrium<'g>,
@@ -103,8 +103,8 @@ fn coefficients<'g>(
     rest: &rest::Rest<'g>,
 ) -> Coefficients<'g> {
     let (g, nv) = (model.graph, model.nv());
-    let rows = rows(model, balance, at);
-    let derivatives = symbolic::derivatives(model, &rows);
+    let rows = linear_equation_rows(model, balance, at);
+    let derivatives = symbolic::force_derivatives(model, &rows);
     let (mut by_deviation, mut by_rate) = (derivatives.by_q, derivatives.by_v);
     for (s, state) in at.states.iter().enumerate() {
         let mut by = Derivative::with_respect_to(Quantity::Parameter(state.parameter).symbol(), g);
@@ -115,7 +115,7 @@ fn coefficients<'g>(
         }
     }
     let mut by_acceleration = vec![vec![g.zero(); nv + at.states.len()]; rows.len()];
-    for (row, own) in by_acceleration.iter_mut().zip(added_mass::effective(model, mass)) {
+    for (row, own) in by_acceleration.iter_mut().zip(added_mass::effective_mass_matrix(model, mass)) {
         row[..nv].copy_from_slice(&own);
     }
     let jacobian = constraints::jacobian(model);
@@ -124,7 +124,8 @@ fn coefficients<'g>(
         .map(|k| if k < nv { jacobian.iter().map(|row| row[k]).collect() } else { zeros.clone() })
         .collect();
     let inputs = symbolic::by_input(model, &rows);
-    let evaluate_at_rest = |m: Matrix<'g>| -> Matrix<'g> { m.iter().map(|row| rest.evaluate(row)).collect() };
+    let evaluate_at_rest =
+        |m: Matrix<'g>| -> Matrix<'g> { m.iter().map(|row| rest.evaluate_at_rest(row)).collect() };
     Coefficients {
         orders: [
             evaluate_at_rest(by_deviation),
@@ -144,7 +145,7 @@ fn written_out<'g>(
     rest: &rest::Rest<'g>,
     mut normal: Normal<'g>,
 ) -> Option<Linear> {
-    let symbols: [fn(usize) -> Quantity; 3] = [deviation, Quantity::Velocity, Quantity::Acceleration];
+    let symbols: [fn(usize) -> Quantity; 3] = [deviation_symbol, Quantity::Velocity, Quantity::Acceleration];
     let (mut motion, mut forces) = (Vec::new(), Vec::new());
     for k in 0..all.inputs.len() {
         let mut left = Polynomial::default();
@@ -154,17 +155,18 @@ fn written_out<'g>(
         }
         let mut right = Polynomial::default();
         add_products(&mut right, &all.inputs[k], Quantity::Input, -1.0, &mut normal)?;
-        add_products(&mut right, &all.multipliers[k], multiplier, 1.0, &mut normal)?;
+        add_products(&mut right, &all.multipliers[k], multiplier_symbol, 1.0, &mut normal)?;
         motion.push(left);
         forces.push(right);
     }
-    let values = rest.values(model, at);
+    let values = rest.nonzero_rest_values(model, at);
     let values: Vec<(Quantity, Polynomial)> =
         values.into_iter().map(|(what, e)| Some((what, normal.normal_form(e)?))).collect::<Option<_>>()?;
     let mut short = Simplifier::new(normal.ring, Vec::new(), &Limits::ASKED);
-    let motion = motion.iter().map(|p| short.shorten(p)).collect::<Option<_>>()?;
-    let forces = forces.iter().map(|p| short.shorten(p)).collect::<Option<_>>()?;
-    let values: Option<Vec<_>> = values.iter().map(|(what, p)| Some((*what, short.shorten(p)?))).collect();
+    let motion = motion.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<_>>()?;
+    let forces = forces.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<_>>()?;
+    let values: Option<Vec<_>> =
+        values.iter().map(|(what, p)| Some((*what, short.shorten_polynomial(p)?))).collect();
     let values = values?.into_iter().filter(|(_, p)| !p.terms.is_empty()).collect();
     Some(Linear { ring: short.ring, motion, forces, values, stability: None })
 }
@@ -179,33 +181,34 @@ fn add_products<'g>(
 ) -> Option<()> {
     for (k, coefficient) in coefficients.iter().enumerate().filter(|(_, c)| !c.is_zero()) {
         let coefficient = normal.normal_form(*coefficient)?;
-        let atom = normal.ring.atom(Atom::Symbol(symbol(k).symbol()))?;
-        let product = normal.ring.times(&coefficient, &Polynomial::single(atom, sign))?;
-        *sum = normal.ring.plus(sum, &product)?;
+        let atom = normal.ring.monomial_of_atom(Atom::Symbol(symbol(k).symbol()))?;
+        let product = normal.ring.multiply_and_reduce(&coefficient, &Polynomial::single_term(atom, sign))?;
+        *sum = normal.ring.add_within_limits(sum, &product)?;
     }
     Some(())
 }
 
 impl Linear {
     /// Returns whether a coefficient varies in time.
-    fn changes(&self) -> bool {
-        let time = self.ring.mask(|atom, _| *atom == Atom::Symbol(Quantity::Time.symbol()));
+    fn varies_in_time(&self) -> bool {
+        let time = self.ring.mask_of_atoms(|atom, _| *atom == Atom::Symbol(Quantity::Time.symbol()));
         let time = self.with_time(time);
         let values = self.values.iter().map(|(_, p)| p);
         let mut all = self.motion.iter().chain(&self.forces).chain(values);
-        all.any(|p| p.terms.iter().any(|t| t.monomial.meets(time)))
+        all.any(|p| p.terms.iter().any(|t| t.monomial.intersects_mask(time)))
     }
 
     /// Returns the mask of the atoms that depend on time, given the mask of time itself.
     fn with_time(&self, time: Monomial) -> Monomial {
         let mut found = time;
         for (k, atom) in self.ring.atoms.iter().enumerate() {
-            let contains_found_atoms = |p: &Polynomial| p.terms.iter().any(|t| t.monomial.meets(found));
+            let contains_found_atoms =
+                |p: &Polynomial| p.terms.iter().any(|t| t.monomial.intersects_mask(found));
             let contains = match atom {
                 Atom::Symbol(_) => false,
                 Atom::Wave(wave) => {
                     let angles = self.ring.angles.iter().zip(wave.angle).filter(|(_, n)| *n != 0);
-                    angles.into_iter().any(|(angle, _)| angle.monomial.meets(found))
+                    angles.into_iter().any(|(angle, _)| angle.monomial.intersects_mask(found))
                 }
                 Atom::Inverse(p) | Atom::Call(_, p) => contains_found_atoms(p),
                 Atom::Atan2(p, q) | Atom::Power(p, q) | Atom::Extreme(_, p, q) => {
@@ -214,7 +217,7 @@ impl Linear {
                 Atom::Table(.., arguments) => arguments.iter().any(contains_found_atoms),
             };
             if contains {
-                found = found.or(Monomial::all_of(k));
+                found = found.union_of_bits(Monomial::all_of(k));
             }
         }
         found
@@ -222,7 +225,7 @@ impl Linear {
 
     fn with_stability<'g>(mut self, model: &Model<'g>, all: &Coefficients<'g>) -> Linear {
         if let Some(characteristic) = characteristic::characteristic_polynomial(model, all) {
-            self.stability = stability::analyse(characteristic);
+            self.stability = stability::analyse_stability(characteristic);
         }
         self
     }

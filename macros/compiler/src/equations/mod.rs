@@ -5,15 +5,17 @@
 use crate::algebra::factor::without_noise;
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Atom, Polynomial, Rank, Ring};
-use crate::algebra::trigonometry::simplified;
+use crate::algebra::trigonometry::simplify_trigonometry;
 use crate::algebra::unit::on_unit_sphere;
 use crate::expr::eval::Tape;
 use crate::expr::{Expr, Function, Node, Symbol, Vec3};
 use crate::kinematics::Joint;
-use crate::kinematics::speeds::quaternions;
+use crate::kinematics::speeds::quaternion_symbols;
 use crate::mechanics::crba::Matrix;
 use crate::mechanics::speeds::InSpeeds;
-use crate::mechanics::{accelerations, added_mass, constraints, energy, forces, rnea, velocities};
+use crate::mechanics::{
+    acceleration_symbols, added_mass, constraints, energy, forces, rnea, velocity_symbols,
+};
 use crate::mechanism::{Model, Quantity};
 
 mod canonical;
@@ -25,9 +27,9 @@ pub mod reduced;
 mod tests;
 mod written;
 
-pub use canonical::{Canonical, canonical, determinant};
+pub use canonical::{Canonical, canonical_equations, determinant_symbol};
 pub use print::Written;
-pub use written::{written, written_canonical};
+pub use written::{format_equations, written_canonical};
 
 /// Limits on the length of equations.
 pub struct Limits {
@@ -85,58 +87,69 @@ pub fn derive<'g>(
     limits: &Limits,
 ) -> Option<Equations> {
     let mass_matrix_in_speeds =
-        |mass: &Matrix<'g>| speeds.map_or_else(|| mass.clone(), |speeds| speeds.metric(mass));
+        |mass: &Matrix<'g>| speeds.map_or_else(|| mass.clone(), |speeds| speeds.transform_mass_matrix(mass));
     let entries: Vec<Expr<'g>> = mass_matrix_in_speeds(mass).concat();
-    if entries.is_empty() || Tape::new(&entries).steps() > limits.operations[0] {
+    if entries.is_empty() || Tape::new(&entries).node_count() > limits.operations[0] {
         return None;
     }
-    let bias = bias(model, joints, speeds);
+    let bias = bias_of_equations(model, joints, speeds);
     let mut right = right_sides(model, joints);
     let mut constraints = &model.constraints;
     if let Some(speeds) = speeds {
-        right = speeds.forces(&right);
+        right = speeds.transform_forces(&right);
         constraints = &speeds.model.constraints;
     }
     let kept: Vec<Expr<'g>> = constraints.iter().map(|c| c.residual.unwrap_or(c.rate)).collect();
     let all: Vec<Expr<'g>> = entries.iter().chain(&bias).chain(&right).chain(&kept).copied().collect();
-    if Tape::new(&all).steps() > limits.operations[1] {
+    if Tape::new(&all).node_count() > limits.operations[1] {
         return None;
     }
-    let mut normal = Normal::new(model.graph, rank);
+    let mut normal = Normal::new(model.graph, rank_of_symbol);
     if limits.long > Limits::READABLE.long {
         normal.ring.allow_more();
     }
     // Angles in the order of `q`, so that sums of angles are printed in this order.
-    for angle in angles(model) {
+    for angle in trigonometric_coordinates(model) {
         normal.normal_form(angle.sin())?;
     }
-    let entries = normals(&mut normal, &entries)?;
-    let mut motion = normals(&mut normal, &bias)?;
-    let (v, a) = (normals(&mut normal, &velocities(model))?, normals(&mut normal, &accelerations(model))?);
-    let effective: Vec<Expr<'g>> = mass_matrix_in_speeds(&added_mass::effective(model, mass)).concat();
+    let entries = normal_forms(&mut normal, &entries)?;
+    let mut motion = normal_forms(&mut normal, &bias)?;
+    let (v, a) = (
+        normal_forms(&mut normal, &velocity_symbols(model))?,
+        normal_forms(&mut normal, &acceleration_symbols(model))?,
+    );
+    let effective: Vec<Expr<'g>> =
+        mass_matrix_in_speeds(&added_mass::effective_mass_matrix(model, mass)).concat();
     let effective = if model.acceleration_forces.is_empty() {
         entries.clone()
     } else {
-        normals(&mut normal, &effective)?
+        normal_forms(&mut normal, &effective)?
     };
     for (k, entry) in effective.iter().enumerate() {
         let (i, j) = (k / model.nv(), k % model.nv());
-        let force = normal.ring.times(entry, &a[j])?;
-        motion[i] = normal.ring.plus(&motion[i], &force)?;
+        let force = normal.ring.multiply_and_reduce(entry, &a[j])?;
+        motion[i] = normal.ring.add_within_limits(&motion[i], &force)?;
     }
-    let kinetic = kinetic((model, speeds), joints, &entries, &v, &mut normal)?;
+    let kinetic = kinetic_energy_polynomial((model, speeds), joints, &entries, &v, &mut normal)?;
     let potential = normal.normal_form(energy::potential_energy(model, joints))?;
-    let lagrangian = normal.ring.plus(&kinetic, &potential.scaled(-1.0))?;
-    let mut forces = normals(&mut normal, &right)?;
-    motion.extend(normals(&mut normal, &kept)?);
+    let lagrangian = normal.ring.add_within_limits(&kinetic, &potential.multiplied_by_number(-1.0))?;
+    let mut forces = normal_forms(&mut normal, &right)?;
+    motion.extend(normal_forms(&mut normal, &kept)?);
     forces.resize(motion.len(), Polynomial::default());
-    let replaced: Vec<usize> = speeds.map_or_else(Vec::new, InSpeeds::replaced);
+    let replaced: Vec<usize> = speeds.map_or_else(Vec::new, InSpeeds::replaced_velocities);
     let mut rates = Vec::new();
     for (k, speeds) in replaced.into_iter().filter_map(|k| Some((k, speeds?))) {
         rates.push((k, normal.normal_form(speeds.rates[k])?));
     }
-    let found = Equations { ring: Ring::new(rank), lagrangian, motion, forces, rates, without_forces: false };
-    shortened(Simplifier::new(normal.ring, quaternions(model), limits), found)
+    let found = Equations {
+        ring: Ring::new(rank_of_symbol),
+        lagrangian,
+        motion,
+        forces,
+        rates,
+        without_forces: false,
+    };
+    simplify_equations(Simplifier::new(normal.ring, quaternion_symbols(model), limits), found)
 }
 
 /// Derives the equations of a mechanism without constraints whose forces are too long to be readable: only
@@ -167,30 +180,34 @@ pub fn derive_inertia<'g>(
     };
     let mut found = derive(&bare, joints, mass, None, limits)?;
     for (k, force) in found.forces.iter_mut().enumerate() {
-        let symbol = found.ring.atom(Atom::Symbol(Quantity::Force(k).symbol()))?;
-        *force = Polynomial::single(symbol, 1.0);
+        let symbol = found.ring.monomial_of_atom(Atom::Symbol(Quantity::Force(k).symbol()))?;
+        *force = Polynomial::single_term(symbol, 1.0);
     }
     found.without_forces = true;
     Some(found)
 }
 
 /// Returns the bias forces `h`, or the terms without accelerations of the equations in generalized speeds.
-fn bias<'g>(model: &Model<'g>, joints: &[Joint<'g>], speeds: Option<&InSpeeds<'g>>) -> Vec<Expr<'g>> {
-    let v = velocities(model);
+fn bias_of_equations<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    speeds: Option<&InSpeeds<'g>>,
+) -> Vec<Expr<'g>> {
+    let v = velocity_symbols(model);
     let Some(speeds) = speeds else { return rnea::inverse_dynamics(model, joints, &v, None) };
-    let all = rnea::inverse_dynamics(model, joints, &v, Some(&accelerations(model)));
-    speeds.without_accelerations(&speeds.forces(&all))
+    let all = rnea::inverse_dynamics(model, joints, &v, Some(&acceleration_symbols(model)));
+    speeds.without_accelerations(&speeds.transform_forces(&all))
 }
 
 /// Returns the generalized forces of inputs and multipliers.
 fn right_sides<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
-    let held = constraints::forces(model, &constraints::multipliers(model));
+    let held = constraints::constraint_forces(model, &constraints::multiplier_symbols(model));
     let forces = forces::generalized_forces(model, joints);
     forces.into_iter().zip(held).map(|(force, held)| force + held).collect()
 }
 
 /// Returns the coordinates whose sine or cosine occurs in the graph.
-fn angles<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+fn trigonometric_coordinates<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let nodes = model.graph.nodes();
     let mut angle = vec![false; model.nq()];
     for node in nodes.iter() {
@@ -208,7 +225,7 @@ fn angles<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 }
 
 /// Returns the kinetic energy: `½ vᵀ M v` from the given mass matrix, unless the mechanism is driven in time.
-fn kinetic<'g>(
+fn kinetic_energy_polynomial<'g>(
     (model, speeds): (&Model<'g>, Option<&InSpeeds<'g>>),
     joints: &[Joint<'g>],
     mass: &[Polynomial],
@@ -216,19 +233,19 @@ fn kinetic<'g>(
     normal: &mut Normal<'g>,
 ) -> Option<Polynomial> {
     if joints.iter().any(|joint| joint.drift.is_some()) {
-        let energy = energy::kinetic_energy(model, joints, &velocities(model));
-        return normal.normal_form(speeds.map_or(energy, |speeds| speeds.written(&[energy])[0]));
+        let energy = energy::kinetic_energy(model, joints, &velocity_symbols(model));
+        return normal.normal_form(speeds.map_or(energy, |speeds| speeds.express_in_speeds(&[energy])[0]));
     }
     let mut twice = Polynomial::default();
     for (k, entry) in mass.iter().enumerate() {
-        let momentum = normal.ring.times(entry, &v[k % v.len()])?;
-        let energy = normal.ring.times(&momentum, &v[k / v.len()])?;
-        twice = normal.ring.plus(&twice, &energy)?;
+        let momentum = normal.ring.multiply_and_reduce(entry, &v[k % v.len()])?;
+        let energy = normal.ring.multiply_and_reduce(&momentum, &v[k / v.len()])?;
+        twice = normal.ring.add_within_limits(&twice, &energy)?;
     }
-    Some(twice.scaled(0.5))
+    Some(twice.multiplied_by_number(0.5))
 }
 
-fn normals<'g>(normal: &mut Normal<'g>, list: &[Expr<'g>]) -> Option<Vec<Polynomial>> {
+fn normal_forms<'g>(normal: &mut Normal<'g>, list: &[Expr<'g>]) -> Option<Vec<Polynomial>> {
     list.iter().map(|e| normal.normal_form(*e)).collect()
 }
 
@@ -249,9 +266,9 @@ impl Simplifier {
         Simplifier { ring, quaternions, long: limits.long, left: limits.terms, written_left }
     }
 
-    fn shorten(&mut self, p: &Polynomial) -> Option<Polynomial> {
+    fn shorten_polynomial(&mut self, p: &Polynomial) -> Option<Polynomial> {
         let p = without_noise(&self.ring, p);
-        let mut p = simplified(&mut self.ring, &p)?;
+        let mut p = simplify_trigonometry(&mut self.ring, &p)?;
         for quaternion in &self.quaternions {
             p = on_unit_sphere(&mut self.ring, &p, quaternion)?;
         }
@@ -262,20 +279,20 @@ impl Simplifier {
 }
 
 /// Simplifies all equations of motion. Returns `None` if they are too long.
-fn shortened(mut short: Simplifier, found: Equations) -> Option<Equations> {
+fn simplify_equations(mut short: Simplifier, found: Equations) -> Option<Equations> {
     let Equations { lagrangian, motion, forces, rates, without_forces, .. } = found;
     let all_polynomials = || motion.iter().chain(&forces).chain([&lagrangian]);
     if all_polynomials().map(|p| p.terms.len()).sum::<usize>() > short.long {
         return None;
     }
-    let lagrangian = short.shorten(&lagrangian)?;
-    let motion = motion.iter().map(|p| short.shorten(p)).collect::<Option<_>>()?;
-    let forces = forces.iter().map(|p| short.shorten(p)).collect::<Option<_>>()?;
-    let rates = rates.iter().map(|(k, p)| Some((*k, short.shorten(p)?))).collect::<Option<_>>()?;
+    let lagrangian = short.shorten_polynomial(&lagrangian)?;
+    let motion = motion.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<_>>()?;
+    let forces = forces.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<_>>()?;
+    let rates = rates.iter().map(|(k, p)| Some((*k, short.shorten_polynomial(p)?))).collect::<Option<_>>()?;
     Some(Equations { ring: short.ring, lagrangian, motion, forces, rates, without_forces })
 }
 
-fn rank(symbol: Symbol) -> Rank {
+fn rank_of_symbol(symbol: Symbol) -> Rank {
     match Quantity::from_symbol(symbol) {
         Quantity::Configuration(_) | Quantity::Time => Rank::Position,
         Quantity::Velocity(_) => Rank::Rate,

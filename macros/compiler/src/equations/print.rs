@@ -1,7 +1,7 @@
 //! Formatting of expressions and polynomials, as plain text or typeset.
 
 use crate::algebra::common::FactorScope;
-use crate::algebra::factor::items;
+use crate::algebra::factor::items_of_polynomial;
 use crate::algebra::item::{Item, Order};
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring, Wave};
 use crate::expr::Expr;
@@ -24,29 +24,29 @@ use style::{Argument, Factor, Number};
 
 impl fmt::Debug for Expr<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&plain(*self, &|s| format!("s{}", s.0)))
+        f.write_str(&format_expression(*self, &|s| format!("s{}", s.0)))
     }
 }
 
 /// Formats a small expression in one line, with names for its symbols. Shared subexpressions are expanded, up
 /// to a maximum depth.
-pub fn plain(e: Expr<'_>, name: &dyn Fn(Symbol) -> String) -> String {
-    term(e, name, 0, 24)
+pub fn format_expression(e: Expr<'_>, name: &dyn Fn(Symbol) -> String) -> String {
+    format_node(e, name, 0, 24)
 }
 
 /// Formats a node, in parentheses if its operator has a precedence below `level` (1 for sums, 2 for products,
 /// 3 for powers).
-fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> String {
+fn format_node(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> String {
     if depth == 0 {
         return "…".to_string();
     }
-    let format_operand = |id, level| term(e.graph().expr(id), name, level, depth - 1);
+    let format_operand = |id, level| format_node(e.graph().expr(id), name, level, depth - 1);
     let (text, own) = match e.node() {
         Node::Const(c) => (format!("{c}"), if c < 0.0 { 1 } else { 4 }),
         Node::Symbol(s) => (name(s), 4),
-        Node::Tuple(k) => (format!("{:?}", e.graph().tuple(k)), 4),
+        Node::Tuple(k) => (format!("{:?}", e.graph().lanes_of_tuple(k)), 4),
         Node::Gather(k) => {
-            let names: Vec<String> = e.graph().gather(k).into_iter().map(name).collect();
+            let names: Vec<String> = e.graph().symbols_of_gather(k).into_iter().map(name).collect();
             (format!("[{}]", names.join(", ")), 4)
         }
         Node::Sum(_, a) => (format!("sum({})", format_operand(a, 0)), 4),
@@ -57,16 +57,16 @@ fn term(e: Expr<'_>, name: &dyn Fn(Symbol) -> String, level: u8, depth: u8) -> S
         Node::Sub(a, b) => (format!("{} - {}", format_operand(a, 1), format_operand(b, 2)), 1),
         Node::Mul(a, b) => (format!("{} * {}", format_operand(a, 2), format_operand(b, 2)), 2),
         Node::Div(a, b) => (format!("{} / {}", format_operand(a, 2), format_operand(b, 3)), 2),
-        Node::Call(f, a) => (format!("{}({})", f.name(), format_operand(a, 0)), 4),
+        Node::Call(f, a) => (format!("{}({})", f.function_name(), format_operand(a, 0)), 4),
         Node::Atan2(a, b) => (format!("atan2({}, {})", format_operand(a, 0), format_operand(b, 0)), 4),
         Node::Table(lookup, a, b, c) => {
             let arguments: Vec<String> =
-                [a, b, c].into_iter().take(lookup.variables()).map(|a| format_operand(a, 0)).collect();
+                [a, b, c].into_iter().take(lookup.variable_count()).map(|a| format_operand(a, 0)).collect();
             (format!("{}({})", e.graph().table_name(lookup), arguments.join(", ")), 4)
         }
         Node::Pow(a, b) => (format!("pow({}, {})", format_operand(a, 0), format_operand(b, 0)), 4),
         Node::Extreme(f, a, b) => {
-            (format!("{}({}, {})", f.name(), format_operand(a, 0), format_operand(b, 0)), 4)
+            (format!("{}({}, {})", f.function_name(), format_operand(a, 0), format_operand(b, 0)), 4)
         }
     };
     if own < level { format!("({text})") } else { text }
@@ -83,37 +83,37 @@ pub struct Writer<'a, S = Plain<'a>> {
 impl<'a> Writer<'a> {
     /// Creates a writer of plain text for the polynomials of a ring, with names for its symbols.
     pub fn new(ring: &'a Ring, name: &'a dyn Fn(Symbol) -> String) -> Writer<'a> {
-        Writer::styled(ring, Plain { name })
+        Writer::with_style(ring, Plain { name })
     }
 }
 
 impl<'a, S: Style> Writer<'a, S> {
     /// Creates a writer for the polynomials of a ring in the given style.
-    pub fn styled(ring: &'a Ring, style: S) -> Writer<'a, S> {
+    pub fn with_style(ring: &'a Ring, style: S) -> Writer<'a, S> {
         Writer { ring, order: Order::new(ring), style }
     }
 
     /// Formats a polynomial with grouped terms and extracted common factors.
-    pub fn polynomial(&self, p: &Polynomial) -> String {
-        self.sum(&items(self.ring, &self.order, p, FactorScope::All))
+    pub fn format_polynomial(&self, p: &Polynomial) -> String {
+        self.format_sum(&items_of_polynomial(self.ring, &self.order, p, FactorScope::All))
     }
 
     /// Formats an energy. Terms of different degree in rates are not factored together.
-    pub fn energy(&self, p: &Polynomial) -> String {
-        self.sum(&items(self.ring, &self.order, p, FactorScope::Kinds))
+    pub fn format_energy(&self, p: &Polynomial) -> String {
+        self.format_sum(&items_of_polynomial(self.ring, &self.order, p, FactorScope::Kinds))
     }
 
     /// Formats a linear form. Its coefficients are not factored together.
-    pub fn linear(&self, p: &Polynomial) -> String {
-        self.sum(&items(self.ring, &self.order, p, FactorScope::None))
+    pub fn format_linear_form(&self, p: &Polynomial) -> String {
+        self.format_sum(&items_of_polynomial(self.ring, &self.order, p, FactorScope::None))
     }
 
-    fn sum(&self, items: &[Item]) -> String {
-        self.joined(items.iter().map(|item| (item.coefficient < 0.0, self.item(item))))
+    fn format_sum(&self, items: &[Item]) -> String {
+        self.join_signed_terms(items.iter().map(|item| (item.coefficient < 0.0, self.format_item(item))))
     }
 
     /// Joins terms, given as sign (true if negative) and text, to a sum.
-    fn joined(&self, parts: impl Iterator<Item = (bool, String)>) -> String {
+    fn join_signed_terms(&self, parts: impl Iterator<Item = (bool, String)>) -> String {
         let mut out = String::new();
         for (negative, text) in parts {
             out.push_str(self.style.sign(out.is_empty(), negative));
@@ -122,84 +122,88 @@ impl<'a, S: Style> Writer<'a, S> {
         if out.is_empty() { self.style.number(&Number::ZERO) } else { out }
     }
 
-    fn item(&self, item: &Item) -> String {
-        let sums = item.sums.iter().map(|sum| self.bracketed(self.sum(&sum.items), sum.power));
+    fn format_item(&self, item: &Item) -> String {
+        let sums = item.sums.iter().map(|sum| self.sum_as_factor(self.format_sum(&sum.items), sum.power));
         let constant = item.sums.iter().all(|sum| self.order.is_constant(&sum.items));
-        self.product(item.coefficient, item.factor, sums.collect(), constant)
+        self.format_product(item.coefficient, item.factor, sums.collect(), constant)
     }
 
     /// Returns a sum, raised to a power, as a factor of a product.
-    fn bracketed(&self, sum: String, power: u8) -> Factor {
+    fn sum_as_factor(&self, sum: String, power: u8) -> Factor {
         if power == 1 { Factor::Sum(sum) } else { Factor::Single(self.style.power(&sum, power)) }
     }
 
     /// Formats a product without its sign. The order is: number, parameters, positions (before sums that are
     /// not constant), sums, all other factors, divisors.
-    fn product(&self, coefficient: f64, m: Monomial, sums: Vec<Factor>, constant: bool) -> String {
-        let positions = if constant { Monomial::ONE } else { m.only(self.order.positions) };
-        let front = self.order.parameters(m).or(positions);
+    fn format_product(&self, coefficient: f64, m: Monomial, sums: Vec<Factor>, constant: bool) -> String {
+        let positions = if constant { Monomial::ONE } else { m.restrict_to_mask(self.order.positions) };
+        let front = self.order.parameters_of_monomial(m).union_of_bits(positions);
         let (mut factors, mut divisors) = (Vec::new(), Vec::new());
-        self.factors(front, &mut factors, &mut divisors);
+        self.format_factors(front, &mut factors, &mut divisors);
         factors.extend(sums);
-        self.factors(m.cleared(front), &mut factors, &mut divisors);
-        let number = Number::classify(coefficient.abs());
+        self.format_factors(m.clear_mask(front), &mut factors, &mut divisors);
+        let number = Number::classify_number(coefficient.abs());
         let number = (number != Number::ONE || factors.is_empty()).then_some(number);
         self.style.product(number, &factors, &divisors)
     }
 
-    fn factors(&self, m: Monomial, factors: &mut Vec<Factor>, divisors: &mut Vec<Factor>) {
-        for (atom, power) in self.order.factors(m) {
+    fn format_factors(&self, m: Monomial, factors: &mut Vec<Factor>, divisors: &mut Vec<Factor>) {
+        for (atom, power) in self.order.factors_in_order(m) {
             match &self.ring.atoms[atom] {
-                Atom::Inverse(p) => divisors.push(self.divisor(p, power)),
-                atom => factors.push(Factor::Single(self.atom(atom, power))),
+                Atom::Inverse(p) => divisors.push(self.format_divisor(p, power)),
+                atom => factors.push(Factor::Single(self.format_atom(atom, power))),
             }
         }
     }
 
-    fn divisor(&self, p: &Polynomial, power: u8) -> Factor {
+    fn format_divisor(&self, p: &Polynomial, power: u8) -> Factor {
         if let [t] = p.terms.as_slice()
-            && let Some((atom, 1)) = t.monomial.factors().next()
+            && let Some((atom, 1)) = t.monomial.atoms_with_powers().next()
         {
-            return Factor::Single(self.atom(&self.ring.atoms[atom], power));
+            return Factor::Single(self.format_atom(&self.ring.atoms[atom], power));
         }
-        self.bracketed(self.polynomial(p), power)
+        self.sum_as_factor(self.format_polynomial(p), power)
     }
 
-    fn atom(&self, atom: &Atom, power: u8) -> String {
+    fn format_atom(&self, atom: &Atom, power: u8) -> String {
         let format_call = |name, arguments: &[Argument]| self.style.call(name, power, arguments);
         match atom {
             Atom::Symbol(s) => self.style.symbol(*s, power),
-            Atom::Wave(w) => format_call(if w.cosine { "cos" } else { "sin" }, &[self.angle(w)]),
-            Atom::Call(f, p) => format_call(f.name(), &[self.argument(p)]),
-            Atom::Atan2(y, x) => format_call("atan2", &[self.argument(y), self.argument(x)]),
-            Atom::Power(a, b) => format_call("pow", &[self.argument(a), self.argument(b)]),
-            Atom::Extreme(f, a, b) => format_call(f.name(), &[self.argument(a), self.argument(b)]),
+            Atom::Wave(w) => format_call(if w.cosine { "cos" } else { "sin" }, &[self.format_angle(w)]),
+            Atom::Call(f, p) => format_call(f.function_name(), &[self.format_argument(p)]),
+            Atom::Atan2(y, x) => format_call("atan2", &[self.format_argument(y), self.format_argument(x)]),
+            Atom::Power(a, b) => format_call("pow", &[self.format_argument(a), self.format_argument(b)]),
+            Atom::Extreme(f, a, b) => {
+                format_call(f.function_name(), &[self.format_argument(a), self.format_argument(b)])
+            }
             Atom::Table(name, _, x) => {
-                format_call(name, &x.iter().map(|x| self.argument(x)).collect::<Vec<_>>())
+                format_call(name, &x.iter().map(|x| self.format_argument(x)).collect::<Vec<_>>())
             }
             Atom::Inverse(p) => {
-                let divisor = Factor::Sum(self.polynomial(p));
+                let divisor = Factor::Sum(self.format_polynomial(p));
                 self.style.power(&self.style.product(Some(Number::ONE), &[], &[divisor]), power)
             }
         }
     }
 
-    fn argument(&self, p: &Polynomial) -> Argument {
+    fn format_argument(&self, p: &Polynomial) -> Argument {
         let lone = matches!(p.terms.as_slice(), [t] if self.is_symbol(t.coefficient, t.monomial));
-        Argument { text: self.polynomial(p), lone }
+        Argument { text: self.format_polynomial(p), lone }
     }
 
     /// Formats the argument of a wave, with its angles in the order of the ring.
-    fn angle(&self, wave: &Wave) -> Argument {
+    fn format_angle(&self, wave: &Wave) -> Argument {
         let angles = self.ring.angles.iter().zip(wave.angle).filter(|(_, n)| *n != 0);
         let parts: Vec<(f64, Monomial)> =
             angles.map(|(angle, n)| (angle.coefficient * f64::from(n), angle.monomial)).collect();
-        let text = self.joined(parts.iter().map(|(c, m)| (*c < 0.0, self.product(*c, *m, Vec::new(), true))));
+        let text = self.join_signed_terms(
+            parts.iter().map(|(c, m)| (*c < 0.0, self.format_product(*c, *m, Vec::new(), true))),
+        );
         Argument { text, lone: matches!(parts.as_slice(), [(c, m)] if self.is_symbol(*c, *m)) }
     }
 
     fn is_symbol(&self, coefficient: f64, m: Monomial) -> bool {
-        let mut factors = m.factors();
+        let mut factors = m.atoms_with_powers();
         let first = factors.next();
         coefficient == 1.0
             && factors.next().is_none()
@@ -209,7 +213,7 @@ impl<'a, S: Style> Writer<'a, S> {
 
 /// Breaks text into lines of at most `width` characters, before the signs of a sum and at the outermost
 /// parentheses first. Further lines are indented.
-pub fn wrapped(text: &str, width: usize, indent: &str) -> String {
+pub fn wrap_text(text: &str, width: usize, indent: &str) -> String {
     let (mut out, mut rest, mut first) = (String::new(), text, true);
     loop {
         let room = if first { width } else { width.saturating_sub(indent.len()) };

@@ -1,21 +1,26 @@
 //! Printed form of Routh's equations: the Routhian, the equations of the noncyclic coordinates, and the
 //! velocities of the cyclic coordinates in terms of their momenta.
 
-use super::canonical::{determinant, velocities_of};
-use super::written::{about_inertias, determinants, filled, name, names_with, rates};
-use super::{Limits, Simplifier, quaternions, rank};
+use super::canonical::{determinant_symbol, velocities_of};
+use super::written::{
+    about_inertias, determinant_names, marks_of_coordinate_rates, name_and_derivative_order, names_with,
+    wrap_sentences,
+};
+use super::{Limits, Simplifier, quaternion_symbols, rank_of_symbol};
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
 use crate::diag::all_of;
-use crate::equations::print::aligned::aligned;
-use crate::equations::print::mathml::page;
-use crate::equations::print::names::primed;
-use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrapped};
+use crate::equations::print::aligned::format_aligned;
+use crate::equations::print::mathml::format_equations_as_html;
+use crate::equations::print::names::name_with_primes;
+use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrap_text};
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::Joint;
 use crate::mechanics::crba::Matrix;
-use crate::mechanics::routh::{Solved, part, solved, with_cyclic_velocities, with_velocities};
-use crate::mechanics::{accelerations, forces, rnea, velocities};
+use crate::mechanics::routh::{
+    Solved, matrix_block, solve_cyclic_velocities, with_cyclic_velocities, with_velocities,
+};
+use crate::mechanics::{acceleration_symbols, forces, rnea, velocity_symbols};
 use crate::mechanism::{Model, Quantity};
 
 /// Maximum number of columns of the printed text.
@@ -42,34 +47,34 @@ pub struct Reduced {
 }
 
 /// Derives Routh's equations of a mechanism without constraints. `None` if they would be too long.
-pub fn reduced<'g>(
+pub fn routh_equations<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &Matrix<'g>,
     cyclic: Vec<usize>,
 ) -> Option<Reduced> {
     let g = model.graph;
-    let mut normal = Normal::new(g, rank);
+    let mut normal = Normal::new(g, rank_of_symbol);
     normal.ring.allow_more();
-    let own = part(mass, &cyclic, &cyclic);
+    let own = matrix_block(mass, &cyclic, &cyclic);
     let mut divisors = Vec::new();
-    let Solved { routhian, velocity } = solved(model, joints, &cyclic, &mut |p| {
+    let Solved { routhian, velocity } = solve_cyclic_velocities(model, joints, &cyclic, &mut |p| {
         let (velocity, found) = velocities_of(&own, &p, &mut normal)?;
         divisors = found;
         Some(velocity)
     })?;
     let all = with_cyclic_velocities(model, &cyclic, &velocity);
     let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
-    let bias = with_velocities(&rnea::inverse_dynamics(model, joints, &velocities(model), None), &all);
+    let bias = with_velocities(&rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None), &all);
     let inputs = with_velocities(&forces::generalized_forces(model, joints), &all);
-    let a = accelerations(model);
+    let a = acceleration_symbols(model);
     let dot_product =
         |m: &[Expr<'g>], a: &[Expr<'g>]| m.iter().zip(a).fold(g.zero(), |sum, (m, a)| sum + *m * *a);
     let select_entries =
         |list: &[usize], e: &[Expr<'g>]| -> Vec<Expr<'g>> { list.iter().map(|k| e[*k]).collect() };
     let a = select_entries(&others, &a);
     // Accelerations of the cyclic coordinates without inputs, and due to inputs.
-    let across = part(mass, &cyclic, &others);
+    let across = matrix_block(mass, &cyclic, &others);
     let carried =
         across.iter().zip(select_entries(&cyclic, &bias)).map(|(row, bias)| -(dot_product(row, &a) + bias));
     let carried: Vec<Expr<'g>> = carried.collect();
@@ -89,10 +94,10 @@ pub fn reduced<'g>(
     for list in &lists {
         found.push(list.iter().map(|e| normal.normal_form(*e)).collect::<Option<_>>()?);
     }
-    let mut short = Simplifier::new(normal.ring, quaternions(model), &Limits::ASKED);
+    let mut short = Simplifier::new(normal.ring, quaternion_symbols(model), &Limits::ASKED);
     let mut found = found
         .iter()
-        .map(|list| list.iter().map(|p| short.shorten(p)).collect::<Option<Vec<_>>>())
+        .map(|list| list.iter().map(|p| short.shorten_polynomial(p)).collect::<Option<Vec<_>>>())
         .collect::<Option<Vec<_>>>()?
         .into_iter();
     let mut next = || found.next().unwrap_or_default();
@@ -110,10 +115,10 @@ pub fn reduced<'g>(
 
 /// Formats Routh's equations as plain text, LaTeX and MathML.
 pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
-    let rates = rates(model);
+    let rates = marks_of_coordinate_rates(model);
     let momenta: Vec<String> =
         reduced.cyclic.iter().map(|k| format!("p_{}", model.velocities[*k].0)).collect();
-    let inertias = determinants(model, reduced.determinants.len());
+    let inertias = determinant_names(model, reduced.determinants.len());
     let all = names_with(model, &[momenta.clone(), inertias.clone()].concat());
     let is_cyclic = |k: usize| reduced.cyclic.iter().position(|c| *c == k);
     // Accelerations of cyclic coordinates do not occur: their symbols represent the rates of the momenta.
@@ -123,15 +128,15 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
             (is_cyclic(k).map_or(String::new(), |c| momenta[c].clone()), 1)
         }
         Quantity::Prepared(k) => (inertias[k].clone(), 0),
-        _ => name(model, &rates, symbol),
+        _ => name_and_derivative_order(model, &rates, symbol),
     };
-    let primed_name = |symbol| primed(name_of_symbol(symbol));
+    let primed_name = |symbol| name_with_primes(name_of_symbol(symbol));
     let name_with_dots = |symbol| {
         let (name, dots) = name_of_symbol(symbol);
         (all.get(&name), dots)
     };
-    let lines = lines(reduced, Plain { name: &primed_name });
-    let wrapped_line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
+    let lines = routh_equation_lines(reduced, Plain { name: &primed_name });
+    let wrapped_line = |text: &String| wrap_text(text, WIDTH, "    ") + "\n";
     let mut plain = wrapped_line(&format!("R = {}", lines[0])) + "\n";
     plain.extend(lines[1..].iter().map(wrapped_line));
     let still = reduced.momentum_rate.iter().all(|p| p.terms.is_empty());
@@ -148,30 +153,32 @@ pub fn written_reduced(model: &Model<'_>, reduced: &Reduced) -> Written {
         if still { ", and constant" } else { "" }
     );
     about += &about_inertias(&inertias);
-    plain = plain + "\n" + &filled(&about) + "\n";
-    let mut lines = self::lines(reduced, Latex { name: &name_with_dots });
+    plain = plain + "\n" + &wrap_sentences(&about) + "\n";
+    let mut lines = self::routh_equation_lines(reduced, Latex { name: &name_with_dots });
     lines[0] = format!("\\mathcal{{R}} = {}", lines[0]);
-    let latex = aligned(&lines);
-    lines = self::lines(reduced, MathMl { name: &name_with_dots });
+    let latex = format_aligned(&lines);
+    lines = self::routh_equation_lines(reduced, MathMl { name: &name_with_dots });
     lines[0] = format!("<mi>R</mi> = {}", lines[0]);
-    Written { plain, latex, mathml: page(&lines) }
+    Written { plain, latex, mathml: format_equations_as_html(&lines) }
 }
 
 /// Returns the right side of the Routhian, then the equations of motion, the velocities of cyclic
 /// coordinates, their momenta and inertias.
-fn lines<S: Style + Copy>(reduced: &Reduced, style: S) -> Vec<String> {
-    let writer = Writer::styled(&reduced.ring, style);
-    let mut lines = vec![writer.energy(&reduced.routhian)];
+fn routh_equation_lines<S: Style + Copy>(reduced: &Reduced, style: S) -> Vec<String> {
+    let writer = Writer::with_style(&reduced.ring, style);
+    let mut lines = vec![writer.format_energy(&reduced.routhian)];
     let sides = reduced.motion.iter().zip(&reduced.forces);
-    lines.extend(sides.map(|(a, b)| format!("{} = {}", writer.polynomial(a), writer.polynomial(b))));
+    lines.extend(
+        sides.map(|(a, b)| format!("{} = {}", writer.format_polynomial(a), writer.format_polynomial(b))),
+    );
     let cyclic_coordinates = || reduced.cyclic.iter().copied();
     let velocities = cyclic_coordinates().map(Quantity::Velocity).zip(&reduced.velocity);
     let moved = reduced.momentum_rate.iter().filter(|p| !p.terms.is_empty()).count() > 0;
     let momenta =
         cyclic_coordinates().map(Quantity::Acceleration).zip(&reduced.momentum_rate).filter(|_| moved);
-    let determinants = (0..).map(determinant).zip(&reduced.determinants);
+    let determinants = (0..).map(determinant_symbol).zip(&reduced.determinants);
     for (left, right) in velocities.chain(momenta).chain(determinants) {
-        lines.push(format!("{} = {}", style.symbol(left.symbol(), 1), writer.polynomial(right)));
+        lines.push(format!("{} = {}", style.symbol(left.symbol(), 1), writer.format_polynomial(right)));
     }
     lines
 }

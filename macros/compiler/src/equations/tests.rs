@@ -22,29 +22,29 @@ mod reading;
 mod routh;
 
 use mechanisms::*;
-use reading::text::value;
+use reading::text::evaluate_text;
 
 fn with_model<R>(gravity: &str, item: &str, f: impl for<'g> FnOnce(Model<'g>) -> R) -> R {
     let mut cx = Diagnostics::new();
     let arguments = format!("gravity = {gravity}").parse().unwrap();
-    let source = crate::read(arguments, item.parse().unwrap(), Path::new(""), &mut cx);
+    let source = crate::read_source(arguments, item.parse().unwrap(), Path::new(""), &mut cx);
     let (graph, source) = (Graph::new(), source.expect("a struct"));
     let model = crate::resolve::build_model(&source.mechanism.description, &graph, &mut cx);
     f(model.unwrap_or_else(|| panic!("{:?}", cx.messages())))
 }
 
 fn equations_of(gravity: &str, item: &str) -> String {
-    with_model(gravity, item, |model| crate::equations(&model))
+    with_model(gravity, item, |model| crate::equations_as_text(&model))
 }
 
 /// Returns a function that assigns a random number to every symbol. Quaternions have unit length.
-fn state(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 + use<> {
+fn random_symbol_values(model: &Model<'_>, seed: u64) -> impl Fn(Symbol) -> f64 + use<> {
     let mut r = Random(seed * 2 + 1);
     let mut numbers =
         |n: usize| -> Vec<f64> { (0..n).map(|_| r.number_below(2000) as f64 / 1000.0 - 1.0).collect() };
     let parameters: Vec<f64> = numbers(model.parameters.len()).iter().map(|p| p + 1.5).collect();
     let mut q = numbers(model.nq());
-    for first in model.charts.iter().filter_map(Chart::quaternion) {
+    for first in model.charts.iter().filter_map(Chart::first_quaternion_index) {
         let norm = q[first.and_next(4)].iter().map(|x| x * x).sum::<f64>().sqrt();
         q[first.and_next(4)].iter_mut().for_each(|x| *x /= norm);
     }
@@ -72,7 +72,7 @@ fn assert_near(a: &[f64], b: &[f64], what: &str) {
 
 /// Returns the values of the symbols of a mechanism by their printed names.
 fn by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&str) -> f64 + 'a {
-    let rates = written::rates(model);
+    let rates = written::marks_of_coordinate_rates(model);
     let quantities_up_to = |n: usize, quantity: fn(usize) -> Quantity| (0..n).map(quantity);
     let quantities = quantities_up_to(model.parameters.len(), Quantity::Parameter)
         .chain(quantities_up_to(model.nq(), Quantity::Configuration))
@@ -84,7 +84,7 @@ fn by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&
         .chain([Quantity::Time]);
     let named: Vec<(String, Symbol)> = quantities
         .map(|q| {
-            let (name, dots) = written::name(model, &rates, q.symbol());
+            let (name, dots) = written::name_and_derivative_order(model, &rates, q.symbol());
             (name + &"'".repeat(usize::from(dots)), q.symbol())
         })
         .collect();
@@ -95,7 +95,7 @@ fn by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&
 }
 
 /// Returns both sides of each equation of a printed text, without the legend.
-fn printed(text: &str) -> Vec<(String, String)> {
+fn sides_of_equations(text: &str) -> Vec<(String, String)> {
     let (text, _) = text.trim_end().rsplit_once("\n\n").expect("a legend");
     let joined = text.replace("\n    ", " ");
     let lines = joined.lines().filter_map(|line| line.split_once(" = "));
@@ -104,17 +104,20 @@ fn printed(text: &str) -> Vec<(String, String)> {
 
 /// Checks that the values of the printed equations are those of the polynomials.
 fn check_text(model: &Model<'_>, e: &Equations) {
-    let text = written(model, e).plain;
-    let lines = printed(&text);
+    let text = format_equations(model, e).plain;
+    let lines = sides_of_equations(&text);
     assert_eq!(lines.len(), 1 + e.motion.len(), "{text}");
     for seed in 1..4 {
-        let symbol = state(model, seed);
+        let symbol = random_symbol_values(model, seed);
         let names = by_name(model, &symbol);
         let read: Vec<f64> =
-            lines.iter().flat_map(|(a, b)| [a, b]).skip(1).map(|side| value(side, &names)).collect();
+            lines.iter().flat_map(|(a, b)| [a, b]).skip(1).map(|side| evaluate_text(side, &names)).collect();
         let sides = e.motion.iter().zip(&e.forces).flat_map(|(a, b)| [a, b]);
-        let sides: Vec<f64> =
-            [&e.lagrangian].into_iter().chain(sides).map(|p| e.ring.evaluate(p, &symbol)).collect();
+        let sides: Vec<f64> = [&e.lagrangian]
+            .into_iter()
+            .chain(sides)
+            .map(|p| e.ring.evaluate_polynomial(p, &symbol))
+            .collect();
         let size = sides.iter().fold(1.0_f64, |size, x| size.max(x.abs()));
         for ((read, expected), k) in read.iter().zip(&sides).zip(0..) {
             // Numbers are printed with six digits.
@@ -125,11 +128,11 @@ fn check_text(model: &Model<'_>, e: &Equations) {
 
 /// Compares motion, forces, constraints and Lagrangian with the lowered programs of the recursive algorithms,
 /// and the motion with Lagrange's equations.
-fn check(model: &Model<'_>) {
-    let joints = crate::kinematics::joints(model);
+fn check_equations(model: &Model<'_>) {
+    let joints = crate::kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
     let e = derive(model, &joints, &mass, None, &Limits::READABLE).expect("small");
-    let (v, a) = (velocities(model), accelerations(model));
+    let (v, a) = (velocity_symbols(model), acceleration_symbols(model));
     let mut outputs = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
     outputs.extend(model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate)));
     outputs.extend(right_sides(model, &joints));
@@ -142,11 +145,11 @@ fn check(model: &Model<'_>) {
     let rows = rows.map(|(row, h)| row.iter().zip(&a).fold(*h, |sum, (m, a)| sum + *m * *a));
     let rows: Vec<Expr<'_>> = rows.collect();
     for seed in 1..20 {
-        let symbol = state(model, seed);
-        let value_of_polynomial = |p: &Polynomial| e.ring.evaluate(p, &symbol);
+        let symbol = random_symbol_values(model, seed);
+        let value_of_polynomial = |p: &Polynomial| e.ring.evaluate_polynomial(p, &symbol);
         let all: Vec<f64> =
             e.motion.iter().chain(&e.forces).chain([&e.lagrangian]).map(value_of_polynomial).collect();
-        assert_near(&all, &program.run(&symbol), &model.name);
+        assert_near(&all, &program.interpret_program(&symbol), &model.name);
         assert_near(&all[..model.nv()], &eval(&rows, &symbol), "Lagrange");
     }
     check_text(model, &e);
@@ -155,12 +158,12 @@ fn check(model: &Model<'_>) {
 #[test]
 fn normal_forms_are_what_is_generated() {
     for item in [CART_POLE, NUMBERS] {
-        with_model("-9.81 * z", item, |model| check(&model));
-        with_model("-9.81 * y", item, |model| check(&model));
+        with_model("-9.81 * z", item, |model| check_equations(&model));
+        with_model("-9.81 * y", item, |model| check_equations(&model));
     }
     for item in [DOUBLE_PENDULUM, GYROSCOPE, SHAFT, SPHERICAL, CHAIN, BALL, TRIPLE, ARM, WAGON] {
-        with_model("-g * z", item, |model| check(&model));
-        with_model("-g * y", item, |model| check(&model));
+        with_model("-g * z", item, |model| check_equations(&model));
+        with_model("-g * y", item, |model| check_equations(&model));
     }
 }
 
@@ -180,8 +183,8 @@ fn absolute_angles() {
         let length = Quantity::Parameter(3).expr(g);
         place_tip(&mut model, 1, [length * a.sin(), -(length * a.cos()), g.zero()], b);
         model.inputs.clear();
-        check(&model);
-        crate::equations(&model)
+        check_equations(&model);
+        crate::equations_as_text(&model)
     });
     let first = "l1 (l1 (1/3 m1 + m2) shoulder''
     + 1/2 m2 l2 (cos(shoulder - elbow) elbow'' + sin(shoulder - elbow) elbow'²)
@@ -199,8 +202,8 @@ fn driven_in_time() {
         let (theta, turn) = (Quantity::Configuration(0).expr(g), speed * Quantity::Time.expr(g));
         let out = radius * theta.sin();
         place_tip(&mut model, 0, [out * turn.cos(), out * turn.sin(), -(radius * theta.cos())], g.zero());
-        check(&model);
-        crate::equations(&model)
+        check_equations(&model);
+        crate::equations_as_text(&model)
     });
     let expected = "\
 L = 1/2 m radius² theta'² + 1/2 m radius² speed² sin²(theta) + g m radius cos(theta)
@@ -213,9 +216,9 @@ m radius (radius theta'' + (g - radius speed² cos(theta)) sin(theta)) = 0
 /// Checks that the length of the equations decides whether they are printed, not the number of velocities.
 #[test]
 fn length_decides() {
-    let text = equations_of("-g * z", &masses(5));
+    let text = equations_of("-g * z", &masses_with_springs(5));
     assert!(text.contains("m x2'' + k (2 x2 - x1 - x3) = 0\n"), "{text}");
-    let text = equations_of("-g * z", &masses(20));
+    let text = equations_of("-g * z", &masses_with_springs(20));
     assert!(text.contains("m x19'' + k (x19 - x18) = 0\n"), "{text}");
     let text = equations_of("-g * z", FREE);
     assert!(text.contains("a pose.wx' + (c - b) pose.wy pose.wz = 0\n"), "{text}");
@@ -223,8 +226,14 @@ fn length_decides() {
     assert!(text.contains("1/4 m radius² (pose.wz' + pose.wx pose.wy)\n"), "{text}");
     let text = equations_of("-g * z", SPHERE);
     assert!(text.contains("\n-radius + pose.z = 0\n"), "{text}");
-    for item in [masses(5), masses(20), FREE.to_string(), SPHERE.to_string(), DISK.to_string()] {
-        with_model("-g * z", &item, |model| check(&model));
+    for item in [
+        masses_with_springs(5),
+        masses_with_springs(20),
+        FREE.to_string(),
+        SPHERE.to_string(),
+        DISK.to_string(),
+    ] {
+        with_model("-g * z", &item, |model| check_equations(&model));
     }
 }
 
@@ -249,10 +258,10 @@ fn a_condition_that_always_holds_is_dropped() {
         "{text}"
     );
     let linkage_arguments = || "gravity = -9.81 * z, formulation = speeds, derivatives".parse().unwrap();
-    assert_eq!(crate::check(linkage_arguments(), CASTOR.parse().unwrap(), Path::new("")), [""; 0]);
+    assert_eq!(crate::check_mechanism(linkage_arguments(), CASTOR.parse().unwrap(), Path::new("")), [""; 0]);
     // A contact that can never close is reported, however small its row is.
     let hovering = CASTOR.replace("0.3 * z", "0.4 * z");
-    let messages = crate::check(linkage_arguments(), hovering.parse().unwrap(), Path::new(""));
+    let messages = crate::check_mechanism(linkage_arguments(), hovering.parse().unwrap(), Path::new(""));
     assert!(
         messages.len() == 1 && messages[0].contains("`contact.normal` cannot be satisfied"),
         "{messages:?}"
@@ -344,10 +353,10 @@ L is kinetic less potential energy; tip.wx' is the rate of tip.wx.
 
 /// Compares Hamilton's equations with velocities, energies and rates of the recursive algorithms.
 fn check_canonical(model: &Model<'_>) -> String {
-    let joints = crate::kinematics::joints(model);
+    let joints = crate::kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
-    let c = canonical(model, &joints, &mass).expect("small");
-    let v = velocities(model);
+    let c = canonical_equations(model, &joints, &mass).expect("small");
+    let v = velocity_symbols(model);
     let momenta = crate::mechanics::momentum::generalized_momentum(model, &joints, &v);
     let kinetic = energy::kinetic_energy(model, &joints, &v);
     let power = momenta.iter().zip(&v).fold(model.graph.zero(), |sum, (p, v)| sum + *p * *v);
@@ -357,7 +366,7 @@ fn check_canonical(model: &Model<'_>) -> String {
     let inputs = forces::generalized_forces(model, &joints);
     expected.extend(rate.into_iter().zip(inputs).map(|(rate, input)| rate + input));
     for seed in 1..10 {
-        let symbol = state(model, seed);
+        let symbol = random_symbol_values(model, seed);
         let p = eval(&momenta, &symbol);
         // Determinants contain no other determinants, but the ring evaluates all of its atoms.
         let value_with_unit_momenta = |s: Symbol| match Quantity::from_symbol(s) {
@@ -365,7 +374,7 @@ fn check_canonical(model: &Model<'_>) -> String {
             _ => symbol(s),
         };
         let determinants: Vec<f64> =
-            c.determinants.iter().map(|d| c.ring.evaluate(d, &value_with_unit_momenta)).collect();
+            c.determinants.iter().map(|d| c.ring.evaluate_polynomial(d, &value_with_unit_momenta)).collect();
         let symbol_value = |s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Momentum(k) => p[k],
             Quantity::Prepared(k) => determinants[k],
@@ -373,11 +382,12 @@ fn check_canonical(model: &Model<'_>) -> String {
             _ => symbol(s),
         };
         let all = [&c.hamiltonian].into_iter().chain(&c.velocity).chain(&c.momentum_rate);
-        let found: Vec<f64> = all.map(|polynomial| c.ring.evaluate(polynomial, &symbol_value)).collect();
+        let found: Vec<f64> =
+            all.map(|polynomial| c.ring.evaluate_polynomial(polynomial, &symbol_value)).collect();
         assert_near(&found, &eval(&expected, &symbol), &model.name);
     }
     let written = written_canonical(model, &c);
-    assert_eq!(latex::faults(&written.latex), [""; 0], "{}", written.latex);
+    assert_eq!(latex::latex_errors(&written.latex), [""; 0], "{}", written.latex);
     written.plain
 }
 
@@ -406,7 +416,7 @@ fn hamiltons_form_is_that_of_the_functions() {
 fn forms_that_there_are_not_are_refused() {
     let messages_for_form = |words: &str, item: &str| {
         let arguments = format!("gravity = -g * z, equations = {words}").parse().unwrap();
-        crate::check(arguments, item.parse().unwrap(), Path::new(""))
+        crate::check_mechanism(arguments, item.parse().unwrap(), Path::new(""))
     };
     assert_eq!(messages_for_form("lagrange", SPHERE), [""; 0]);
     assert_eq!(messages_for_form("structure", SPHERE), [""; 0]);
@@ -415,7 +425,7 @@ fn forms_that_there_are_not_are_refused() {
         ("hamilton", SPHERE.to_string(), "printed only for mechanisms without constraints"),
         ("routh", SPHERE.to_string(), "require a mechanism without constraints"),
         ("routh", BALL.to_string(), "no coordinate of this mechanism is cyclic"),
-        ("lagrange", masses(100), "have thousands of terms"),
+        ("lagrange", masses_with_springs(100), "have thousands of terms"),
         ("newton", SPHERE.to_string(), "unknown value `newton` for `equations`"),
     ];
     for (words, item, expected) in rows {
@@ -438,15 +448,15 @@ fn long_equations_are_written_on_request() {
         #[joint(b.at(0.8 * x) -> c, about = z)] three: Pin,
         #[joint(c.at(0.6 * x) -> d, about = x)] four: Pin }";
     with_model("-g * z", arm, |model| {
-        let joints = crate::kinematics::joints(&model);
+        let joints = crate::kinematics::joints_of_model(&model);
         let mass = crba::mass_matrix(&model, &joints);
         assert!(derive(&model, &joints, &mass, None, &Limits::READABLE).is_none());
         let e = derive(&model, &joints, &mass, None, &Limits::ASKED).expect("not too long for that");
-        let (v, a) = (velocities(&model), accelerations(&model));
+        let (v, a) = (velocity_symbols(&model), acceleration_symbols(&model));
         let forces = rnea::inverse_dynamics(&model, &joints, &v, Some(&a));
         for seed in 1..10 {
-            let symbol = state(&model, seed);
-            let found: Vec<f64> = e.motion.iter().map(|p| e.ring.evaluate(p, &symbol)).collect();
+            let symbol = random_symbol_values(&model, seed);
+            let found: Vec<f64> = e.motion.iter().map(|p| e.ring.evaluate_polynomial(p, &symbol)).collect();
             assert_near(&found, &eval(&forces, &symbol), "on request");
         }
         check_text(&model, &e);

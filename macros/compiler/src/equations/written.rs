@@ -1,11 +1,11 @@
 //! Formats equations of motion as plain text, LaTeX and MathML, with the user's names.
 
-use super::{Canonical, Equations, determinant};
+use super::{Canonical, Equations, determinant_symbol};
 use crate::diag::all_of;
-use crate::equations::print::aligned::aligned;
-use crate::equations::print::mathml::page;
-use crate::equations::print::names::{Names, primed};
-use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrapped};
+use crate::equations::print::aligned::format_aligned;
+use crate::equations::print::mathml::format_equations_as_html;
+use crate::equations::print::names::{Names, name_with_primes};
+use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrap_text};
 use crate::expr::Symbol;
 use crate::mechanism::{Chart, Model, Quantity, Supplied};
 
@@ -15,10 +15,10 @@ const WIDTH: usize = 100;
 const PAGE: usize = 92;
 
 /// Formats equations of motion as plain text, LaTeX and MathML.
-pub fn written(model: &Model<'_>, equations: &Equations) -> Written {
-    let rates = rates(model);
-    let (latex, mathml) = typeset(model, equations, &rates);
-    Written { plain: plain(model, equations, &rates), latex, mathml }
+pub fn format_equations(model: &Model<'_>, equations: &Equations) -> Written {
+    let rates = marks_of_coordinate_rates(model);
+    let (latex, mathml) = typeset_equations(model, equations, &rates);
+    Written { plain: plain_text(model, equations, &rates), latex, mathml }
 }
 
 /// Printed Lagrangian, and both sides of the equation of every velocity.
@@ -31,19 +31,19 @@ struct Lines {
 
 impl Lines {
     fn new<S: Style>(equations: &Equations, style: S) -> Lines {
-        let writer = Writer::styled(&equations.ring, style);
+        let writer = Writer::with_style(&equations.ring, style);
         let sides = equations.motion.iter().zip(&equations.forces);
         Lines {
-            rates: equations.rates.iter().map(|(k, p)| (*k, writer.polynomial(p))).collect(),
-            lagrangian: writer.energy(&equations.lagrangian),
-            motion: sides.map(|(a, b)| (writer.polynomial(a), writer.polynomial(b))).collect(),
+            rates: equations.rates.iter().map(|(k, p)| (*k, writer.format_polynomial(p))).collect(),
+            lagrangian: writer.format_energy(&equations.lagrangian),
+            motion: sides.map(|(a, b)| (writer.format_polynomial(a), writer.format_polynomial(b))).collect(),
         }
     }
 
     /// Returns the printed equations: the Lagrangian, the joint velocities in terms of generalized speeds, and
     /// the equations of motion. `lagrangian` is the symbol of the Lagrangian, and `left(k)` that of joint
     /// velocity `k`.
-    fn equations(&self, lagrangian: &str, left: &dyn Fn(usize) -> String) -> Vec<String> {
+    fn equation_lines(&self, lagrangian: &str, left: &dyn Fn(usize) -> String) -> Vec<String> {
         let mut all = vec![format!("{lagrangian} = {}", self.lagrangian)];
         all.extend(self.rates.iter().map(|(k, rate)| format!("{} = {rate}", left(*k))));
         all.extend(self.motion.iter().map(|(motion, force)| format!("{motion} = {force}")));
@@ -52,60 +52,60 @@ impl Lines {
 }
 
 /// Returns the plain text: the Lagrangian, an equation for every velocity, and a legend.
-fn plain(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
-    let primed_name = |symbol| primed(name(model, rates, symbol));
+fn plain_text(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> String {
+    let primed_name = |symbol| name_with_primes(name_and_derivative_order(model, rates, symbol));
     let lines = Lines::new(equations, Plain { name: &primed_name });
-    let wrapped_line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
+    let wrapped_line = |text: &str| wrap_text(text, WIDTH, "    ") + "\n";
     let energy = if equations.without_forces { 'T' } else { 'L' };
     let mut out = wrapped_line(&format!("{energy} = {}", lines.lagrangian));
     out.push('\n');
     for (k, rate) in &lines.rates {
-        out += &wrapped_line(&format!("{} = {rate}", primed(rate_name(model, *k))));
+        out += &wrapped_line(&format!("{} = {rate}", name_with_primes(rate_name(model, *k))));
     }
     out.push_str(if lines.rates.is_empty() { "" } else { "\n" });
     for (motion, force) in lines.motion {
         out += &wrapped_line(&format!("{motion} = {force}"));
     }
     out.push('\n');
-    legend(model, equations.without_forces, rates)
+    legend_sentences(model, equations.without_forces, rates)
         .iter()
-        .fold(out, |out, sentence| out + &filled(sentence) + "\n")
+        .fold(out, |out, sentence| out + &wrap_sentences(sentence) + "\n")
 }
 
 /// Formats the canonical equations as plain text, LaTeX and MathML.
 pub fn written_canonical(model: &Model<'_>, canonical: &Canonical) -> Written {
-    let rates = rates(model);
+    let rates = marks_of_coordinate_rates(model);
     let name_of_momentum = |k: usize| format!("p_{}", model.velocities[k].0);
     let momenta: Vec<String> = (0..model.nv()).map(name_of_momentum).collect();
-    let determinants = determinants(model, canonical.determinants.len());
+    let determinants = determinant_names(model, canonical.determinants.len());
     let all = names_with(model, &[momenta.clone(), determinants.clone()].concat());
     // Accelerations do not occur: their symbols represent the rates of the momenta.
     let name_of_symbol = |symbol| match Quantity::from_symbol(symbol) {
         Quantity::Momentum(k) => (momenta[k].clone(), 0),
         Quantity::Acceleration(k) => (momenta[k].clone(), 1),
         Quantity::Prepared(k) => (determinants[k].clone(), 0),
-        _ => name(model, &rates, symbol),
+        _ => name_and_derivative_order(model, &rates, symbol),
     };
-    let primed_name = |symbol| primed(name_of_symbol(symbol));
+    let primed_name = |symbol| name_with_primes(name_of_symbol(symbol));
     let name_with_dots = |symbol| {
         let (name, dots) = name_of_symbol(symbol);
         (all.get(&name), dots)
     };
     let lines = canonical_lines(canonical, Plain { name: &primed_name });
-    let wrapped_line = |text: &String| wrapped(text, WIDTH, "    ") + "\n";
+    let wrapped_line = |text: &String| wrap_text(text, WIDTH, "    ") + "\n";
     let mut plain = wrapped_line(&format!("H = {}", lines[0])) + "\n";
     plain.extend(lines[1..].iter().map(wrapped_line));
     let mut about = "H is the Hamiltonian; p_ before the name of a velocity makes its generalized momentum, \
                      and a prime marks a rate."
         .to_string();
     about += &about_inertias(&determinants);
-    plain = plain + "\n" + &filled(&about) + "\n";
+    plain = plain + "\n" + &wrap_sentences(&about) + "\n";
     let mut lines = canonical_lines(canonical, Latex { name: &name_with_dots });
     lines[0] = format!("\\mathcal{{H}} = {}", lines[0]);
-    let latex = aligned(&lines);
+    let latex = format_aligned(&lines);
     lines = canonical_lines(canonical, MathMl { name: &name_with_dots });
     lines[0] = format!("<mi>H</mi> = {}", lines[0]);
-    Written { plain, latex, mathml: page(&lines) }
+    Written { plain, latex, mathml: format_equations_as_html(&lines) }
 }
 
 /// Returns an unused name for a generalized force.
@@ -123,7 +123,7 @@ fn free_letter(model: &Model<'_>, letter: char) -> String {
 }
 
 /// Returns names for determinants that no quantity of the model has.
-pub(super) fn determinants(model: &Model<'_>, count: usize) -> Vec<String> {
+pub(super) fn determinant_names(model: &Model<'_>, count: usize) -> Vec<String> {
     let letter = free_letter(model, 'D');
     if count == 1 { vec![letter] } else { (1..=count).map(|k| format!("{letter}{k}")).collect() }
 }
@@ -140,19 +140,19 @@ pub(super) fn about_inertias(determinants: &[String]) -> String {
 /// Returns the right side of the Hamiltonian, then equations for the rates of coordinates and of momenta,
 /// then for determinants.
 fn canonical_lines<S: Style + Copy>(canonical: &Canonical, style: S) -> Vec<String> {
-    let writer = Writer::styled(&canonical.ring, style);
-    let mut lines = vec![writer.energy(&canonical.hamiltonian)];
+    let writer = Writer::with_style(&canonical.ring, style);
+    let mut lines = vec![writer.format_energy(&canonical.hamiltonian)];
     let velocities = (0..).map(Quantity::Velocity).zip(&canonical.velocity);
     let momenta = (0..).map(Quantity::Acceleration).zip(&canonical.momentum_rate);
-    let determinants = (0..).map(determinant).zip(&canonical.determinants);
+    let determinants = (0..).map(determinant_symbol).zip(&canonical.determinants);
     for (left, right) in velocities.chain(momenta).chain(determinants) {
-        lines.push(format!("{} = {}", style.symbol(left.symbol(), 1), writer.polynomial(right)));
+        lines.push(format!("{} = {}", style.symbol(left.symbol(), 1), writer.format_polynomial(right)));
     }
     lines
 }
 
 /// Wraps sentences at the width of a page.
-pub(super) fn filled(text: &str) -> String {
+pub(super) fn wrap_sentences(text: &str) -> String {
     let (mut out, mut room) = (String::new(), 0);
     for word in text.split(' ') {
         let length = word.chars().count();
@@ -170,10 +170,10 @@ pub(super) fn filled(text: &str) -> String {
 }
 
 /// Returns the Lagrangian and an equation for every velocity, as LaTeX and as HTML.
-fn typeset(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String, String) {
-    let names = names(model);
+fn typeset_equations(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String, String) {
+    let names = typeset_names(model);
     let name_with_dots = |symbol| {
-        let (name, dots) = name(model, rates, symbol);
+        let (name, dots) = name_and_derivative_order(model, rates, symbol);
         (names.get(&name), dots)
     };
     let rate_symbol = |k: usize| {
@@ -184,17 +184,17 @@ fn typeset(model: &Model<'_>, equations: &Equations, rates: &[bool]) -> (String,
         true => ("T", "<mi>T</mi>"),
         false => ("\\mathcal{L}", "<mi>L</mi>"),
     };
-    let latex = Lines::new(equations, Latex { name: &name_with_dots }).equations(energy, &|k| {
+    let latex = Lines::new(equations, Latex { name: &name_with_dots }).equation_lines(energy, &|k| {
         Latex { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
     });
-    let mathml = Lines::new(equations, MathMl { name: &name_with_dots }).equations(of_mathml, &|k| {
+    let mathml = Lines::new(equations, MathMl { name: &name_with_dots }).equation_lines(of_mathml, &|k| {
         MathMl { name: &|_| rate_symbol(k) }.symbol(Quantity::Velocity(k).symbol(), 1)
     });
-    (aligned(&latex), page(&mathml))
+    (format_aligned(&latex), format_equations_as_html(&mathml))
 }
 
 /// Returns the typeset names of all symbols of a mechanism, which are unambiguous.
-fn names(model: &Model<'_>) -> Names {
+fn typeset_names(model: &Model<'_>) -> Names {
     names_with(model, &[])
 }
 
@@ -209,7 +209,7 @@ pub(super) fn names_with(model: &Model<'_>, others: &[String]) -> Names {
 }
 
 /// Returns for each velocity whether it is the rate of a coordinate of the same name.
-pub(super) fn rates(model: &Model<'_>) -> Vec<bool> {
+pub(super) fn marks_of_coordinate_rates(model: &Model<'_>) -> Vec<bool> {
     let mut rates = vec![false; model.nv()];
     for chart in &model.charts {
         if let Chart::Plain(q, v) = chart {
@@ -231,7 +231,7 @@ pub(super) fn rate_name(model: &Model<'_>, k: usize) -> (String, u8) {
 }
 
 /// Returns the name of a symbol, and how often the quantity of this name is differentiated.
-pub(super) fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> (String, u8) {
+pub(super) fn name_and_derivative_order(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> (String, u8) {
     match Quantity::from_symbol(symbol) {
         Quantity::Parameter(k) => (model.parameters[k].clone(), 0),
         Quantity::Configuration(k) => (model.configuration[k].clone(), 0),
@@ -248,7 +248,7 @@ pub(super) fn name(model: &Model<'_>, rates: &[bool], symbol: Symbol) -> (String
 }
 
 /// Returns sentences that explain the notation.
-fn legend(model: &Model<'_>, without_forces: bool, rates: &[bool]) -> Vec<String> {
+fn legend_sentences(model: &Model<'_>, without_forces: bool, rates: &[bool]) -> Vec<String> {
     let energy = if without_forces { "T is kinetic energy" } else { "L is kinetic less potential energy" };
     let rates = match rates.iter().position(|is_rate| *is_rate) {
         Some(k) => {

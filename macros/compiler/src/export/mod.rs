@@ -6,16 +6,16 @@ pub mod cuda;
 pub mod fmu;
 pub mod wgsl;
 
-pub use c::capitals;
+pub use c::preprocessor_names;
 
 /// Returns a text that is valid inside a comment of C.
 pub fn in_comment(text: &str) -> String {
-    c::safe(text)
+    c::comment_safe_text(text)
 }
 
 /// Wraps a paragraph to lines of a C comment that begin with `first` and `others`.
 pub fn in_comment_lines(text: &str, first: &str, others: &str) -> String {
-    c::wrapped(text, first, others)
+    c::wrap_paragraph(text, first, others)
 }
 
 /// Replaces the links in a documentation text by their words.

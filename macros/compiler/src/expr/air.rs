@@ -22,15 +22,15 @@ const LAYERS: [(f64, f64); 8] = [
 ];
 
 /// Returns temperature, K, pressure, Pa, and temperature gradient, K/m, at a geopotential height, m.
-fn state(h: f64) -> [f64; 3] {
+fn atmosphere_state(h: f64) -> [f64; 3] {
     let (mut temperature, mut pressure) = (288.15, 101_325.0);
     for (k, (base, lapse)) in LAYERS.iter().enumerate() {
         let end = LAYERS.get(k + 1).map_or(f64::INFINITY, |(end, _)| *end);
         let depth = h.min(end) - base;
         let next = temperature + depth * lapse;
         pressure *= match *lapse == 0.0 {
-            true => (-FALL_OVER_GAS * depth / temperature).exp(),
-            false => (next / temperature).powf(-FALL_OVER_GAS / lapse),
+            true => libm::exp(-FALL_OVER_GAS * depth / temperature),
+            false => libm::pow(next / temperature, -FALL_OVER_GAS / lapse),
         };
         temperature = next;
         if h < end {
@@ -42,15 +42,15 @@ fn state(h: f64) -> [f64; 3] {
 
 /// Returns the temperature, K, at a geopotential height, m.
 pub fn temperature(h: f64) -> f64 {
-    state(h)[0]
+    atmosphere_state(h)[0]
 }
 
 /// Returns the pressure, Pa, at a geopotential height, m.
 pub fn pressure(h: f64) -> f64 {
-    state(h)[1]
+    atmosphere_state(h)[1]
 }
 
 /// Returns the temperature gradient, K/m, at a geopotential height, m.
 pub fn lapse_rate(h: f64) -> f64 {
-    state(h)[2]
+    atmosphere_state(h)[2]
 }

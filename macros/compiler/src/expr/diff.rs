@@ -25,7 +25,7 @@ pub fn gradient<'g>(e: Expr<'g>, symbols: &[Symbol]) -> Vec<Expr<'g>> {
             }
         }
         let mut operands = Vec::new();
-        node.operands(|a| {
+        node.visit_operands(|a| {
             if !operands.contains(&a) {
                 operands.push(a);
             }
@@ -33,7 +33,7 @@ pub fn gradient<'g>(e: Expr<'g>, symbols: &[Symbol]) -> Vec<Expr<'g>> {
         for a in operands {
             // Partial derivative of the node by this operand, all other operands constant.
             let by_operand = Derivative::by_node(a, g);
-            let step = by_operand.rule(id);
+            let step = by_operand.differentiate_node(id);
             if !step.is_zero() {
                 let sum = open.entry(a).or_insert(g.zero());
                 *sum += by * step;
@@ -67,13 +67,16 @@ impl<'g> Derivative<'g> {
     /// Presets the derivatives of some expressions, instead of differentiating their operands. If a preset
     /// expression is a negation, a multiple, or a sum with a constant, the derivative of its operand is
     /// preset as well.
-    pub fn knowing(mut self, derivatives: impl IntoIterator<Item = (Expr<'g>, Expr<'g>)>) -> Derivative<'g> {
+    pub fn with_preset_derivatives(
+        mut self,
+        derivatives: impl IntoIterator<Item = (Expr<'g>, Expr<'g>)>,
+    ) -> Derivative<'g> {
         for (e, derivative) in derivatives {
             let (mut e, mut derivative) = (e, derivative);
             loop {
-                self.known.set(e.id(), derivative.id());
+                self.known.assign_number(e.id(), derivative.id());
                 let expression_of_id = |id: Id| self.graph.expr(id);
-                let constant_value = |id: Id| expression_of_id(id).value();
+                let constant_value = |id: Id| expression_of_id(id).constant_value();
                 (e, derivative) = match e.node() {
                     Node::Neg(a) => (expression_of_id(a), -derivative),
                     Node::Add(a, b) if constant_value(a).is_some() => (expression_of_id(b), derivative),
@@ -88,7 +91,7 @@ impl<'g> Derivative<'g> {
                     },
                     _ => break,
                 };
-                if e.value().is_some() || matches!(e.node(), Node::Symbol(_)) {
+                if e.constant_value().is_some() || matches!(e.node(), Node::Symbol(_)) {
                     break;
                 }
             }
@@ -100,7 +103,7 @@ impl<'g> Derivative<'g> {
     /// operands are constant.
     fn by_node(id: Id, graph: &'g Graph) -> Derivative<'g> {
         let mut derivative = Derivative::with_rates(Vec::new(), graph);
-        derivative.known.set(id, graph.one().id());
+        derivative.known.assign_number(id, graph.one().id());
         derivative
     }
 
@@ -114,33 +117,33 @@ impl<'g> Derivative<'g> {
                 continue;
             }
             let before = todo.len();
-            self.graph.node(id).operands(|a| {
+            self.graph.node(id).visit_operands(|a| {
                 if self.known.get(a).is_none() {
                     todo.push(a);
                 }
             });
             if todo.len() == before {
-                let derivative = self.rule(id).id();
-                self.known.set(id, derivative);
+                let derivative = self.differentiate_node(id).id();
+                self.known.assign_number(id, derivative);
                 todo.pop();
             }
         }
-        self.derived(e.id())
+        self.derivative_of_node(e.id())
     }
 
-    fn derived(&self, id: Id) -> Expr<'g> {
+    fn derivative_of_node(&self, id: Id) -> Expr<'g> {
         self.known.get(id).map_or(self.graph.zero(), |d| self.graph.expr(d))
     }
 
-    fn rule(&self, id: Id) -> Expr<'g> {
+    fn differentiate_node(&self, id: Id) -> Expr<'g> {
         let expression_of_id = |id: Id| self.graph.expr(id);
-        let derivative_of_id = |id: Id| self.derived(id);
+        let derivative_of_id = |id: Id| self.derivative_of_node(id);
         match self.graph.node(id) {
             // Derivatives are taken before the inputs of lanes are gathered.
             Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => self.graph.zero(),
             Node::Sum(n, a) => derivative_of_id(a).lane_sum(n.into()),
             Node::Lane(k, a) => derivative_of_id(a).lane(k.into()),
-            Node::Join(n, a, b) => derivative_of_id(a).joined(n.into(), derivative_of_id(b)),
+            Node::Join(n, a, b) => derivative_of_id(a).join_with(n.into(), derivative_of_id(b)),
             Node::Symbol(s) => self
                 .rates
                 .iter()
@@ -155,9 +158,9 @@ impl<'g> Derivative<'g> {
             Node::Div(a, b) => {
                 (derivative_of_id(a) - expression_of_id(id) * derivative_of_id(b)) / expression_of_id(b)
             }
-            Node::Call(f, a) if derivative_of_id(a).is_zero() => expression_of_id(a).call(f).zero(),
+            Node::Call(f, a) if derivative_of_id(a).is_zero() => expression_of_id(a).apply_function(f).zero(),
             Node::Call(f, a) => {
-                self.outer(f, expression_of_id(a), expression_of_id(id)) * derivative_of_id(a)
+                self.outer_derivative(f, expression_of_id(a), expression_of_id(id)) * derivative_of_id(a)
             }
             Node::Atan2(y, x) => {
                 (expression_of_id(x) * derivative_of_id(y) - expression_of_id(y) * derivative_of_id(x))
@@ -165,18 +168,21 @@ impl<'g> Derivative<'g> {
             }
             Node::Extreme(_, a, b) if derivative_of_id(a) == derivative_of_id(b) => derivative_of_id(a),
             Node::Extreme(f, a, b) => {
-                let sign = (expression_of_id(a) - expression_of_id(b)).call(Function::Signum);
+                let sign = (expression_of_id(a) - expression_of_id(b)).apply_function(Function::Signum);
                 let change = (derivative_of_id(a) - derivative_of_id(b)) * sign;
                 let sum = derivative_of_id(a) + derivative_of_id(b);
                 (if f == Extreme::Max { sum + change } else { sum - change }) * 0.5
             }
             Node::Table(lookup, a, b, c) => {
                 let x = [a, b, c];
-                (0..lookup.variables()).fold(self.graph.zero(), |sum, k| match lookup.slope(k) {
-                    Some(slope) if !derivative_of_id(x[k]).is_zero() => {
-                        sum + self.graph.lookup(slope, x.map(expression_of_id)) * derivative_of_id(x[k])
+                (0..lookup.variable_count()).fold(self.graph.zero(), |sum, k| {
+                    match lookup.partial_derivative(k) {
+                        Some(slope) if !derivative_of_id(x[k]).is_zero() => {
+                            sum + self.graph.table_lookup(slope, x.map(expression_of_id))
+                                * derivative_of_id(x[k])
+                        }
+                        _ => sum,
                     }
-                    _ => sum,
                 })
             }
             Node::Pow(a, b) => {
@@ -192,7 +198,7 @@ impl<'g> Derivative<'g> {
                     false => {
                         base + expression_of_id(id)
                             * derivative_of_id(b)
-                            * expression_of_id(a).call(Function::Ln)
+                            * expression_of_id(a).apply_function(Function::Ln)
                     }
                 }
             }
@@ -200,7 +206,7 @@ impl<'g> Derivative<'g> {
     }
 
     /// Returns the derivative `f'(x)` of an elementary function, given `y = f(x)`.
-    fn outer(&self, f: Function, x: Expr<'g>, y: Expr<'g>) -> Expr<'g> {
+    fn outer_derivative(&self, f: Function, x: Expr<'g>, y: Expr<'g>) -> Expr<'g> {
         let one = self.graph.one();
         match f {
             Function::Sin => x.cos(),
@@ -209,18 +215,18 @@ impl<'g> Derivative<'g> {
             Function::Asin => one / (one - x.square()).sqrt(),
             Function::Acos => -(one / (one - x.square()).sqrt()),
             Function::Atan => one / (one + x.square()),
-            Function::Sinh => x.call(Function::Cosh),
-            Function::Cosh => x.call(Function::Sinh),
+            Function::Sinh => x.apply_function(Function::Cosh),
+            Function::Cosh => x.apply_function(Function::Sinh),
             Function::Tanh => one - y.square(),
             Function::Exp => y,
             Function::Ln => one / x,
             // Finite where the root is zero. In derivatives of lengths, the other factor is zero there too.
             Function::Sqrt => one / ((y + y.num(TINY)) * 2.0),
-            Function::Abs => x.call(Function::Signum),
+            Function::Abs => x.apply_function(Function::Signum),
             Function::Signum | Function::IsaLapseRate => self.graph.zero(),
-            Function::IsaTemperature => x.call(Function::IsaLapseRate),
+            Function::IsaTemperature => x.apply_function(Function::IsaLapseRate),
             // Hydrostatic equation.
-            Function::IsaPressure => -(y / x.call(Function::IsaTemperature) * air::FALL_OVER_GAS),
+            Function::IsaPressure => -(y / x.apply_function(Function::IsaTemperature) * air::FALL_OVER_GAS),
         }
     }
 }
@@ -237,7 +243,7 @@ mod tests {
         let symbols = [0, 1, 2].map(Symbol);
         let [x, y, z] = symbols.map(|s| g.symbol(s));
         let shared = (x * y + z).sin();
-        let e = shared * shared / (y.square() + z.call(Function::Exp)) + x.atan2(shared)
+        let e = shared * shared / (y.square() + z.apply_function(Function::Exp)) + x.atan2(shared)
             - (z - x * shared).sqrt() * y.pow(x);
         let found = gradient(e, &symbols);
         let value_at_sample_point = |e: Expr<'_>| eval_one(e, &|s| [0.7, 1.3, 1.9][s.0 as usize]);

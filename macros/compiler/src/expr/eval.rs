@@ -6,7 +6,7 @@ use super::{Expr, Graph, Memo};
 
 /// Evaluates several expressions of one graph at the given values of the symbols.
 pub fn eval(roots: &[Expr<'_>], symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
-    Tape::new(roots).values(symbol)
+    Tape::new(roots).evaluate_at(symbol)
 }
 
 /// Evaluates one expression at the given values of the symbols.
@@ -32,13 +32,13 @@ impl<'g> Tape<'g> {
         let Some(first) = roots.first() else { return tape };
         let graph = first.graph();
         let mut places = Memo::new(graph);
-        for id in needed(graph, roots) {
+        for id in nodes_in_order(graph, roots) {
             let (node, mut operands, mut count) = (graph.node(id), [0; 3], 0);
-            node.operands(|a| {
+            node.visit_operands(|a| {
                 operands[count] = places.get(a).unwrap_or(0);
                 count += 1;
             });
-            places.set(id, tape.steps.len() as u32);
+            places.assign_number(id, tape.steps.len() as u32);
             tape.in_lanes |= is_of_lanes(node);
             tape.steps.push((node, operands));
         }
@@ -48,41 +48,49 @@ impl<'g> Tape<'g> {
     }
 
     /// Returns the number of nodes, symbols and constants included.
-    pub fn steps(&self) -> usize {
+    pub fn node_count(&self) -> usize {
         self.steps.len()
     }
 
     /// Evaluates the expressions of the tape at these values of the symbols.
-    pub fn values(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
+    pub fn evaluate_at(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
         self.run_with(symbol)
     }
 
     /// Evaluates the expressions with estimates of their rounding errors.
-    pub fn rounded(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<Rounded> {
+    pub fn evaluate_with_rounding(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<Rounded> {
         self.run_with(&|s| Rounded::from_number(symbol(s)))
     }
 
     fn run_with<V: Value>(&self, symbol: &dyn Fn(Symbol) -> V) -> Vec<V> {
         match self.graph {
             None => Vec::new(),
-            Some(graph) if self.in_lanes => self.run::<V, MAX_LANES>(graph, symbol),
-            Some(graph) => self.run::<V, 1>(graph, symbol),
+            Some(graph) if self.in_lanes => self.evaluate_in_lanes::<V, MAX_LANES>(graph, symbol),
+            Some(graph) => self.evaluate_in_lanes::<V, 1>(graph, symbol),
         }
     }
 
     /// Evaluates all nodes in `N` lanes and returns the first lane of each expression.
-    fn run<V: Value, const N: usize>(&self, graph: &Graph, symbol: &dyn Fn(Symbol) -> V) -> Vec<V> {
+    fn evaluate_in_lanes<V: Value, const N: usize>(
+        &self,
+        graph: &Graph,
+        symbol: &dyn Fn(Symbol) -> V,
+    ) -> Vec<V> {
         let none = V::from_number(f64::NAN);
         let pad_with_none = |list: Vec<V>| std::array::from_fn(|k| list.get(k).copied().unwrap_or(none));
         let mut values: Vec<[V; N]> = Vec::with_capacity(self.steps.len());
         for (node, [a, b, c]) in &self.steps {
             let value_at = |place: u32| values.get(place as usize).copied().unwrap_or([none; N]);
             let value = match *node {
-                Node::Tuple(k) => pad_with_none(graph.tuple(k).into_iter().map(V::from_number).collect()),
-                Node::Gather(k) => pad_with_none(graph.gather(k).into_iter().map(symbol).collect()),
+                Node::Tuple(k) => {
+                    pad_with_none(graph.lanes_of_tuple(k).into_iter().map(V::from_number).collect())
+                }
+                Node::Gather(k) => {
+                    pad_with_none(graph.symbols_of_gather(k).into_iter().map(symbol).collect())
+                }
                 Node::Sum(n, _) => [V::sum(&value_at(*a)[..usize::from(n)]); N],
                 Node::Lane(k, _) => [value_at(*a)[usize::from(k)]; N],
-                Node::Join(n, _, _) => joined(n.into(), value_at(*a), value_at(*b)),
+                Node::Join(n, _, _) => join_lanes(n.into(), value_at(*a), value_at(*b)),
                 Node::Symbol(s) => [symbol(s); N],
                 node => {
                     let (a, b, c) = (value_at(*a), value_at(*b), value_at(*c));
@@ -150,7 +158,7 @@ impl Value for Rounded {
     fn sum(lanes: &[Rounded]) -> Rounded {
         let mut sum = Rounded { value: 0.0, error: 0.0 };
         for lane in lanes {
-            sum = Rounded { value: sum.value + lane.value, error: sum.error.hypot(lane.error) };
+            sum = Rounded { value: sum.value + lane.value, error: libm::hypot(sum.error, lane.error) };
         }
         sum
     }
@@ -165,26 +173,26 @@ impl Value for Rounded {
                 at[k] += by;
                 (step(node, at) - value).abs()
             });
-            error = error.hypot(moved[0].max(moved[1]));
+            error = libm::hypot(error, moved[0].max(moved[1]));
         }
         // If both factors are only rounding error, the first-order terms above miss the error of the product.
         if let (Node::Mul(..), [a, b, _]) = (node, operands) {
-            error = error.hypot(a.error * b.error);
+            error = libm::hypot(error, a.error * b.error);
         }
         Rounded { value, error }
     }
 }
 
 /// Returns the nodes that the expressions depend on, operands before operations.
-pub fn needed(graph: &Graph, roots: &[Expr<'_>]) -> Vec<Id> {
+pub fn nodes_in_order(graph: &Graph, roots: &[Expr<'_>]) -> Vec<Id> {
     let mut seen = Memo::new(graph);
     let mut needed = Vec::new();
     let mut todo: Vec<Id> = roots.iter().map(|r| r.id()).collect();
     while let Some(id) = todo.pop() {
         if seen.get(id).is_none() {
-            seen.set(id, 0);
+            seen.assign_number(id, 0);
             needed.push(id);
-            graph.node(id).operands(|a| todo.push(a));
+            graph.node(id).visit_operands(|a| todo.push(a));
         }
     }
     // Operands have smaller indices than the operations on them.
@@ -197,7 +205,7 @@ fn is_of_lanes(node: Node) -> bool {
 }
 
 /// Returns the first `n` lanes of `a`, followed by the lanes of `b`.
-pub fn joined<V: Copy, const N: usize>(n: usize, a: [V; N], b: [V; N]) -> [V; N] {
+pub fn join_lanes<V: Copy, const N: usize>(n: usize, a: [V; N], b: [V; N]) -> [V; N] {
     std::array::from_fn(|k| if k < n { a[k] } else { b[k - n] })
 }
 
@@ -210,11 +218,11 @@ fn step(node: Node, [a, b, c]: [f64; 3]) -> f64 {
         Node::Sub(..) => a - b,
         Node::Mul(..) => a * b,
         Node::Div(..) => a / b,
-        Node::Call(f, _) => f.apply(a),
-        Node::Atan2(..) => a.atan2(b),
-        Node::Pow(..) => a.powf(b),
-        Node::Extreme(f, ..) => f.apply(a, b),
-        Node::Table(lookup, ..) => lookup.apply([a, b, c]),
+        Node::Call(f, _) => f.evaluate_at(a),
+        Node::Atan2(..) => libm::atan2(a, b),
+        Node::Pow(..) => libm::pow(a, b),
+        Node::Extreme(f, ..) => f.evaluate_extreme(a, b),
+        Node::Table(lookup, ..) => lookup.evaluate_surrogate([a, b, c]),
         Node::Symbol(_)
         | Node::Tuple(_)
         | Node::Gather(_)

@@ -14,14 +14,14 @@ const ROUNDING: f64 = 1e-14;
 /// angles by exact values.
 pub fn replace_exactly<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Vec<Expr<'g>> {
     replace_calls(e, by, &|f, x| match f {
-        Function::Sin => circle(x)[0],
-        Function::Cos => circle(x)[1],
+        Function::Sin => sine_and_cosine(x)[0],
+        Function::Cos => sine_and_cosine(x)[1],
         Function::Tan => {
-            let [sin, cos] = circle(x);
+            let [sin, cos] = sine_and_cosine(x);
             let plain = sin == x.sin() || cos.is_zero();
-            if plain { x.call(f) } else { sin / cos }
+            if plain { x.apply_function(f) } else { sin / cos }
         }
-        _ => x.call(f),
+        _ => x.apply_function(f),
     })
 }
 
@@ -29,7 +29,7 @@ pub fn replace_exactly<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g
 const DEPTH: usize = 16;
 
 /// Returns sine and cosine of an expression, with exact values if known.
-fn circle(x: Expr<'_>) -> [Expr<'_>; 2] {
+fn sine_and_cosine(x: Expr<'_>) -> [Expr<'_>; 2] {
     known_sine_cosine(x, DEPTH).unwrap_or_else(|| [x.sin(), x.cos()])
 }
 
@@ -41,8 +41,8 @@ fn known_sine_cosine(x: Expr<'_>, depth: usize) -> Option<[Expr<'_>; 2]> {
     match x.node() {
         Node::Const(value) => of_number(value).map(|point| point.map(|c| x.num(c))),
         Node::Neg(a) => known_sine_cosine(expression_of_id(a), depth).map(|[sin, cos]| [-sin, cos]),
-        Node::Add(a, b) => sum(expression_of_id(a), expression_of_id(b), one, depth),
-        Node::Sub(a, b) => sum(expression_of_id(a), expression_of_id(b), -one, depth),
+        Node::Add(a, b) => sine_cosine_of_sum(expression_of_id(a), expression_of_id(b), one, depth),
+        Node::Sub(a, b) => sine_cosine_of_sum(expression_of_id(a), expression_of_id(b), -one, depth),
         Node::Call(Function::Asin, a) => {
             Some([expression_of_id(a), (one - expression_of_id(a).square()).sqrt()])
         }
@@ -62,7 +62,7 @@ fn known_sine_cosine(x: Expr<'_>, depth: usize) -> Option<[Expr<'_>; 2]> {
 }
 
 /// Returns sine and cosine of `a ± b`, with the given sign, if the sines and cosines of `a` or `b` are known.
-fn sum<'g>(a: Expr<'g>, b: Expr<'g>, sign: Expr<'g>, depth: usize) -> Option<[Expr<'g>; 2]> {
+fn sine_cosine_of_sum<'g>(a: Expr<'g>, b: Expr<'g>, sign: Expr<'g>, depth: usize) -> Option<[Expr<'g>; 2]> {
     let (of_a, of_b) = (known_sine_cosine(a, depth), known_sine_cosine(b, depth));
     if of_a.is_none() && of_b.is_none() {
         return None;
@@ -117,16 +117,16 @@ mod tests {
         let g = Graph::new();
         let (x, y) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)));
         let fold_expression = |e| replace_exactly(&[e], &|_| None)[0];
-        assert_eq!(fold_expression(x.call(Function::Acos).cos()), x);
-        assert_eq!(fold_expression((-x.call(Function::Asin)).sin()), -x);
+        assert_eq!(fold_expression(x.apply_function(Function::Acos).cos()), x);
+        assert_eq!(fold_expression((-x.apply_function(Function::Asin)).sin()), -x);
         assert_eq!(fold_expression((y - y.num(PI)).sin()), -y.sin());
         let value_at_sample_point =
             |e| crate::expr::eval::eval_one(e, &|s| if s == Symbol(0) { 0.3 } else { 0.8 });
         for e in [
-            (x.call(Function::Acos) + y).sin(),
+            (x.apply_function(Function::Acos) + y).sin(),
             y.atan2(x).cos(),
-            (x.num(PI / 3.0) - x.call(Function::Atan)).sin(),
-            x.call(Function::Asin).call(Function::Tan),
+            (x.num(PI / 3.0) - x.apply_function(Function::Atan)).sin(),
+            x.apply_function(Function::Asin).apply_function(Function::Tan),
             (x + y).cos(),
         ] {
             assert!(

@@ -36,7 +36,7 @@ const EMPTY: Id = Id::MAX;
 const MOST_NODES: usize = 4_000_000;
 
 impl Store {
-    fn intern(&mut self, node: Node) -> Id {
+    fn intern_node(&mut self, node: Node) -> Id {
         let mask = self.table.len() - 1;
         let mut slot = node.hash() as usize & mask;
         loop {
@@ -44,7 +44,7 @@ impl Store {
             if id == EMPTY {
                 break;
             }
-            if self.nodes[id as usize].same(node) {
+            if self.nodes[id as usize].is_same_node(node) {
                 return id;
             }
             slot = (slot + 1) & mask;
@@ -57,12 +57,12 @@ impl Store {
         self.nodes.push(node);
         self.table[slot] = id;
         if self.nodes.len() * 2 > self.table.len() {
-            self.grow();
+            self.grow_table();
         }
         id
     }
 
-    fn grow(&mut self) {
+    fn grow_table(&mut self) {
         let size = self.table.len() * 2;
         self.table.clear();
         self.table.resize(size, EMPTY);
@@ -114,8 +114,8 @@ impl Graph {
     pub fn with_room_for(most: usize) -> Graph {
         let mut store =
             Store { nodes: Vec::new(), table: vec![EMPTY; 1024], most: most.max(2), is_full: false };
-        store.intern(Node::Const(0.0));
-        store.intern(Node::Const(1.0));
+        store.intern_node(Node::Const(0.0));
+        store.intern_node(Node::Const(1.0));
         Graph {
             store: RefCell::new(store),
             table: RefCell::default(),
@@ -175,7 +175,7 @@ impl Graph {
 
     /// Returns a constant expression.
     pub fn num(&self, value: f64) -> Expr<'_> {
-        self.expr(self.constant(value))
+        self.expr(self.intern_constant(value))
     }
 
     /// Returns the constant zero.
@@ -190,7 +190,7 @@ impl Graph {
 
     /// Returns the expression of a symbol, which is an input of programs.
     pub fn symbol(&self, symbol: Symbol) -> Expr<'_> {
-        self.expr(self.intern(Node::Symbol(symbol)))
+        self.expr(self.intern_node(Node::Symbol(symbol)))
     }
 
     /// Sets the names of the functions that are defined by tables, by table index.
@@ -200,30 +200,30 @@ impl Graph {
 
     /// Returns the name of a table, with a suffix for every differentiation: `lift.d1.d2`.
     pub fn table_name(&self, lookup: Lookup) -> String {
-        let mut name = self.functions.borrow().get(lookup.table()).cloned().unwrap_or_default();
-        for (k, order) in lookup.orders().into_iter().enumerate() {
+        let mut name = self.functions.borrow().get(lookup.table_index()).cloned().unwrap_or_default();
+        for (k, order) in lookup.derivative_orders().into_iter().enumerate() {
             name.push_str(&format!(".d{}", k + 1).repeat(order));
         }
         name
     }
 
     /// Returns the value or derivative of a table. Surplus variables are ignored.
-    pub fn lookup(&self, lookup: Lookup, x: [Expr<'_>; 3]) -> Expr<'_> {
-        let last = lookup.variables().saturating_sub(1);
+    pub fn table_lookup(&self, lookup: Lookup, x: [Expr<'_>; 3]) -> Expr<'_> {
+        let last = lookup.variable_count().saturating_sub(1);
         let [a, b, c] = std::array::from_fn(|k: usize| x[k.min(last)].id);
-        self.expr(self.intern(Node::Table(lookup, a, b, c)))
+        self.expr(self.intern_node(Node::Table(lookup, a, b, c)))
     }
 
-    pub(super) fn intern(&self, node: Node) -> Id {
-        self.store.borrow_mut().intern(node)
+    pub(super) fn intern_node(&self, node: Node) -> Id {
+        self.store.borrow_mut().intern_node(node)
     }
 
-    pub(super) fn constant(&self, value: f64) -> Id {
+    pub(super) fn intern_constant(&self, value: f64) -> Id {
         // Minus zero becomes zero: the sign of zero has no meaning here.
-        self.intern(Node::Const(if value == 0.0 { 0.0 } else { value }))
+        self.intern_node(Node::Const(if value == 0.0 { 0.0 } else { value }))
     }
 
-    pub(super) fn value(&self, id: Id) -> Option<f64> {
+    pub(super) fn constant_value(&self, id: Id) -> Option<f64> {
         match self.node(id) {
             Node::Const(c) => Some(c),
             _ => None,
@@ -236,9 +236,9 @@ impl Graph {
     }
 
     /// Applies `f` to two constants. `None` if an operand is not constant.
-    fn fold(&self, a: Id, b: Id, f: fn(f64, f64) -> f64) -> Option<Id> {
+    fn fold_constants(&self, a: Id, b: Id, f: fn(f64, f64) -> f64) -> Option<Id> {
         match (self.node(a), self.node(b)) {
-            (Node::Const(x), Node::Const(y)) => Some(self.constant(f(x, y))),
+            (Node::Const(x), Node::Const(y)) => Some(self.intern_constant(f(x, y))),
             (Node::Const(_) | Node::Tuple(_), Node::Const(_) | Node::Tuple(_)) => self.fold_lanes(a, b, f),
             _ => None,
         }
@@ -246,25 +246,25 @@ impl Graph {
 
     /// Splits an expression into its sign (true if negative) and the expression without it, so that the sign
     /// can be lifted.
-    pub(super) fn unsigned(&self, id: Id) -> (bool, Id) {
+    pub(super) fn split_sign(&self, id: Id) -> (bool, Id) {
         match self.node(id) {
             Node::Neg(a) => (true, a),
-            Node::Const(c) if c < 0.0 => (true, self.constant(-c)),
+            Node::Const(c) if c < 0.0 => (true, self.intern_constant(-c)),
             Node::Tuple(k) if self.starts_negative(k) => (true, self.neg(id)),
             _ => (false, id),
         }
     }
 
-    pub(super) fn signed(&self, negative: bool, id: Id) -> Id {
+    pub(super) fn apply_sign(&self, negative: bool, id: Id) -> Id {
         if negative { self.neg(id) } else { id }
     }
 
     pub(super) fn neg(&self, a: Id) -> Id {
         match self.node(a) {
-            Node::Const(c) => self.constant(-c),
+            Node::Const(c) => self.intern_constant(-c),
             Node::Tuple(_) => self.map_lanes(a, |x| -x),
             Node::Neg(a) => a,
-            _ => self.intern(Node::Neg(a)),
+            _ => self.intern_node(Node::Neg(a)),
         }
     }
 
@@ -275,13 +275,13 @@ impl Graph {
         if b == ZERO {
             return a;
         }
-        if let Some(sum) = self.fold(a, b, |x, y| x + y) {
+        if let Some(sum) = self.fold_constants(a, b, |x, y| x + y) {
             return sum;
         }
         if let Some(sum) = self.constant_sum(a, b).or_else(|| self.constant_sum(b, a)) {
             return sum;
         }
-        let ((na, a), (nb, b)) = (self.unsigned(a), self.unsigned(b));
+        let ((na, a), (nb, b)) = (self.split_sign(a), self.split_sign(b));
         match (na, nb) {
             (false, false) => self.plain_sum(a, b),
             (true, true) => self.neg(self.plain_sum(a, b)),
@@ -295,7 +295,7 @@ impl Graph {
         if !self.is_constant(c) {
             return None;
         }
-        let (negative, b) = self.unsigned(b);
+        let (negative, b) = self.split_sign(b);
         let (Node::Add(x, y) | Node::Sub(x, y)) = self.node(b) else { return None };
         let difference = matches!(self.node(b), Node::Sub(..));
         let (d, d_negative, rest, rest_negative) = match (self.is_constant(x), self.is_constant(y)) {
@@ -303,13 +303,13 @@ impl Graph {
             (false, true) => (y, difference, x, false),
             _ => return None,
         };
-        let sum = self.add(c, self.signed(negative != d_negative, d));
-        Some(self.add(sum, self.signed(negative != rest_negative, rest)))
+        let sum = self.add(c, self.apply_sign(negative != d_negative, d));
+        Some(self.add(sum, self.apply_sign(negative != rest_negative, rest)))
     }
 
     fn plain_sum(&self, a: Id, b: Id) -> Id {
         if a == b {
-            return self.mul(self.constant(2.0), a);
+            return self.mul(self.intern_constant(2.0), a);
         }
         // (x - b) + b = x
         if let Node::Sub(x, y) = self.node(a)
@@ -322,7 +322,7 @@ impl Graph {
         {
             return x;
         }
-        self.intern(Node::Add(a.min(b), a.max(b)))
+        self.intern_node(Node::Add(a.min(b), a.max(b)))
     }
 
     fn difference(&self, a: Id, b: Id) -> Id {
@@ -343,7 +343,7 @@ impl Graph {
             _ => {}
         }
         // One operand order for both signs, so that `a − b` and `b − a` share a node.
-        if a < b { self.intern(Node::Sub(a, b)) } else { self.neg(self.intern(Node::Sub(b, a))) }
+        if a < b { self.intern_node(Node::Sub(a, b)) } else { self.neg(self.intern_node(Node::Sub(b, a))) }
     }
 
     pub(super) fn sub(&self, a: Id, b: Id) -> Id {
@@ -360,51 +360,51 @@ impl Graph {
         if b == ONE {
             return a;
         }
-        let ((na, a), (nb, b)) = (self.unsigned(a), self.unsigned(b));
-        self.signed(na != nb, self.plain_product(a, b))
+        let ((na, a), (nb, b)) = (self.split_sign(a), self.split_sign(b));
+        self.apply_sign(na != nb, self.plain_product(a, b))
     }
 
     /// Multiplies two operands whose negations the caller has removed.
     fn plain_product(&self, a: Id, b: Id) -> Id {
-        if let Some(product) = self.fold(a, b, |x, y| x * y) {
+        if let Some(product) = self.fold_constants(a, b, |x, y| x * y) {
             return product;
         }
         match (self.is_constant(a), self.is_constant(b)) {
-            (true, _) => self.scaled(a, b),
-            (_, true) => self.scaled(b, a),
+            (true, _) => self.multiply_by_constant(a, b),
+            (_, true) => self.multiply_by_constant(b, a),
             _ => self.variable_product(a, b),
         }
     }
 
     /// Multiplies an expression that is not constant by a positive constant.
-    fn scaled(&self, c: Id, b: Id) -> Id {
+    fn multiply_by_constant(&self, c: Id, b: Id) -> Id {
         if c == ONE {
             return b;
         }
         match self.node(b) {
             Node::Mul(x, y) => {
-                if let Some(product) = self.fold(c, x, |c, d| c * d) {
+                if let Some(product) = self.fold_constants(c, x, |c, d| c * d) {
                     return self.mul(product, y);
                 }
             }
             Node::Div(x, y) => {
                 // Another division would cost more than a product with a shared inverse.
                 if x != ONE
-                    && let Some(product) = self.fold(c, x, |c, d| c * d)
+                    && let Some(product) = self.fold_constants(c, x, |c, d| c * d)
                 {
-                    return self.intern(Node::Div(product, y));
+                    return self.intern_node(Node::Div(product, y));
                 }
-                if let Some(quotient) = self.fold(c, y, |c, d| c / d) {
+                if let Some(quotient) = self.fold_constants(c, y, |c, d| c / d) {
                     return self.mul(quotient, x);
                 }
             }
             _ => {}
         }
-        self.intern(Node::Mul(c, b))
+        self.intern_node(Node::Mul(c, b))
     }
 
     fn variable_product(&self, a: Id, b: Id) -> Id {
-        self.intern(Node::Mul(a.min(b), a.max(b)))
+        self.intern_node(Node::Mul(a.min(b), a.max(b)))
     }
 
     pub(super) fn div(&self, a: Id, b: Id) -> Id {
@@ -417,50 +417,50 @@ impl Graph {
         if a == b && b != ZERO {
             return ONE;
         }
-        if let Some(quotient) = self.fold(a, b, |x, y| x / y) {
+        if let Some(quotient) = self.fold_constants(a, b, |x, y| x / y) {
             return quotient;
         }
-        let ((na, a), (nb, b)) = (self.unsigned(a), self.unsigned(b));
+        let ((na, a), (nb, b)) = (self.split_sign(a), self.split_sign(b));
         let magnitude = match self.inverse(b) {
             // Division by a constant becomes multiplication by its inverse. This is exact for powers of two,
             // otherwise within half an ulp.
             Some(inverse) => self.mul(inverse, a),
-            None => self.intern(Node::Div(a, b)),
+            None => self.intern_node(Node::Div(a, b)),
         };
-        self.signed(na != nb, magnitude)
+        self.apply_sign(na != nb, magnitude)
     }
 
     /// Returns the inverse of a constant if it is finite.
     fn inverse(&self, b: Id) -> Option<Id> {
         match self.node(b) {
-            Node::Const(y) if y != 0.0 && (1.0 / y).is_finite() => Some(self.constant(1.0 / y)),
+            Node::Const(y) if y != 0.0 && (1.0 / y).is_finite() => Some(self.intern_constant(1.0 / y)),
             Node::Tuple(_) => self.finite_lanes(b, |y| 1.0 / y),
             _ => None,
         }
     }
 
-    pub(super) fn call(&self, f: Function, a: Id) -> Id {
+    pub(super) fn call_function(&self, f: Function, a: Id) -> Id {
         if let Node::Tuple(_) = self.node(a)
-            && let Some(result) = self.finite_lanes(a, |x| f.apply(x))
+            && let Some(result) = self.finite_lanes(a, |x| f.evaluate_at(x))
         {
             return result;
         }
-        if let Some(x) = self.value(a) {
-            let y = f.apply(x);
+        if let Some(x) = self.constant_value(a) {
+            let y = f.evaluate_at(x);
             if y.is_finite() {
-                return self.constant(y);
+                return self.intern_constant(y);
             }
         }
         if f == Function::Sqrt
             && let Node::Mul(x, y) = self.node(a)
             && x == y
         {
-            return self.call(Function::Abs, x);
+            return self.call_function(Function::Abs, x);
         }
         if f.is_odd() || f.is_even() {
-            let (negative, a) = self.unsigned(a);
-            return self.signed(f.is_odd() && negative, self.intern(Node::Call(f, a)));
+            let (negative, a) = self.split_sign(a);
+            return self.apply_sign(f.is_odd() && negative, self.intern_node(Node::Call(f, a)));
         }
-        self.intern(Node::Call(f, a))
+        self.intern_node(Node::Call(f, a))
     }
 }

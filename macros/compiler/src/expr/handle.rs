@@ -34,13 +34,13 @@ impl<'g> Expr<'g> {
     }
 
     /// Returns the value if the expression is a constant.
-    pub fn value(self) -> Option<f64> {
-        self.graph.value(self.id)
+    pub fn constant_value(self) -> Option<f64> {
+        self.graph.constant_value(self.id)
     }
 
     /// Returns true for a constant, or a constant times another expression.
     pub fn is_multiple(self) -> bool {
-        let (_, id) = self.graph.unsigned(self.id);
+        let (_, id) = self.graph.split_sign(self.id);
         match self.graph.node(id) {
             Node::Mul(a, _) => self.graph.is_constant(a),
             node => matches!(node, Node::Const(_) | Node::Tuple(_)),
@@ -63,52 +63,52 @@ impl<'g> Expr<'g> {
     }
 
     /// Returns an elementary function of this expression.
-    pub fn call(self, f: Function) -> Expr<'g> {
-        self.graph.expr(self.graph.call(f, self.id))
+    pub fn apply_function(self, f: Function) -> Expr<'g> {
+        self.graph.expr(self.graph.call_function(f, self.id))
     }
 
     /// Returns the sine, of an angle in rad.
     pub fn sin(self) -> Expr<'g> {
-        self.call(Function::Sin)
+        self.apply_function(Function::Sin)
     }
 
     /// Returns the cosine, of an angle in rad.
     pub fn cos(self) -> Expr<'g> {
-        self.call(Function::Cos)
+        self.apply_function(Function::Cos)
     }
 
     /// Returns the square root of the expression.
     pub fn sqrt(self) -> Expr<'g> {
-        self.call(Function::Sqrt)
+        self.apply_function(Function::Sqrt)
     }
 
     /// Returns the angle, rad, of the point (`abscissa`, `self`).
     pub fn atan2(self, abscissa: Expr<'g>) -> Expr<'g> {
-        if let (Some(y), Some(x)) = (self.value(), abscissa.value()) {
-            return self.num(y.atan2(x));
+        if let (Some(y), Some(x)) = (self.constant_value(), abscissa.constant_value()) {
+            return self.num(libm::atan2(y, x));
         }
-        self.graph.expr(self.graph.intern(Node::Atan2(self.id, abscissa.id)))
+        self.graph.expr(self.graph.intern_node(Node::Atan2(self.id, abscissa.id)))
     }
 
     /// Returns the minimum or maximum of two expressions.
-    pub fn extreme(self, f: Extreme, other: Expr<'g>) -> Expr<'g> {
-        match (self.value(), other.value()) {
-            (Some(a), Some(b)) => self.num(f.apply(a, b)),
+    pub fn minimum_or_maximum(self, f: Extreme, other: Expr<'g>) -> Expr<'g> {
+        match (self.constant_value(), other.constant_value()) {
+            (Some(a), Some(b)) => self.num(f.evaluate_extreme(a, b)),
             _ if self == other => self,
-            _ => self.graph.expr(self.graph.intern(Node::Extreme(f, self.id, other.id))),
+            _ => self.graph.expr(self.graph.intern_node(Node::Extreme(f, self.id, other.id))),
         }
     }
 
     /// Returns a power. Integer exponents up to eight become products.
     pub fn pow(self, exponent: Expr<'g>) -> Expr<'g> {
-        match (self.value(), exponent.value()) {
-            (Some(x), Some(n)) if x.powf(n).is_finite() => self.num(x.powf(n)),
+        match (self.constant_value(), exponent.constant_value()) {
+            (Some(x), Some(n)) if libm::pow(x, n).is_finite() => self.num(libm::pow(x, n)),
             (_, Some(n)) if n == n.trunc() && n.abs() <= 8.0 => {
                 let product = (0..n.abs() as u32).fold(self.graph.one(), |p, _| p * self);
                 if n < 0.0 { self.graph.one() / product } else { product }
             }
             (_, Some(0.5)) => self.sqrt(),
-            _ => self.graph.expr(self.graph.intern(Node::Pow(self.id, exponent.id))),
+            _ => self.graph.expr(self.graph.intern_node(Node::Pow(self.id, exponent.id))),
         }
     }
 

@@ -39,25 +39,25 @@ impl Graph {
             tables.gathers.push(symbols.to_vec());
             tables.gathers.len() - 1
         });
-        self.expr(self.intern(Node::Gather(k as u32)))
+        self.expr(self.intern_node(Node::Gather(k as u32)))
     }
 
     /// Returns the constants of a tuple, one for each lane.
-    pub fn tuple(&self, k: u32) -> Vec<f64> {
+    pub fn lanes_of_tuple(&self, k: u32) -> Vec<f64> {
         self.lanes.borrow().tuples[k as usize].clone()
     }
 
     /// Returns the symbols of a gather, one for each lane.
-    pub fn gather(&self, k: u32) -> Vec<Symbol> {
+    pub fn symbols_of_gather(&self, k: u32) -> Vec<Symbol> {
         self.lanes.borrow().gathers[k as usize].clone()
     }
 
     /// Returns the number of lanes of a node, one for an expression without lanes.
-    fn width(&self, id: Id) -> usize {
+    fn lane_count(&self, id: Id) -> usize {
         let (nodes, mut tables) = (self.nodes(), self.lanes.borrow_mut());
         for node in &nodes[tables.widths.len().min(id as usize + 1)..=id as usize] {
             let mut width = 1;
-            node.operands(|a| width = width.max(tables.widths[a as usize]));
+            node.visit_operands(|a| width = width.max(tables.widths[a as usize]));
             let width = match *node {
                 Node::Tuple(k) => tables.tuples[k as usize].len() as u8,
                 Node::Gather(k) => tables.gathers[k as usize].len() as u8,
@@ -71,16 +71,16 @@ impl Graph {
     }
 
     /// Returns the first `n` lanes of `a`, followed by `n` lanes of `b`.
-    fn join(&self, n: usize, a: Id, b: Id) -> Id {
-        if a == b && self.width(a) == 1 {
+    fn join_lanes(&self, n: usize, a: Id, b: Id) -> Id {
+        if a == b && self.lane_count(a) == 1 {
             return a;
         }
         if let (Some(a), Some(b)) = (self.expr(a).lane_values(n), self.expr(b).lane_values(n)) {
             return self.lane_constant([a, b].concat());
         }
         match (self.node(a), self.node(b)) {
-            (Node::Neg(a), Node::Neg(b)) => self.neg(self.intern(Node::Join(n as u8, a, b))),
-            _ => self.intern(Node::Join(n as u8, a, b)),
+            (Node::Neg(a), Node::Neg(b)) => self.neg(self.intern_node(Node::Join(n as u8, a, b))),
+            _ => self.intern_node(Node::Join(n as u8, a, b)),
         }
     }
 
@@ -91,7 +91,7 @@ impl Graph {
         }
         let bits: Vec<u64> = values.iter().map(|x| x.to_bits()).collect();
         if bits.iter().all(|b| *b == bits[0]) {
-            return values.first().map_or(ZERO, |x| self.constant(*x));
+            return values.first().map_or(ZERO, |x| self.intern_constant(*x));
         }
         let mut tables = self.lanes.borrow_mut();
         let next = tables.tuples.len() as u32;
@@ -100,13 +100,13 @@ impl Graph {
             tables.tuples.push(values);
         }
         drop(tables);
-        self.intern(Node::Tuple(k))
+        self.intern_node(Node::Tuple(k))
     }
 
     /// Applies a function to each constant of a tuple. Other nodes are returned unchanged.
     pub(super) fn map_lanes(&self, id: Id, f: impl Fn(f64) -> f64) -> Id {
         match self.node(id) {
-            Node::Tuple(k) => self.lane_constant(self.tuple(k).into_iter().map(f).collect()),
+            Node::Tuple(k) => self.lane_constant(self.lanes_of_tuple(k).into_iter().map(f).collect()),
             _ => id,
         }
     }
@@ -115,7 +115,7 @@ impl Graph {
     /// tuple.
     pub(super) fn finite_lanes(&self, id: Id, f: impl Fn(f64) -> f64) -> Option<Id> {
         let Node::Tuple(k) = self.node(id) else { return None };
-        let values: Vec<f64> = self.tuple(k).into_iter().map(f).collect();
+        let values: Vec<f64> = self.lanes_of_tuple(k).into_iter().map(f).collect();
         values.iter().all(|x| x.is_finite()).then(|| self.lane_constant(values))
     }
 
@@ -123,10 +123,10 @@ impl Graph {
     pub(super) fn fold_lanes(&self, a: Id, b: Id, f: fn(f64, f64) -> f64) -> Option<Id> {
         let values: Vec<f64> = match (self.node(a), self.node(b)) {
             (Node::Tuple(x), Node::Tuple(y)) => {
-                self.tuple(x).into_iter().zip(self.tuple(y)).map(|(x, y)| f(x, y)).collect()
+                self.lanes_of_tuple(x).into_iter().zip(self.lanes_of_tuple(y)).map(|(x, y)| f(x, y)).collect()
             }
-            (Node::Tuple(x), Node::Const(y)) => self.tuple(x).into_iter().map(|x| f(x, y)).collect(),
-            (Node::Const(x), Node::Tuple(y)) => self.tuple(y).into_iter().map(|y| f(x, y)).collect(),
+            (Node::Tuple(x), Node::Const(y)) => self.lanes_of_tuple(x).into_iter().map(|x| f(x, y)).collect(),
+            (Node::Const(x), Node::Tuple(y)) => self.lanes_of_tuple(y).into_iter().map(|y| f(x, y)).collect(),
             _ => return None,
         };
         Some(self.lane_constant(values))
@@ -146,7 +146,7 @@ impl<'g> Expr<'g> {
     pub fn lane_values(self, n: usize) -> Option<Vec<f64>> {
         match self.node() {
             Node::Const(c) => Some(vec![c; n]),
-            Node::Tuple(k) => Some(self.graph().tuple(k)),
+            Node::Tuple(k) => Some(self.graph().lanes_of_tuple(k)),
             _ => None,
         }
     }
@@ -171,15 +171,15 @@ impl<'g> Expr<'g> {
         if let Some(values) = self.lane_values(n) {
             return g.num(values.iter().take(n).sum());
         }
-        let (negative, id) = g.unsigned(self.id());
-        g.expr(g.signed(negative, g.intern(Node::Sum(n as u8, id))))
+        let (negative, id) = g.split_sign(self.id());
+        g.expr(g.apply_sign(negative, g.intern_node(Node::Sum(n as u8, id))))
     }
 
     /// Returns the `n` lanes of this expression, followed by the `n` lanes of another one. An expression
     /// without lanes has the same value in each lane.
-    pub fn joined(self, n: usize, other: Expr<'g>) -> Expr<'g> {
+    pub fn join_with(self, n: usize, other: Expr<'g>) -> Expr<'g> {
         let g = self.graph();
-        g.expr(g.join(n, self.id(), other.id()))
+        g.expr(g.join_lanes(n, self.id(), other.id()))
     }
 
     /// Returns the value of the expression in lane `k`.
@@ -187,8 +187,8 @@ impl<'g> Expr<'g> {
         let g = self.graph();
         match self.node() {
             Node::Const(_) | Node::Symbol(_) => return self,
-            Node::Tuple(t) => return g.num(g.tuple(t)[k]),
-            Node::Gather(t) => return g.symbol(g.gather(t)[k]),
+            Node::Tuple(t) => return g.num(g.lanes_of_tuple(t)[k]),
+            Node::Gather(t) => return g.symbol(g.symbols_of_gather(t)[k]),
             Node::Join(n, a, b) => {
                 let n = usize::from(n);
                 return if k < n { g.expr(a).lane(k) } else { g.expr(b).lane(k - n) };
@@ -196,7 +196,7 @@ impl<'g> Expr<'g> {
             _ => {}
         }
         // The sign is not lifted: one operation negates all lanes.
-        g.expr(g.intern(Node::Lane(k as u8, self.id())))
+        g.expr(g.intern_node(Node::Lane(k as u8, self.id())))
     }
 }
 
@@ -228,20 +228,20 @@ mod tests {
         let g = Graph::new();
         let [x, y] = [[0, 1], [2, 3]].map(|s| g.lane_symbols(&s.map(Symbol)));
         let s = g.symbol(Symbol(0));
-        assert_eq!(s.joined(1, s), s, "what has no lanes is the same in all");
+        assert_eq!(s.join_with(1, s), s, "what has no lanes is the same in all");
         assert_eq!(
-            g.lane_constants(&[1.0, 2.0]).joined(2, g.num(3.0)),
+            g.lane_constants(&[1.0, 2.0]).join_with(2, g.num(3.0)),
             g.lane_constants(&[1.0, 2.0, 3.0, 3.0])
         );
-        let both = x.square().joined(2, y.square());
-        assert_eq!((-x.square()).joined(2, -y.square()), -both);
-        assert_eq!(x.joined(2, y).lane(2), g.symbol(Symbol(2)));
+        let both = x.square().join_with(2, y.square());
+        assert_eq!((-x.square()).join_with(2, -y.square()), -both);
+        assert_eq!(x.join_with(2, y).lane(2), g.symbol(Symbol(2)));
         let all = both * g.lane_constants(&[1.0, 2.0, 3.0, 4.0]) + s;
         let lanes: Vec<Expr<'_>> = (0..4).map(|k| all.lane(k)).chain([all.lane_sum(4)]).collect();
         let value_of_symbol = |s: Symbol| f64::from(s.0) + 1.0;
         let expected = [2.0, 9.0, 28.0, 65.0, 104.0];
         assert_eq!(eval(&lanes, &value_of_symbol), expected);
-        assert_eq!(crate::lower::lower(&lanes).run(&value_of_symbol), expected);
+        assert_eq!(crate::lower::lower(&lanes).interpret_program(&value_of_symbol), expected);
     }
 
     #[test]

@@ -16,12 +16,12 @@ impl<'g> Vec3<'g> {
     }
 
     /// Returns the unit vector along coordinate axis `k`.
-    pub fn axis(g: &'g Graph, k: usize) -> Vec3<'g> {
+    pub fn coordinate_axis(g: &'g Graph, k: usize) -> Vec3<'g> {
         Vec3(std::array::from_fn(|i| if i == k { g.one() } else { g.zero() }))
     }
 
     /// Returns a vector of constants.
-    pub fn numbers(g: &'g Graph, v: [f64; 3]) -> Vec3<'g> {
+    pub fn from_numbers(g: &'g Graph, v: [f64; 3]) -> Vec3<'g> {
         Vec3(v.map(|c| g.num(c)))
     }
 
@@ -36,8 +36,8 @@ impl<'g> Vec3<'g> {
     }
 
     /// Returns the components as numbers if all of them are constant.
-    pub fn values(self) -> Option<[f64; 3]> {
-        Some([self.0[0].value()?, self.0[1].value()?, self.0[2].value()?])
+    pub fn constant_components(self) -> Option<[f64; 3]> {
+        Some([self.0[0].constant_value()?, self.0[1].constant_value()?, self.0[2].constant_value()?])
     }
 
     /// Returns the dot product of two vectors.
@@ -61,8 +61,8 @@ impl<'g> Vec3<'g> {
     /// otherwise be NaN.
     pub fn length(self) -> Expr<'g> {
         let mut parts = self.0.into_iter().filter(|c| !c.is_zero());
-        match (parts.next(), parts.next(), self.values()) {
-            (Some(only), None, _) => only.call(Function::Abs),
+        match (parts.next(), parts.next(), self.constant_components()) {
+            (Some(only), None, _) => only.apply_function(Function::Abs),
             (None, ..) | (.., Some(_)) => self.norm(),
             _ => (self.dot(self) + self[0].num(TINY)).sqrt(),
         }
@@ -128,7 +128,7 @@ impl<'g> Mat3<'g> {
 
     /// Returns the identity matrix.
     pub fn identity(g: &'g Graph) -> Mat3<'g> {
-        Mat3(std::array::from_fn(|i| Vec3::axis(g, i).0))
+        Mat3(std::array::from_fn(|i| Vec3::coordinate_axis(g, i).0))
     }
 
     /// Returns the matrix with entries `f(i, j)`.
@@ -158,10 +158,10 @@ impl<'g> Mat3<'g> {
     }
 
     /// Returns the entries as numbers if all of them are constant.
-    pub fn values(self) -> Option<[[f64; 3]; 3]> {
+    pub fn constant_entries(self) -> Option<[[f64; 3]; 3]> {
         let mut out = [[0.0; 3]; 3];
         for i in 0..3 {
-            out[i] = self.row(i).values()?;
+            out[i] = self.row(i).constant_components()?;
         }
         Some(out)
     }
@@ -211,7 +211,7 @@ impl<'g> Sym3<'g> {
     }
 
     /// Returns a multiple of the identity matrix.
-    pub fn scalar(s: Expr<'g>) -> Sym3<'g> {
+    pub fn multiple_of_identity(s: Expr<'g>) -> Sym3<'g> {
         Sym3 { diagonal: [s; 3], off: [s.zero(); 3] }
     }
 
@@ -232,12 +232,12 @@ impl<'g> Sym3<'g> {
     }
 
     /// Returns the full matrix.
-    pub fn full(&self) -> Mat3<'g> {
+    pub fn full_matrix(&self) -> Mat3<'g> {
         Mat3::from_fn(|i, j| self.entry(i, j))
     }
 
     /// Returns the inertia `s (|a|² 1 − a aᵀ)` of a point mass `s` at `a`.
-    pub fn point(s: Expr<'g>, a: Vec3<'g>) -> Sym3<'g> {
+    pub fn point_mass_inertia(s: Expr<'g>, a: Vec3<'g>) -> Sym3<'g> {
         let [x, y, z] = a.0;
         let (sx, sy, sz) = (s * x, s * y, s * z);
         let (xx, yy, zz) = (sx * x, sy * y, sz * z);
@@ -268,6 +268,6 @@ impl<'g> Sub for Sym3<'g> {
 impl<'g> Mul<Vec3<'g>> for Sym3<'g> {
     type Output = Vec3<'g>;
     fn mul(self, v: Vec3<'g>) -> Vec3<'g> {
-        self.full() * v
+        self.full_matrix() * v
     }
 }

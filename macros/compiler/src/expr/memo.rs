@@ -30,7 +30,7 @@ impl<'g> Memo<'g> {
     }
 
     /// Assigns a number less than `u32::MAX` to a node.
-    pub fn set(&mut self, id: Id, number: u32) {
+    pub fn assign_number(&mut self, id: Id, number: u32) {
         let place = id as usize;
         if place >= self.table.len() {
             self.table.resize(self.graph.len().max(place + 1), 0);
@@ -59,11 +59,11 @@ mod tests {
         let g = Graph::new();
         let x = g.symbol(Symbol(0));
         let mut first = Memo::new(&g);
-        first.set(x.id(), 7);
-        first.set(0, 0);
+        first.assign_number(x.id(), 7);
+        first.assign_number(0, 0);
         let mut second = Memo::new(&g);
         assert_eq!((first.get(x.id()), first.get(0), second.get(x.id())), (Some(7), Some(0), None));
-        second.set(x.sin().id(), 1);
+        second.assign_number(x.sin().id(), 1);
         drop((first, second));
         let (third, fourth) = (Memo::new(&g), Memo::new(&g));
         assert!(!third.table.is_empty() && !fourth.table.is_empty());

@@ -63,25 +63,25 @@ impl Function {
     ];
 
     /// Returns the name in the language and in generated code.
-    pub fn name(self) -> &'static str {
+    pub fn function_name(self) -> &'static str {
         let mut all = Function::ALL.iter().chain(&Function::OF_AIR);
         all.find(|(_, f)| *f == self).map_or("?", |(name, _)| name)
     }
 
     /// Evaluates the elementary function at a number.
-    pub fn apply(self, x: f64) -> f64 {
+    pub fn evaluate_at(self, x: f64) -> f64 {
         match self {
-            Function::Sin => x.sin(),
-            Function::Cos => x.cos(),
-            Function::Tan => x.tan(),
-            Function::Asin => x.asin(),
-            Function::Acos => x.acos(),
-            Function::Atan => x.atan(),
-            Function::Sinh => x.sinh(),
-            Function::Cosh => x.cosh(),
-            Function::Tanh => x.tanh(),
-            Function::Exp => x.exp(),
-            Function::Ln => x.ln(),
+            Function::Sin => libm::sin(x),
+            Function::Cos => libm::cos(x),
+            Function::Tan => libm::tan(x),
+            Function::Asin => libm::asin(x),
+            Function::Acos => libm::acos(x),
+            Function::Atan => libm::atan(x),
+            Function::Sinh => libm::sinh(x),
+            Function::Cosh => libm::cosh(x),
+            Function::Tanh => libm::tanh(x),
+            Function::Exp => libm::exp(x),
+            Function::Ln => libm::log(x),
             Function::Sqrt => x.sqrt(),
             Function::Abs => x.abs(),
             Function::Signum => x.signum(),
@@ -118,42 +118,44 @@ impl Lookup {
     }
 
     /// Returns the index of the table.
-    pub fn table(self) -> usize {
+    pub fn table_index(self) -> usize {
         usize::from(self.0 >> 8)
     }
 
     /// Returns the number of variables.
-    pub fn variables(self) -> usize {
+    pub fn variable_count(self) -> usize {
         usize::from(self.0 >> 6 & 3)
     }
 
     /// Returns the order of differentiation by a variable.
-    pub fn order(self, variable: usize) -> usize {
+    pub fn derivative_order(self, variable: usize) -> usize {
         usize::from(self.0 >> (2 * variable) & 3)
     }
 
     /// Returns the orders of differentiation by all variables.
-    pub fn orders(self) -> Vec<usize> {
-        (0..self.variables()).map(|k| self.order(k)).collect()
+    pub fn derivative_orders(self) -> Vec<usize> {
+        (0..self.variable_count()).map(|k| self.derivative_order(k)).collect()
     }
 
     /// Returns the derivative by a variable. `None` if it is zero, since tables are at most cubic in each
     /// variable.
-    pub fn slope(self, variable: usize) -> Option<Lookup> {
-        (self.order(variable) < 3).then(|| Lookup(self.0 + (1 << (2 * variable))))
+    pub fn partial_derivative(self, variable: usize) -> Option<Lookup> {
+        (self.derivative_order(variable) < 3).then(|| Lookup(self.0 + (1 << (2 * variable))))
     }
 
     /// Evaluates a surrogate function, for use where the values of the table are unknown. It is a product of
     /// cubic polynomials, like tables: truncated Taylor series of sines that differ between tables. All
     /// derivatives are consistent.
-    pub fn apply(self, x: [f64; 3]) -> f64 {
+    pub fn evaluate_surrogate(self, x: [f64; 3]) -> f64 {
         let cubic_of_variable = |(k, x): (usize, f64)| {
-            let (order, pace, phase) = (self.order(k), 0.7 + 0.2 * k as f64, 0.4 + 0.3 * self.table() as f64);
-            let derivative =
-                |n: usize| pace.powi(n as i32) * (phase + std::f64::consts::FRAC_PI_2 * n as f64).sin();
+            let (order, pace, phase) =
+                (self.derivative_order(k), 0.7 + 0.2 * k as f64, 0.4 + 0.3 * self.table_index() as f64);
+            let derivative = |n: usize| {
+                libm::pow(pace, n as f64) * libm::sin(phase + std::f64::consts::FRAC_PI_2 * n as f64)
+            };
             (order..=3).rev().fold(0.0, |sum, n| derivative(n) + sum * x / (n + 1 - order) as f64)
         };
-        x.into_iter().take(self.variables()).enumerate().map(cubic_of_variable).product()
+        x.into_iter().take(self.variable_count()).enumerate().map(cubic_of_variable).product()
     }
 }
 
@@ -167,7 +169,7 @@ pub enum Extreme {
 
 impl Extreme {
     /// Returns the name in the language and in generated code.
-    pub fn name(self) -> &'static str {
+    pub fn function_name(self) -> &'static str {
         match self {
             Extreme::Min => "min",
             Extreme::Max => "max",
@@ -175,7 +177,7 @@ impl Extreme {
     }
 
     /// Evaluates the minimum or maximum of two numbers.
-    pub fn apply(self, a: f64, b: f64) -> f64 {
+    pub fn evaluate_extreme(self, a: f64, b: f64) -> f64 {
         match self {
             Extreme::Min => a.min(b),
             Extreme::Max => a.max(b),
@@ -224,7 +226,7 @@ pub enum Node {
 
 impl Node {
     /// Calls `f` with the index of every operand of the node.
-    pub fn operands(self, mut f: impl FnMut(Id)) {
+    pub fn visit_operands(self, mut f: impl FnMut(Id)) {
         match self {
             Node::Const(_) | Node::Symbol(_) | Node::Tuple(_) | Node::Gather(_) => {}
             Node::Neg(a) | Node::Call(_, a) | Node::Sum(_, a) | Node::Lane(_, a) => f(a),
@@ -239,7 +241,7 @@ impl Node {
                 f(a);
                 f(b);
             }
-            Node::Table(lookup, a, b, c) => [a, b, c].into_iter().take(lookup.variables()).for_each(f),
+            Node::Table(lookup, a, b, c) => [a, b, c].into_iter().take(lookup.variable_count()).for_each(f),
         }
     }
 
@@ -270,7 +272,7 @@ impl Node {
         h ^ (h >> 29)
     }
 
-    pub(super) fn same(self, other: Node) -> bool {
+    pub(super) fn is_same_node(self, other: Node) -> bool {
         match (self, other) {
             // Compares bits, so that a NaN equals itself. Negative zero does not occur, see
             // `Graph::constant`.

@@ -4,13 +4,13 @@ use super::node::{Function, Id, Node, Symbol};
 use super::{Expr, Graph, Memo};
 
 /// Substitutes `by(s)` for every symbol `s` of an expression for which it is not `None`.
-pub fn replace<'g>(e: Expr<'g>, by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Expr<'g> {
+pub fn substitute_symbols<'g>(e: Expr<'g>, by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Expr<'g> {
     replace_all(&[e], by).pop().unwrap_or(e)
 }
 
 /// Substitutes `by(s)` for every symbol `s` of several expressions for which it is not `None`.
 pub fn replace_all<'g>(e: &[Expr<'g>], by: &dyn Fn(Symbol) -> Option<Expr<'g>>) -> Vec<Expr<'g>> {
-    replace_calls(e, by, &|f, x| x.call(f))
+    replace_calls(e, by, &|f, x| x.apply_function(f))
 }
 
 /// Constructor of the replacement for an elementary function of an expression.
@@ -31,8 +31,8 @@ pub fn replace_calls<'g>(
 /// Substitutes `by` for every occurrence of the node `part` in an expression.
 pub fn replace_part<'g>(e: Expr<'g>, part: Expr<'g>, by: Expr<'g>) -> Expr<'g> {
     let mut known = Memo::new(e.graph());
-    known.set(part.id(), by.id());
-    replace_one(e, &mut known, &|_| None, &|f, x| x.call(f))
+    known.assign_number(part.id(), by.id());
+    replace_one(e, &mut known, &|_| None, &|f, x| x.apply_function(f))
 }
 
 fn replace_one<'g>(
@@ -50,21 +50,21 @@ fn replace_one<'g>(
             continue;
         }
         let before = todo.len();
-        graph.node(id).operands(|a| {
+        graph.node(id).visit_operands(|a| {
             if known.get(a).is_none() {
                 todo.push(a);
             }
         });
         if todo.len() == before {
-            let new = rebuilt(graph, id, known, by, call).id();
-            known.set(id, new);
+            let new = rebuild_node(graph, id, known, by, call).id();
+            known.assign_number(id, new);
             todo.pop();
         }
     }
     known.get(e.id()).map_or(e, |id| graph.expr(id))
 }
 
-fn rebuilt<'g>(
+fn rebuild_node<'g>(
     graph: &'g Graph,
     id: Id,
     known: &Memo<'g>,
@@ -76,7 +76,7 @@ fn rebuilt<'g>(
         Node::Const(_) | Node::Tuple(_) | Node::Gather(_) => graph.expr(id),
         Node::Sum(n, a) => replaced_operand(a).lane_sum(n.into()),
         Node::Lane(k, a) => replaced_operand(a).lane(k.into()),
-        Node::Join(n, a, b) => replaced_operand(a).joined(n.into(), replaced_operand(b)),
+        Node::Join(n, a, b) => replaced_operand(a).join_with(n.into(), replaced_operand(b)),
         Node::Symbol(s) => by(s).unwrap_or(graph.expr(id)),
         Node::Neg(a) => -replaced_operand(a),
         Node::Add(a, b) => replaced_operand(a) + replaced_operand(b),
@@ -86,12 +86,12 @@ fn rebuilt<'g>(
         Node::Call(f, a) => call(f, replaced_operand(a)),
         Node::Atan2(a, b) => replaced_operand(a).atan2(replaced_operand(b)),
         Node::Pow(a, b) => replaced_operand(a).pow(replaced_operand(b)),
-        Node::Extreme(f, a, b) => replaced_operand(a).extreme(f, replaced_operand(b)),
+        Node::Extreme(f, a, b) => replaced_operand(a).minimum_or_maximum(f, replaced_operand(b)),
         Node::Table(lookup, a, b, c) => {
             // Variables beyond those of the table are ignored.
             let x = [a, b, c];
-            let last = lookup.variables().saturating_sub(1);
-            graph.lookup(lookup, std::array::from_fn(|k| replaced_operand(x[k.min(last)])))
+            let last = lookup.variable_count().saturating_sub(1);
+            graph.table_lookup(lookup, std::array::from_fn(|k| replaced_operand(x[k.min(last)])))
         }
     }
 }

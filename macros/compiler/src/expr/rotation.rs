@@ -34,22 +34,22 @@ impl<'g> Rotation<'g> {
         let step =
             Step::Axis { axis, sin: without_rounding(angle.sin()), cos: without_rounding(angle.cos()) };
         let mut rotation = Rotation::identity(graph);
-        rotation.push(step);
+        rotation.append_step(step);
         rotation
     }
 
     /// Returns the rotation with matrix `m`, whose columns are the child's axes in the parent frame.
     pub fn from_matrix(m: Mat3<'g>) -> Rotation<'g> {
         let mut rotation = Rotation::identity(m.0[0][0].graph());
-        rotation.push(Step::Matrix(m));
+        rotation.append_step(Step::Matrix(m));
         rotation
     }
 
     /// Returns the rotation by `angle`, rad, about the unit vector `n` (Rodrigues's formula).
-    pub fn eigenaxis(n: Vec3<'g>, angle: Expr<'g>) -> Rotation<'g> {
+    pub fn rotation_about_axis(n: Vec3<'g>, angle: Expr<'g>) -> Rotation<'g> {
         for k in 0..3 {
             let others_zero = n[(k + 1) % 3].is_zero() && n[(k + 2) % 3].is_zero();
-            match n[k].value() {
+            match n[k].constant_value() {
                 Some(1.0) if others_zero => return Rotation::about_axis(k, angle),
                 Some(-1.0) if others_zero => return Rotation::about_axis(k, -angle),
                 _ => {}
@@ -65,7 +65,7 @@ impl<'g> Rotation<'g> {
     }
 
     /// Returns the rotation of a unit quaternion with components x, y, z, w.
-    pub fn quaternion(q: [Expr<'g>; 4]) -> Rotation<'g> {
+    pub fn from_quaternion(q: [Expr<'g>; 4]) -> Rotation<'g> {
         let [x, y, z, w] = q;
         let (x2, y2, z2) = (x + x, y + y, z + z);
         let (xx, yy, zz) = (x * x2, y * y2, z * z2);
@@ -80,9 +80,9 @@ impl<'g> Rotation<'g> {
     }
 
     /// Returns this rotation followed by `next`, which is given in the rotated frame.
-    pub fn then(mut self, next: &Rotation<'g>) -> Rotation<'g> {
+    pub fn compose_with(mut self, next: &Rotation<'g>) -> Rotation<'g> {
         for step in &next.steps {
-            self.push(*step);
+            self.append_step(*step);
         }
         self
     }
@@ -95,12 +95,12 @@ impl<'g> Rotation<'g> {
 
     /// Appends a step to the rotation. Adjacent constant steps are combined into one rotation with the
     /// minimum number of steps.
-    fn push(&mut self, step: Step<'g>) {
-        let Some(mut product) = step.constant() else {
+    fn append_step(&mut self, step: Step<'g>) {
+        let Some(mut product) = step.constant_matrix() else {
             self.steps.push(step);
             return;
         };
-        while let Some(last) = self.steps.last().and_then(Step::constant) {
+        while let Some(last) = self.steps.last().and_then(Step::constant_matrix) {
             product = last * product;
             self.steps.pop();
         }
@@ -117,12 +117,12 @@ impl<'g> Rotation<'g> {
 
     /// Transforms a vector from the child to the parent frame.
     pub fn to_parent(&self, v: Vec3<'g>) -> Vec3<'g> {
-        self.steps.iter().rev().fold(v, |v, step| step.apply(v))
+        self.steps.iter().rev().fold(v, |v, step| step.rotate_vector(v))
     }
 
     /// Transforms a vector from the parent to the child frame.
     pub fn to_child(&self, v: Vec3<'g>) -> Vec3<'g> {
-        self.steps.iter().fold(v, |v, step| step.inverse().apply(v))
+        self.steps.iter().fold(v, |v, step| step.inverse().rotate_vector(v))
     }
 
     /// Transforms a symmetric tensor from the child to the parent frame: `R X Rᵀ`.
@@ -156,7 +156,7 @@ impl<'g> Rotation<'g> {
         // them become one matrix.
         let from_end = |r: &Rotation<'g>, k: usize| r.steps.iter().rev().nth(k).copied();
         let is_common = |k: &usize| {
-            let all = lanes.iter().map(|r| from_end(r, *k).map(|step| step.kind()));
+            let all = lanes.iter().map(|r| from_end(r, *k).map(|step| step.step_kind()));
             let mut kinds = all.collect::<Vec<_>>();
             kinds.dedup();
             kinds.len() == 1 && kinds[0].is_some()
@@ -167,7 +167,8 @@ impl<'g> Rotation<'g> {
             Rotation { steps, graph: r.graph }
         };
         if lanes.iter().any(|r| r.steps.len() > common) {
-            let matrices: Vec<Mat3<'g>> = lanes.iter().map(|r| remaining_rotation(r).matrix()).collect();
+            let matrices: Vec<Mat3<'g>> =
+                lanes.iter().map(|r| remaining_rotation(r).rotation_matrix()).collect();
             rotation.steps.push(Step::Matrix(merged_matrix(&matrices, merge)?));
         }
         for k in (0..common).rev() {
@@ -178,8 +179,9 @@ impl<'g> Rotation<'g> {
     }
 
     /// Returns the rotation matrix, whose columns are the child's axes in the parent frame.
-    pub fn matrix(&self) -> Mat3<'g> {
-        let columns: [Vec3<'g>; 3] = std::array::from_fn(|k| self.to_parent(Vec3::axis(self.graph, k)));
+    pub fn rotation_matrix(&self) -> Mat3<'g> {
+        let columns: [Vec3<'g>; 3] =
+            std::array::from_fn(|k| self.to_parent(Vec3::coordinate_axis(self.graph, k)));
         Mat3::from_fn(|i, j| columns[j][i])
     }
 }
@@ -187,7 +189,7 @@ impl<'g> Rotation<'g> {
 /// Replaces a constant of the magnitude of rounding error by zero: in floating point, the sine of π and the
 /// cosine of π/2 are not exactly zero.
 fn without_rounding(e: Expr<'_>) -> Expr<'_> {
-    match e.value() {
+    match e.constant_value() {
         Some(x) if x.abs() <= 4.0 * f64::EPSILON => e.zero(),
         _ => e,
     }
@@ -216,15 +218,15 @@ fn constant_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
         // axis.
         let (s, t) = ((r + 1) % 3, (r + 2) % 3);
         let first = Step::Axis { axis: r, sin: m.0[t][c], cos: m.0[s][c] };
-        let mut rest = first.inverse().matrix() * *m;
+        let mut rest = first.inverse().step_matrix() * *m;
         (rest.0[r][c], rest.0[s][c], rest.0[t][c]) = (g.zero(), g.one(), g.zero());
         rest.0[s][(c + 1) % 3] = g.zero();
         rest.0[s][(c + 2) % 3] = g.zero();
         Some([vec![first], axis_steps(&rest)?].concat())
     })?;
     // A matrix that is not a rotation within rounding error is not factored.
-    let product = steps.iter().fold(Mat3::identity(g), |p, step| p * step.matrix());
-    let error = (product - *m).values()?.as_flattened().iter().fold(0.0_f64, |e, x| e.max(x.abs()));
+    let product = steps.iter().fold(Mat3::identity(g), |p, step| p * step.step_matrix());
+    let error = (product - *m).constant_entries()?.as_flattened().iter().fold(0.0_f64, |e, x| e.max(x.abs()));
     (error <= 8.0 * f64::EPSILON).then_some(steps)
 }
 
@@ -232,7 +234,7 @@ fn constant_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
 /// followed by a rotation about that axis. Returns `None` for other matrices.
 fn axis_steps<'g>(m: &Mat3<'g>) -> Option<Vec<Step<'g>>> {
     let g = m.0[0][0].graph();
-    let values = m.values()?;
+    let values = m.constant_entries()?;
     if *m == Mat3::identity(g) {
         return Some(Vec::new());
     }
@@ -268,14 +270,14 @@ impl<'g> Rotation<'g> {
     /// `sin² + cos²`.
     pub fn angular_velocity(&self, rate: &mut dyn FnMut(Expr<'g>) -> Expr<'g>) -> Vec3<'g> {
         self.steps.iter().fold(Vec3::zero(self.graph), |carried, step| {
-            step.inverse().apply(carried) + step.angular_velocity(rate)
+            step.inverse().rotate_vector(carried) + step.angular_velocity(rate)
         })
     }
 }
 
 impl<'g> Step<'g> {
     /// Returns the coordinate axis of the rotation, or 3 for a matrix.
-    fn kind(&self) -> usize {
+    fn step_kind(&self) -> usize {
         match self {
             Step::Axis { axis, .. } => *axis,
             Step::Matrix(_) => 3,
@@ -288,7 +290,7 @@ impl<'g> Step<'g> {
         merge: &mut dyn FnMut(&[Expr<'g>]) -> Option<Expr<'g>>,
     ) -> Option<Step<'g>> {
         let Step::Axis { axis, .. } = *lanes.first()? else {
-            let matrices: Vec<Mat3<'g>> = lanes.iter().map(Step::matrix).collect();
+            let matrices: Vec<Mat3<'g>> = lanes.iter().map(Step::step_matrix).collect();
             return Some(Step::Matrix(merged_matrix(&matrices, merge)?));
         };
         let merge_candidates = |sine: bool| {
@@ -312,7 +314,7 @@ impl<'g> Step<'g> {
                     Some(angle) => rate(angle),
                     None => cos * rate(sin) - sin * rate(cos),
                 };
-                Vec3::axis(sin.graph(), axis) * speed
+                Vec3::coordinate_axis(sin.graph(), axis) * speed
             }
             Step::Matrix(m) => {
                 let d = Mat3::from_fn(|i, j| rate(m.0[i][j]));
@@ -326,12 +328,12 @@ impl<'g> Step<'g> {
     }
 
     /// Returns the matrix if every entry is constant.
-    fn constant(&self) -> Option<Mat3<'g>> {
-        let matrix = self.matrix();
-        matrix.values().map(|_| matrix)
+    fn constant_matrix(&self) -> Option<Mat3<'g>> {
+        let matrix = self.step_matrix();
+        matrix.constant_entries().map(|_| matrix)
     }
 
-    fn matrix(&self) -> Mat3<'g> {
+    fn step_matrix(&self) -> Mat3<'g> {
         match *self {
             Step::Matrix(m) => m,
             Step::Axis { axis, sin, cos } => {
@@ -351,7 +353,7 @@ impl<'g> Step<'g> {
         }
     }
 
-    fn apply(&self, v: Vec3<'g>) -> Vec3<'g> {
+    fn rotate_vector(&self, v: Vec3<'g>) -> Vec3<'g> {
         match *self {
             Step::Matrix(m) => m * v,
             Step::Axis { axis, sin, cos } => {
@@ -386,7 +388,7 @@ impl<'g> Step<'g> {
     fn apply_sym(&self, x: Sym3<'g>) -> Sym3<'g> {
         match self {
             Step::Matrix(m) => {
-                let half = *m * x.full();
+                let half = *m * x.full_matrix();
                 let upper =
                     Mat3::from_fn(|i, j| if i <= j { half.row(i).dot(m.row(j)) } else { m.0[0][0].zero() });
                 Sym3::from_upper(&upper)
@@ -399,7 +401,7 @@ impl<'g> Step<'g> {
                 let twice = if xy.is_multiple() { *sin * (xy * 2.0) } else { (*sin * 2.0) * xy };
                 let u = *cos * (x.entry(i, i) - x.entry(j, j)) - twice;
                 let (cu, su) = (*cos * u, *sin * u);
-                let mut out = x.full();
+                let mut out = x.full_matrix();
                 (out.0[i][i], out.0[j][j]) = (x.entry(j, j) + cu, x.entry(i, i) - cu);
                 let (ij, ki, kj) = (
                     x.entry(i, j) + su,
@@ -429,8 +431,8 @@ fn angle_of(sin: Expr<'_>) -> Option<Expr<'_>> {
 mod tests {
     use super::*;
 
-    fn numbers(rotation: &Rotation<'_>) -> [[f64; 3]; 3] {
-        rotation.matrix().values().unwrap()
+    fn numeric_matrix(rotation: &Rotation<'_>) -> [[f64; 3]; 3] {
+        rotation.rotation_matrix().constant_entries().unwrap()
     }
 
     #[test]
@@ -439,13 +441,18 @@ mod tests {
         let axis_rotation = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
         let right = Mat3([[0, 1, 0], [0, 0, -1], [-1, 0, 0]].map(|r| r.map(|c| g.num(f64::from(c)))));
         for (rotation, steps) in [
-            (axis_rotation(1, 0.3).then(&axis_rotation(1, -0.3)), 0),
+            (axis_rotation(1, 0.3).compose_with(&axis_rotation(1, -0.3)), 0),
             (Rotation::from_matrix(right), 1),
-            (axis_rotation(1, 0.3).then(&axis_rotation(1, 0.4)), 1),
+            (axis_rotation(1, 0.3).compose_with(&axis_rotation(1, 0.4)), 1),
             (axis_rotation(0, 2.0), 2),
-            (Rotation::from_matrix(right).then(&axis_rotation(2, 0.1)), 2),
-            (axis_rotation(0, 0.3).then(&axis_rotation(1, 0.4)), 2),
-            (axis_rotation(0, 0.3).then(&axis_rotation(1, 0.4)).then(&axis_rotation(2, 0.5)), 1),
+            (Rotation::from_matrix(right).compose_with(&axis_rotation(2, 0.1)), 2),
+            (axis_rotation(0, 0.3).compose_with(&axis_rotation(1, 0.4)), 2),
+            (
+                axis_rotation(0, 0.3)
+                    .compose_with(&axis_rotation(1, 0.4))
+                    .compose_with(&axis_rotation(2, 0.5)),
+                1,
+            ),
         ] {
             assert_eq!(rotation.steps.len(), steps, "{rotation:?}");
         }
@@ -455,20 +462,20 @@ mod tests {
     fn steps_turn_vectors_and_tensors_as_the_matrix_does() {
         let g = Graph::new();
         let axis_rotation = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
-        let v = Vec3::numbers(&g, [0.7, -1.1, 0.4]);
+        let v = Vec3::from_numbers(&g, [0.7, -1.1, 0.4]);
         let tensor =
             Sym3 { diagonal: [1.0, 2.0, 3.5].map(|c| g.num(c)), off: [0.2, -0.3, 0.6].map(|c| g.num(c)) };
         for rotation in [
-            axis_rotation(0, 0.3).then(&axis_rotation(1, 2.4)),
-            axis_rotation(2, -3.0).then(&axis_rotation(0, 1.0)),
+            axis_rotation(0, 0.3).compose_with(&axis_rotation(1, 2.4)),
+            axis_rotation(2, -3.0).compose_with(&axis_rotation(0, 1.0)),
         ] {
-            let m = Mat3(numbers(&rotation).map(|r| r.map(|c| g.num(c))));
-            let full = m * tensor.full() * m.transpose();
+            let m = Mat3(numeric_matrix(&rotation).map(|r| r.map(|c| g.num(c))));
+            let full = m * tensor.full_matrix() * m.transpose();
             let pairs = (0..3).map(|i| ((m * v)[i], rotation.to_parent(v)[i])).chain(
                 (0..9).map(|k| (full.0[k / 3][k % 3], rotation.sym_to_parent(tensor).entry(k / 3, k % 3))),
             );
             for (a, b) in pairs {
-                assert!((a.value().unwrap() - b.value().unwrap()).abs() < 1e-14);
+                assert!((a.constant_value().unwrap() - b.constant_value().unwrap()).abs() < 1e-14);
             }
         }
     }

@@ -8,7 +8,7 @@ const TOLERANCE: f64 = 1e-9;
 
 /// Returns a reproducible value in [0.5, 1.5) for a symbol. Each `seed` gives another set of values; special
 /// values are unlikely.
-pub fn sample(symbol: Symbol, seed: u64) -> f64 {
+pub fn sample_of_symbol(symbol: Symbol, seed: u64) -> f64 {
     let mut h = (u64::from(symbol.0) + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15)
         ^ (seed + 1).wrapping_mul(0xD1B5_4A32_D192_ED03);
     h = (h ^ (h >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -18,6 +18,6 @@ pub fn sample(symbol: Symbol, seed: u64) -> f64 {
 }
 
 /// Returns true if an expression equals `value`, within the tolerance, at three samples.
-pub fn always(e: Expr<'_>, value: f64) -> bool {
-    (0..3).all(|seed| (eval_one(e, &|s| sample(s, seed)) - value).abs() <= TOLERANCE)
+pub fn always_equals(e: Expr<'_>, value: f64) -> bool {
+    (0..3).all(|seed| (eval_one(e, &|s| sample_of_symbol(s, seed)) - value).abs() <= TOLERANCE)
 }

@@ -91,16 +91,16 @@ impl<'a> Cx<'a> {
     }
 
     /// Returns the source position of the byte at `offset` of the parsed text.
-    pub(super) fn place(&self, offset: usize) -> Place {
+    pub(super) fn source_position(&self, offset: usize) -> Place {
         let (file, offset) = self.in_file(offset);
-        let (line, column) = self.files[file].position(offset);
+        let (line, column) = self.files[file].line_and_column(offset);
         self.place_at(file, line, column)
     }
 
     /// Returns the source position for a line and a column of the parsed text, both counted from one.
     pub(super) fn parsed_at(&self, line: u32, column: u32) -> Place {
         let (start, _, characters) = self.added;
-        let (first, from) = self.files[0].position(start);
+        let (first, from) = self.files[0].line_and_column(start);
         if line != first || column <= from {
             return self.place_at(0, line, column);
         }
@@ -114,20 +114,20 @@ impl<'a> Cx<'a> {
     }
 
     /// Returns the source position of the end of the file.
-    pub(super) fn end(&self) -> Place {
-        let (line, column) = self.files[0].position(usize::MAX);
+    pub(super) fn end_of_file(&self) -> Place {
+        let (line, column) = self.files[0].line_and_column(usize::MAX);
         self.place_at(0, line, column)
     }
 
     /// Returns the text of the file in a range of the parsed text. Returns `None` if the range spans several
     /// files or splits a character.
-    pub(super) fn slice(&self, range: std::ops::Range<usize>) -> Option<&'a str> {
+    pub(super) fn file_text_in_range(&self, range: std::ops::Range<usize>) -> Option<&'a str> {
         let ((file, start), (other, end)) = (self.in_file(range.start), self.in_file(range.end));
         self.files[file].text.get(start..end).filter(|_| file == other)
     }
 
     /// Reports an error at a position of the file; `mend` adds the help.
-    pub(super) fn error(
+    pub(super) fn report_error(
         &mut self,
         place: &Place,
         message: impl Into<String>,
@@ -141,33 +141,33 @@ impl<'a> Cx<'a> {
         }
         self.mistakes += 1;
         if self.mistakes <= MISTAKES_SHOWN {
-            mend(self.diagnostics.error(place.clone(), message));
+            mend(self.diagnostics.report_error(place.clone(), message));
         } else if self.mistakes == MISTAKES_SHOWN + 1 {
             let message =
                 format!("`{}` has more errors; these are the first {MISTAKES_SHOWN}", self.files[0].path);
-            self.diagnostics.error(self.span, message);
+            self.diagnostics.report_error(self.span, message);
         }
     }
 
     /// Reports only the first of many similar errors in a file. Errors with the same `help` are similar.
-    pub(super) fn habit(&mut self, place: &Place, message: String, help: &'static str) {
+    pub(super) fn report_first_similar(&mut self, place: &Place, message: String, help: &'static str) {
         if self.habits.contains(&help) {
             self.mistakes += 1;
             return;
         }
         self.habits.push(help);
-        self.error(place, message, |d| d.help(help));
+        self.report_error(place, message, |d| d.add_help(help));
     }
 
     /// Reports an internal error: something that was read from the file has no counterpart in the mechanism,
     /// although no error was reported.
     pub(super) fn report_lost(&mut self, name: &Name) {
-        let message = format!("internal error: {} of the file is lost", quote(&name.text));
-        self.error(&name.place, message, |d| d.help("please report this with the file"));
+        let message = format!("internal error: {} of the file is lost", quote_word(&name.text));
+        self.report_error(&name.place, message, |d| d.add_help("please report this with the file"));
     }
 
     /// Returns whether an error was reported.
-    pub(super) fn failed(&self) -> bool {
+    pub(super) fn has_errors(&self) -> bool {
         self.mistakes > 0
     }
 }
@@ -177,23 +177,23 @@ impl<'a> File<'a> {
         let mut blocks = vec![(1, 1)];
         let mut position = (1, 1);
         for block in text.as_bytes().chunks(BLOCK) {
-            position = block.iter().fold(position, advance);
+            position = block.iter().fold(position, advance_position);
             blocks.push(position);
         }
         File { text, path: Rc::from(path), blocks }
     }
 
     /// Returns line and column of a byte. Offsets beyond the end return the position of the end.
-    fn position(&self, offset: usize) -> (u32, u32) {
+    fn line_and_column(&self, offset: usize) -> (u32, u32) {
         let offset = offset.min(self.text.len());
         let block = offset / BLOCK;
         let start = self.blocks.get(block).copied().unwrap_or((1, 1));
-        self.text.as_bytes()[block * BLOCK..offset].iter().fold(start, advance)
+        self.text.as_bytes()[block * BLOCK..offset].iter().fold(start, advance_position)
     }
 }
 
 /// Returns the position after a byte. Columns count characters, as editors do.
-fn advance((line, column): (u32, u32), byte: &u8) -> (u32, u32) {
+fn advance_position((line, column): (u32, u32), byte: &u8) -> (u32, u32) {
     match byte {
         b'\n' => (line + 1, 1),
         0x80..=0xBF => (line, column),
@@ -202,7 +202,7 @@ fn advance((line, column): (u32, u32), byte: &u8) -> (u32, u32) {
 }
 
 /// Returns a word of the file in backticks, truncated after 60 characters.
-pub(super) fn quote(word: &str) -> String {
+pub(super) fn quote_word(word: &str) -> String {
     match word.char_indices().nth(60) {
         Some((end, _)) => format!("`{}…`", &word[..end]),
         None => format!("`{word}`"),
@@ -211,7 +211,7 @@ pub(super) fn quote(word: &str) -> String {
 
 /// Returns the words, each in backticks. Words after the eighth are replaced by an ellipsis.
 pub(super) fn quote_all<'n>(words: impl Iterator<Item = &'n str>) -> String {
-    let mut list: Vec<String> = words.take(9).map(quote).collect();
+    let mut list: Vec<String> = words.take(9).map(quote_word).collect();
     if list.len() == 9 {
         list[8] = "…".to_string();
     }
@@ -219,7 +219,7 @@ pub(super) fn quote_all<'n>(words: impl Iterator<Item = &'n str>) -> String {
 }
 
 /// Returns `file:line:column` of a position, for the help text of another error.
-pub(super) fn position(place: &Place) -> String {
+pub(super) fn format_position(place: &Place) -> String {
     match &place.file {
         Some(at) => format!("{}:{}:{}", at.file, at.line, at.column),
         None => "this attribute".to_string(),

@@ -1,8 +1,8 @@
 //! Checked access to the children, attributes, numbers and names of one XML element, each with its source
 //! position. This module knows no particular element.
 
-use super::context::{Cx, position, quote, quote_all};
-use crate::diag::{Place, nearest};
+use super::context::{Cx, format_position, quote_all, quote_word};
+use crate::diag::{Place, nearest_candidate};
 use crate::import::imported::Placed;
 use crate::syntax::Name;
 
@@ -13,31 +13,31 @@ pub(super) type Node<'a> = roxmltree::Node<'a, 'a>;
 pub(super) type Attribute<'a> = roxmltree::Attribute<'a, 'a>;
 
 /// Returns the source position of an element.
-pub(super) fn place(node: Node<'_>, cx: &Cx<'_>) -> Place {
-    cx.place(node.range().start)
+pub(super) fn element_position(node: Node<'_>, cx: &Cx<'_>) -> Place {
+    cx.source_position(node.range().start)
 }
 
 /// Returns the tag `<name>` of an element, in backticks.
-pub(super) fn tag(node: Node<'_>) -> String {
-    quote(&format!("<{}>", node.tag_name().name()))
+pub(super) fn quoted_tag(node: Node<'_>) -> String {
+    quote_word(&format!("<{}>", node.tag_name().name()))
 }
 
 /// Returns the child elements in the namespace of the element itself. Children with another prefix are
 /// extensions of other tools.
-pub(super) fn elements<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a>> {
+pub(super) fn child_elements<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a>> {
     let namespace = node.tag_name().namespace();
     node.children().filter(move |child| child.is_element() && child.tag_name().namespace() == namespace)
 }
 
 /// Returns the child elements named in `known`, at most one of each. Other children are ignored, unless their
 /// name looks like a typing error: to ignore `<inertal>` would silently remove a body's mass.
-pub(super) fn children<'a, const N: usize>(
+pub(super) fn known_children<'a, const N: usize>(
     node: Node<'a>,
     known: [&str; N],
     cx: &mut Cx<'_>,
 ) -> [Option<Node<'a>>; N] {
     let mut found = [None; N];
-    for child in elements(node) {
+    for child in child_elements(node) {
         let name = child.tag_name().name();
         match known.iter().position(|k| *k == name) {
             Some(k) if found[k].is_none() => found[k] = Some(child),
@@ -50,9 +50,11 @@ pub(super) fn children<'a, const N: usize>(
 
 /// Reports an element that occurs a second time in its parent.
 pub(super) fn report_second(child: Node<'_>, first: Option<Node<'_>>, cx: &mut Cx<'_>) {
-    let first = first.map(|node| position(&place(node, cx))).unwrap_or_default();
-    let message = format!("second {} of one element", tag(child));
-    cx.error(&place(child, cx), message, |d| d.help(format!("the first is at {first}")));
+    let first = first.map(|node| format_position(&element_position(node, cx))).unwrap_or_default();
+    let message = format!("second {} of one element", quoted_tag(child));
+    cx.report_error(&element_position(child, cx), message, |d| {
+        d.add_help(format!("the first is at {first}"))
+    });
 }
 
 /// Reports an element whose name is similar to, but not in, `known`.
@@ -60,9 +62,11 @@ pub(super) fn check_element_name(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>
     if known.contains(&node.tag_name().name()) {
         return;
     }
-    if let Some(best) = nearest(node.tag_name().name(), known) {
+    if let Some(best) = nearest_candidate(node.tag_name().name(), known) {
         let help = format!("did you mean `<{best}>`?");
-        cx.error(&place(node, cx), format!("unknown element {}", tag(node)), |d| d.help(help));
+        cx.report_error(&element_position(node, cx), format!("unknown element {}", quoted_tag(node)), |d| {
+            d.add_help(help)
+        });
     }
 }
 
@@ -74,17 +78,18 @@ pub(super) fn check_attributes(node: Node<'_>, required: &[&str], optional: &[&s
     for attribute in node.attributes().filter(|a| a.namespace().is_none() && !is_known(a.name())) {
         let absent = optional.iter().copied().filter(|name| !node.has_attribute(*name));
         let candidates: Vec<&str> = missing.iter().copied().chain(absent).collect();
-        if let Some(best) = nearest(attribute.name(), &candidates) {
+        if let Some(best) = nearest_candidate(attribute.name(), &candidates) {
             missing.retain(|name| *name != best);
-            let message = format!("unknown attribute {} of {}", quote(attribute.name()), tag(node));
-            let place = cx.place(attribute.range().start);
-            cx.error(&place, message, |d| d.help(format!("did you mean `{best}`?")));
+            let message =
+                format!("unknown attribute {} of {}", quote_word(attribute.name()), quoted_tag(node));
+            let place = cx.source_position(attribute.range().start);
+            cx.report_error(&place, message, |d| d.add_help(format!("did you mean `{best}`?")));
         }
     }
     if !missing.is_empty() {
-        let message = format!("{} without {}", tag(node), quote_all(missing.into_iter()));
-        let help = expected(node.tag_name().name(), required);
-        cx.error(&place(node, cx), message, |d| d.help(help));
+        let message = format!("{} without {}", quoted_tag(node), quote_all(missing.into_iter()));
+        let help = expected_element_text(node.tag_name().name(), required);
+        cx.report_error(&element_position(node, cx), message, |d| d.add_help(help));
     }
 }
 
@@ -100,21 +105,22 @@ pub(super) fn check_only(
 ) {
     let all = [required, optional].concat();
     let is_known = |name: &str| all.contains(&name) || foreign.contains(&name);
-    let help = expected(node.tag_name().name(), if required.is_empty() { optional } else { required });
+    let help =
+        expected_element_text(node.tag_name().name(), if required.is_empty() { optional } else { required });
     let unknown = node.attributes().find(|a| a.namespace().is_none() && !is_known(a.name()));
-    if let Some(child) = contents(node).next() {
+    if let Some(child) = relevant_contents(node).next() {
         report_unexpected(child, node, help, cx);
-    } else if let Some(attribute) = unknown.filter(|a| nearest(a.name(), &all).is_none()) {
-        let message = format!("unknown attribute {} of {}", quote(attribute.name()), tag(node));
-        let place = cx.place(attribute.range().start);
-        cx.error(&place, message, |d| d.help(help));
+    } else if let Some(attribute) = unknown.filter(|a| nearest_candidate(a.name(), &all).is_none()) {
+        let message = format!("unknown attribute {} of {}", quote_word(attribute.name()), quoted_tag(node));
+        let place = cx.source_position(attribute.range().start);
+        cx.report_error(&place, message, |d| d.add_help(help));
     } else {
         check_attributes(node, required, optional, cx);
     }
 }
 
 /// Returns the texts that are not blank and the elements of the file's own vocabulary in an element.
-pub(super) fn contents<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a>> {
+pub(super) fn relevant_contents<'a>(node: Node<'a>) -> impl Iterator<Item = Node<'a>> {
     node.children().filter(move |child| match child.is_text() {
         true => child.text().is_some_and(|text| !text.trim().is_empty()),
         false => child.is_element() && child.tag_name().namespace() == node.tag_name().namespace(),
@@ -126,33 +132,33 @@ fn report_unexpected(child: Node<'_>, node: Node<'_>, help: impl Into<String>, c
     let text = child.text().unwrap_or_default();
     let start = child.range().start;
     let (found, start) = match child.is_text() {
-        true => (format!("text {}", quote(text.trim())), start + text.len() - text.trim_start().len()),
-        false => (tag(child), start),
+        true => (format!("text {}", quote_word(text.trim())), start + text.len() - text.trim_start().len()),
+        false => (quoted_tag(child), start),
     };
-    let message = format!("unexpected {found} in {}", tag(node));
-    cx.error(&cx.place(start), message, |d| d.help(help));
+    let message = format!("unexpected {found} in {}", quoted_tag(node));
+    cx.report_error(&cx.source_position(start), message, |d| d.add_help(help));
 }
 
 /// Reports attributes other than `known` of an element whose values are text or child elements.
 pub(super) fn check_plain(node: Node<'_>, known: &[&str], cx: &mut Cx<'_>) {
     check_attributes(node, &[], known, cx);
     let unknown = node.attributes().filter(|a| a.namespace().is_none() && !known.contains(&a.name()));
-    for attribute in unknown.filter(|a| nearest(a.name(), known).is_none()) {
-        let message = format!("unknown attribute {} of {}", quote(attribute.name()), tag(node));
+    for attribute in unknown.filter(|a| nearest_candidate(a.name(), known).is_none()) {
+        let message = format!("unknown attribute {} of {}", quote_word(attribute.name()), quoted_tag(node));
         let name = attribute.name();
         let help = format!("values are elements or text, as in `<{name}>{}</{name}>`", attribute.value());
-        cx.error(&cx.place(attribute.range().start), message, |d| d.help(help));
+        cx.report_error(&cx.source_position(attribute.range().start), message, |d| d.add_help(help));
     }
 }
 
-fn expected(element: &str, attributes: &[&str]) -> String {
+fn expected_element_text(element: &str, attributes: &[&str]) -> String {
     let attributes: String = attributes.iter().map(|name| format!(" {name}=\"…\"")).collect();
     format!("expected `<{element}{attributes}/>`")
 }
 
 /// Returns the required child `element` of `node`, or reports that it is missing. `attributes` are the
 /// attributes of the child that the help text shows.
-pub(super) fn required<'a>(
+pub(super) fn required_child<'a>(
     child: Option<Node<'a>>,
     node: Node<'_>,
     element: &str,
@@ -160,33 +166,35 @@ pub(super) fn required<'a>(
     cx: &mut Cx<'_>,
 ) -> Option<Node<'a>> {
     if child.is_none() {
-        let message = format!("{} without `<{element}>`", tag(node));
-        cx.error(&place(node, cx), message, |d| d.help(expected(element, attributes)));
+        let message = format!("{} without `<{element}>`", quoted_tag(node));
+        cx.report_error(&element_position(node, cx), message, |d| {
+            d.add_help(expected_element_text(element, attributes))
+        });
     }
     child
 }
 
 /// Returns the name in an attribute, if the attribute is present. Reports an empty name.
-pub(super) fn name(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<Name> {
+pub(super) fn read_name_attribute(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<Name> {
     let found = node.attribute_node(attribute)?;
-    let (text, place) = (found.value().to_string(), cx.place(found.range_value().start));
+    let (text, place) = (found.value().to_string(), cx.source_position(found.range_value().start));
     if text.trim().is_empty() {
         let help = format!("write a name: `{attribute}=\"…\"`");
-        cx.error(&place, format!("empty `{attribute}` of {}", tag(node)), |d| d.help(help));
+        cx.report_error(&place, format!("empty `{attribute}` of {}", quoted_tag(node)), |d| d.add_help(help));
         return None;
     }
     Some(Name { text, place })
 }
 
 /// Returns the finite number in an attribute, if the attribute is present and valid. Reports invalid values.
-pub(super) fn number(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
-    let Placed { value: [value], place } = numbers(node, attribute, cx)?;
+pub(super) fn read_number_attribute(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
+    let Placed { value: [value], place } = read_numbers_attribute(node, attribute, cx)?;
     Some(Placed { value, place })
 }
 
 /// Returns the `N` finite numbers in an attribute, separated by spaces, if the attribute is present and
 /// valid.
-pub(super) fn numbers<const N: usize>(
+pub(super) fn read_numbers_attribute<const N: usize>(
     node: Node<'_>,
     attribute: &str,
     cx: &mut Cx<'_>,
@@ -197,10 +205,13 @@ pub(super) fn numbers<const N: usize>(
 
 /// Returns the `N` finite numbers in the text of an element, separated by spaces. Reports elements among
 /// them, and numbers on both sides of a comment.
-pub(super) fn content<const N: usize>(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Placed<[f64; N]>> {
-    let mut all = contents(node);
+pub(super) fn read_numbers_content<const N: usize>(
+    node: Node<'_>,
+    cx: &mut Cx<'_>,
+) -> Option<Placed<[f64; N]>> {
+    let mut all = relevant_contents(node);
     let text = all.next().filter(Node::is_text);
-    if let Some(other) = contents(node).find(Node::is_element).or(all.next()) {
+    if let Some(other) = relevant_contents(node).find(Node::is_element).or(all.next()) {
         report_unexpected(other, node, "expected numbers, and comments before or after them", cx);
         return None;
     }
@@ -211,12 +222,12 @@ pub(super) fn content<const N: usize>(node: Node<'_>, cx: &mut Cx<'_>) -> Option
 }
 
 /// Returns the trimmed text of an element with its source position; `None` if it is empty.
-pub(super) fn word(node: Node<'_>, cx: &Cx<'_>) -> Option<Name> {
-    let found = contents(node).find(Node::is_text)?;
+pub(super) fn read_word(node: Node<'_>, cx: &Cx<'_>) -> Option<Name> {
+    let found = relevant_contents(node).find(Node::is_text)?;
     let whole = found.text()?;
     let before = whole.len() - whole.trim_start().len();
     let text = whole.trim().to_string();
-    (!text.is_empty()).then(|| Name { text, place: cx.place(found.range().start + before) })
+    (!text.is_empty()).then(|| Name { text, place: cx.source_position(found.range().start + before) })
 }
 
 fn read_numbers<const N: usize>(
@@ -226,24 +237,24 @@ fn read_numbers<const N: usize>(
     cx: &mut Cx<'_>,
 ) -> Option<Placed<[f64; N]>> {
     let start = range.start;
-    let place = cx.place(start + text.len() - text.trim_start().len());
+    let place = cx.source_position(start + text.len() - text.trim_start().len());
     if text.contains(',') {
         // Decimal commas usually occur in all vectors of a file and are reported once.
         let expected = if N == 1 { "a number".to_string() } else { format!("{N} numbers") };
-        let message = format!("expected {expected} in `{attribute}`, found {}", quote(text));
-        cx.habit(&place, message, if N == 1 { POINT } else { SEPARATE });
+        let message = format!("expected {expected} in `{attribute}`, found {}", quote_word(text));
+        cx.report_first_similar(&place, message, if N == 1 { POINT } else { SEPARATE });
         return None;
     }
     let count = text.split_ascii_whitespace().count();
     if count != N {
         let expected = if N == 1 { "a number".to_string() } else { format!("{N} numbers") };
-        let message = format!("expected {expected} in `{attribute}`, found {}", quote(text));
+        let message = format!("expected {expected} in `{attribute}`, found {}", quote_word(text));
         let missing = if N == 1 { POINT } else { SPACES };
-        cx.error(&place, message, |d| d.help(missing));
+        cx.report_error(&place, message, |d| d.add_help(missing));
         return None;
     }
     // Character references (`&#32;`) change the offsets of the words after them.
-    let verbatim = cx.slice(range) == Some(text);
+    let verbatim = cx.file_text_in_range(range) == Some(text);
     let mut value = [0.0; N];
     let mut good = true;
     for (k, word) in text.split_ascii_whitespace().enumerate() {
@@ -253,13 +264,13 @@ fn read_numbers<const N: usize>(
             Ok(number) if number.is_finite() => value[k] = number + 0.0,
             Ok(_) => {
                 good = false;
-                let message = format!("{} is not a finite number", quote(word));
-                cx.error(&cx.place(start + offset), message, |d| d.help(DIGITS));
+                let message = format!("{} is not a finite number", quote_word(word));
+                cx.report_error(&cx.source_position(start + offset), message, |d| d.add_help(DIGITS));
             }
             Err(_) => {
                 good = false;
-                let message = format!("{} is not a number", quote(word));
-                cx.error(&cx.place(start + offset), message, |d| d.help(DIGITS));
+                let message = format!("{} is not a number", quote_word(word));
+                cx.report_error(&cx.source_position(start + offset), message, |d| d.add_help(DIGITS));
             }
         }
     }
@@ -280,7 +291,7 @@ pub(super) fn check_radians(angles: &[f64], place: &Place, help: &'static str, c
         "an angle of {n} rad is more than a full turn: {n}° are {degrees} rad, {n} rad is the same rotation \
          as {turned} rad"
     );
-    cx.habit(place, message, help);
+    cx.report_first_similar(place, message, help);
 }
 
 const SEPARATE: &str =

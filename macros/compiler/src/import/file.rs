@@ -1,7 +1,7 @@
 //! Reading of files. This module knows no file format.
 
-use super::context::quote;
-use crate::diag::{Diagnostics, nearest};
+use super::context::quote_word;
+use crate::diag::{Diagnostics, nearest_candidate};
 use crate::syntax::{FileFormat, FileOptions, Name};
 use std::borrow::Cow;
 use std::fs;
@@ -41,23 +41,25 @@ pub(super) fn read_named(
     format: FileFormat,
     cx: &mut Diagnostics,
 ) -> Option<String> {
-    let bytes = fs::metadata(path).and_then(|about| match refuse(&about, format) {
+    let bytes = fs::metadata(path).and_then(|about| match reason_to_refuse(&about, format) {
         Some(reason) => Ok(Err(reason)),
         None => read_bytes(path).map(Ok),
     });
     match bytes {
-        Ok(Ok(bytes)) if bytes.len() > LARGEST_FILE => report(&too_large(bytes.len() as u64), name, cx),
-        Ok(Ok(bytes)) => return decode(bytes, name, cx),
-        Ok(Err(reason)) => report(&reason, name, cx),
+        Ok(Ok(bytes)) if bytes.len() > LARGEST_FILE => {
+            report_file_error(&too_large(bytes.len() as u64), name, cx)
+        }
+        Ok(Ok(bytes)) => return decode_text(bytes, name, cx),
+        Ok(Err(reason)) => report_file_error(&reason, name, cx),
         Err(error) => report_unreadable(path, &error, name, format, cx),
     }
     None
 }
 
 /// Returns the reason why a file is not opened, if there is one; to read a pipe or a device might never end.
-fn refuse(about: &fs::Metadata, format: FileFormat) -> Option<String> {
+fn reason_to_refuse(about: &fs::Metadata, format: FileFormat) -> Option<String> {
     match () {
-        _ if about.is_dir() => Some(format!("is a directory, expected {}", format.article())),
+        _ if about.is_dir() => Some(format!("is a directory, expected {}", format.phrase_with_article())),
         _ if !about.is_file() => Some("is not a regular file".to_string()),
         _ if about.len() > LARGEST_FILE as u64 => Some(too_large(about.len())),
         _ => None,
@@ -70,8 +72,8 @@ pub(super) fn too_large(bytes: u64) -> String {
 }
 
 /// Reports an error of the file as a whole.
-pub(super) fn report(reason: &str, name: &Name, cx: &mut Diagnostics) {
-    cx.error(name.place.clone(), format!("{} {reason}", quote(&name.text)));
+pub(super) fn report_file_error(reason: &str, name: &Name, cx: &mut Diagnostics) {
+    cx.report_error(name.place.clone(), format!("{} {reason}", quote_word(&name.text)));
 }
 
 /// Reads the bytes of the file. If the file has grown since the check, at most one byte more than the maximum
@@ -82,14 +84,14 @@ fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn decode(bytes: Vec<u8>, name: &Name, cx: &mut Diagnostics) -> Option<String> {
+fn decode_text(bytes: Vec<u8>, name: &Name, cx: &mut Diagnostics) -> Option<String> {
     match String::from_utf8(bytes) {
         Ok(text) => Some(text),
         Err(error) => {
             let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
             let line = 1 + good.iter().filter(|b| **b == b'\n').count();
-            let message = format!("{} is not UTF-8 text: line {line}", quote(&name.text));
-            cx.error(name.place.clone(), message).help("save the file in UTF-8");
+            let message = format!("{} is not UTF-8 text: line {line}", quote_word(&name.text));
+            cx.report_error(name.place.clone(), message).add_help("save the file in UTF-8");
             None
         }
     }
@@ -104,21 +106,21 @@ fn report_unreadable(
 ) {
     let (place, written) = (name.place.clone(), &name.text);
     if !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) {
-        cx.error(place, format!("cannot read {}: {error}", quote(written)));
+        cx.report_error(place, format!("cannot read {}: {error}", quote_word(written)));
         return;
     }
-    let diagnostic = cx.error(place, format!("there is no file {}", quote(written)));
+    let diagnostic = cx.report_error(place, format!("there is no file {}", quote_word(written)));
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
-            diagnostic.help(format!("there is no directory `{}` either", folder.display()));
+            diagnostic.add_help(format!("there is no directory `{}` either", folder.display()));
         }
         _ => {
-            let neighbours = neighbours(path, written, format);
-            let near = nearest(written, &neighbours.iter().map(String::as_str).collect::<Vec<_>>());
-            diagnostic.suggest(written, neighbours.iter().map(String::as_str));
+            let neighbours = neighbouring_files(path, written, format);
+            let near = nearest_candidate(written, &neighbours.iter().map(String::as_str).collect::<Vec<_>>());
+            diagnostic.suggest_name(written, neighbours.iter().map(String::as_str));
             // The path is shown only if the name has no similar neighbour.
             if near.is_none() {
-                diagnostic.help(format!("looked for `{}`", path.display()));
+                diagnostic.add_help(format!("looked for `{}`", path.display()));
             }
         }
     }
@@ -126,7 +128,7 @@ fn report_unreadable(
 
 /// Returns the files of the same format in the folder of a missing file, with the path as the user would
 /// write it.
-fn neighbours(path: &Path, written: &str, format: FileFormat) -> Vec<String> {
+fn neighbouring_files(path: &Path, written: &str, format: FileFormat) -> Vec<String> {
     let Some(Ok(entries)) = path.parent().map(|folder| match folder.as_os_str().is_empty() {
         true => fs::read_dir("."),
         false => fs::read_dir(folder),
@@ -137,7 +139,7 @@ fn neighbours(path: &Path, written: &str, format: FileFormat) -> Vec<String> {
     let names = entries.take(NEIGHBOURS).flatten().filter_map(|entry| entry.file_name().into_string().ok());
     let is_description = |name: &String| {
         let end = name.rsplit('.').next().unwrap_or_default();
-        format.endings().iter().any(|known| end.eq_ignore_ascii_case(known))
+        format.file_extensions().iter().any(|known| end.eq_ignore_ascii_case(known))
     };
     let mut list: Vec<String> = names.filter(is_description).map(|name| format!("{stem}{name}")).collect();
     // The order of directory entries depends on the machine.

@@ -2,7 +2,7 @@
 //! Only these meshes are read.
 
 use super::mesh;
-use super::pose::{Vector, add, apply};
+use super::pose::{Vector, add, matrix_times_vector};
 use crate::diag::Diagnostics;
 use crate::hull::{Hull, HullError, MAX_VERTICES};
 use crate::syntax::contact::{MAX_CONTACT_POINTS, select_collisions};
@@ -68,7 +68,7 @@ fn read_written(
     let source = MeshVertices::scaled(name, mesh::candidates(folder, path), [1.0; 3]);
     if let Some((hull, count)) = hull_of(&source, MAX_VERTICES, files, cx) {
         notes.extend(note(&format!("the mesh `{path}`"), &hull, count));
-        let points = hull.vertices.iter().map(|p| Expr::vector(*p, place)).collect();
+        let points = hull.vertices.iter().map(|p| Expr::vector_at(*p, place)).collect();
         let points = Expr { kind: ExprKind::Array(points), place: place.clone() };
         *arguments = vec![points];
     }
@@ -96,21 +96,21 @@ fn hull_of(
         match mesh::read(path, name) {
             Ok(triangles) if triangles.len() > MAX_TRIANGLES => {
                 let message = format!("mesh `{name}` has more than {MAX_TRIANGLES} triangles");
-                cx.error(place, message).help("use a simplified mesh for contacts");
+                cx.report_error(place, message).add_help("use a simplified mesh for contacts");
                 return None;
             }
             Ok(triangles) => points.extend(triangles.into_iter().flatten()),
             Err(message) => {
-                let error = cx.error(place, message);
+                let error = cx.report_error(place, message);
                 if !path.is_file() {
-                    error.help(format!("looked for `{}`", path.display()));
+                    error.add_help(format!("looked for `{}`", path.display()));
                 }
                 return None;
             }
         }
         files.push(path.clone());
     }
-    points.iter_mut().for_each(|p| *p = add(apply(&source.linear, *p), source.offset));
+    points.iter_mut().for_each(|p| *p = add(matrix_times_vector(&source.linear, *p), source.offset));
     points.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
     points.dedup();
     match Hull::new(&points, maximum) {
@@ -122,12 +122,13 @@ fn hull_of(
                 "the convex hull of {kept} vertices of mesh `{name}` omits {:.2e} m of its {:.2e} m",
                 hull.error, hull.size
             );
-            cx.error(place, message).help("approximate it by several surfaces, as in `foot.sphere(0.02)`");
+            cx.report_error(place, message)
+                .add_help("approximate it by several surfaces, as in `foot.sphere(0.02)`");
             None
         }
         Ok(hull) => Some((hull, points.len())),
         Err(error) => {
-            cx.error(place, format!("mesh `{name}` has no convex hull: {}", describe(error)));
+            cx.report_error(place, format!("mesh `{name}` has no convex hull: {}", describe(error)));
             None
         }
     }

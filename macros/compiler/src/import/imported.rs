@@ -25,6 +25,8 @@ pub struct Imported {
     pub limits: Vec<Limit>,
     /// Fields of the mechanism that hold values of the file.
     pub fields: Vec<FileField>,
+    /// Rates of the fields that are states of first order, by the names of the fields.
+    pub rates: Vec<(String, Expr)>,
     /// True if the root of the file is the ground.
     pub is_ground: bool,
     /// Contact pairs, if the options request them.

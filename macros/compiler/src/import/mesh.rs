@@ -1,7 +1,7 @@
 //! Mesh files: STL, OBJ and MuJoCo's own format. This module knows no format of robot files.
 
-use super::context::quote;
-use super::pose::{Vector, add, length, scale};
+use super::context::quote_word;
+use super::pose::{Vector, add, length, scale_vector};
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ pub(super) fn candidates(folder: &Path, uri: &str) -> Vec<PathBuf> {
 
 /// Reads the triangles of a mesh file, or returns an error message. `name` is the path for messages.
 pub(super) fn read(path: &Path, name: &str) -> Result<Vec<Triangle>, String> {
-    let shown = quote(name);
+    let shown = quote_word(name);
     let bytes = read_bytes(path).map_err(|why| format!("cannot read the mesh {shown}: {why}"))?;
     let end = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let triangles = match end.as_str() {
@@ -145,7 +145,7 @@ pub(super) fn obj(bytes: &[u8]) -> Option<Vec<Triangle>> {
 fn add_face(corners: &[Vector], triangles: &mut Vec<Triangle>) -> Option<()> {
     match corners {
         [a, b, c, d] => {
-            let across = |a: &Vector, b: &Vector| length(add(*a, scale(*b, -1.0)));
+            let across = |a: &Vector, b: &Vector| length(add(*a, scale_vector(*b, -1.0)));
             if across(a, c) < across(b, d) {
                 triangles.extend([[*a, *b, *c], [*a, *c, *d]]);
             } else {

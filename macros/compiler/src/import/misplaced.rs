@@ -1,9 +1,9 @@
 //! Detection of misplaced elements, attributes and texts in robots, links and joints. They are errors,
 //! because they would be ignored silently. Elements and attributes of other tools are accepted.
 
-use crate::diag::nearest;
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, elements, place, tag};
+use crate::diag::nearest_candidate;
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{Node, child_elements, element_position, quoted_tag};
 
 /// Elements and attributes of URDF, SDF and other formats that describe position, mass properties or motion.
 const WORDS: [&str; 47] = [
@@ -58,27 +58,27 @@ const WORDS: [&str; 47] = [
 
 /// Reports attributes, text, and elements other than `own` in a robot, a link, a joint or a part of them, if
 /// they have a meaning elsewhere in the file. Text between links is accepted as a comment.
-pub(super) fn check(node: Node<'_>, own: &[&str], help: &str, cx: &mut Cx<'_>) {
-    for child in elements(node).filter(|child| WORDS.contains(&child.tag_name().name())) {
+pub(super) fn check_misplaced(node: Node<'_>, own: &[&str], help: &str, cx: &mut Cx<'_>) {
+    for child in child_elements(node).filter(|child| WORDS.contains(&child.tag_name().name())) {
         // Misspelt names of elements in `own` are reported by other functions.
-        if nearest(child.tag_name().name(), own).is_none() && !is_neutral(child) {
-            let message = format!("unexpected {} in {}", tag(child), tag(node));
-            cx.error(&place(child, cx), message, |d| d.help(help));
+        if nearest_candidate(child.tag_name().name(), own).is_none() && !is_neutral(child) {
+            let message = format!("unexpected {} in {}", quoted_tag(child), quoted_tag(node));
+            cx.report_error(&element_position(child, cx), message, |d| d.add_help(help));
         }
     }
     // `<mimic>` names its leader by `joint`.
     let is_misplaced_word = |name: &str| WORDS.contains(&name) && name != "joint";
     for attribute in node.attributes().filter(|a| a.namespace().is_none() && is_misplaced_word(a.name())) {
-        let message = format!("unknown attribute {} of {}", quote(attribute.name()), tag(node));
-        cx.error(&cx.place(attribute.range().start), message, |d| d.help(help));
+        let message = format!("unknown attribute {} of {}", quote_word(attribute.name()), quoted_tag(node));
+        cx.report_error(&cx.source_position(attribute.range().start), message, |d| d.add_help(help));
     }
     let is_robot = matches!(node.tag_name().name(), "robot" | "model" | "world");
     let texts = node.children().filter(|child| child.is_text() && !is_robot);
     for text in texts.filter(|text| text.text().is_some_and(|text| text.contains(char::is_alphanumeric))) {
         let words = text.text().unwrap_or_default();
         let start = text.range().start + words.len() - words.trim_start().len();
-        let message = format!("unexpected text {} in {}", quote(words.trim()), tag(node));
-        cx.error(&cx.place(start), message, |d| d.help(help));
+        let message = format!("unexpected text {} in {}", quote_word(words.trim()), quoted_tag(node));
+        cx.report_error(&cx.source_position(start), message, |d| d.add_help(help));
     }
 }
 

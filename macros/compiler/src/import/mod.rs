@@ -37,16 +37,21 @@ pub use imported::Imported;
 ///
 /// Reports every error to `cx`, at the path's literal in the attribute and with line and column in the file.
 /// Returns `None` if there is an error.
-pub fn import(text: &str, folder: &Path, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
+pub fn import_file(
+    text: &str,
+    folder: &Path,
+    options: &FileOptions,
+    cx: &mut Diagnostics,
+) -> Option<Imported> {
     if text.len() > LARGEST_FILE {
-        file::report(&file::too_large(text.len() as u64), &options.path, cx);
+        file::report_file_error(&file::too_large(text.len() as u64), &options.path, cx);
         return None;
     }
-    let text = &*xml::cleaned(text);
+    let text = &*xml::clean_xml_text(text);
     match options.format {
         FileFormat::Urdf => import_urdf(text, &folder.join(&options.path.text), options, cx),
         FileFormat::Mjcf => mjcf::import(text, &folder.join(&options.path.text), options, cx),
-        FileFormat::Sdf => sdf::import(text, &folder.join(&options.path.text), options, cx),
+        FileFormat::Sdf => sdf::import_sdf(text, &folder.join(&options.path.text), options, cx),
     }
 }
 
@@ -54,5 +59,5 @@ fn import_urdf(text: &str, path: &Path, options: &FileOptions, cx: &mut Diagnost
     let cx = &mut context::Cx::new(text, &options.path, cx);
     let declared = OnceCell::new();
     let document = xml::parse(text, &declared, options.format, cx)?;
-    urdf::read(document.root_element(), path.parent().unwrap_or(path), options, cx)
+    urdf::read_root_element(document.root_element(), path.parent().unwrap_or(path), options, cx)
 }

@@ -28,14 +28,17 @@ impl Pose {
     pub(in crate::import) const ZERO: Pose = Pose { at: [0.0; 3], axes: IDENTITY };
 
     /// Returns the inverse: the pose of the reference frame relative to this frame.
-    pub(in crate::import) fn back(&self) -> Pose {
+    pub(in crate::import) fn inverse_pose(&self) -> Pose {
         let axes = transpose(&self.axes);
-        Pose { at: scale(apply(&axes, self.at), -1.0), axes }
+        Pose { at: scale_vector(matrix_times_vector(&axes, self.at), -1.0), axes }
     }
 
     /// Composes two poses. `inner` is relative to this frame, the result to the reference frame.
-    pub(in crate::import) fn then(&self, inner: &Pose) -> Pose {
-        Pose { at: add(self.at, apply(&self.axes, inner.at)), axes: product(&self.axes, &inner.axes) }
+    pub(in crate::import) fn compose_with(&self, inner: &Pose) -> Pose {
+        Pose {
+            at: add(self.at, matrix_times_vector(&self.axes, inner.at)),
+            axes: matrix_product(&self.axes, &inner.axes),
+        }
     }
 }
 
@@ -45,7 +48,7 @@ pub(in crate::import) fn add(a: Vector, b: Vector) -> Vector {
 }
 
 /// Returns a vector times a scalar.
-pub(in crate::import) fn scale(a: Vector, factor: f64) -> Vector {
+pub(in crate::import) fn scale_vector(a: Vector, factor: f64) -> Vector {
     a.map(|x| x * factor)
 }
 
@@ -61,16 +64,16 @@ pub(in crate::import) fn cross(a: Vector, b: Vector) -> Vector {
 
 /// Returns the Euclidean norm of a vector.
 pub(in crate::import) fn length(a: Vector) -> f64 {
-    a[0].hypot(a[1]).hypot(a[2])
+    libm::hypot(libm::hypot(a[0], a[1]), a[2])
 }
 
 /// Returns the product of a matrix and a vector.
-pub(in crate::import) fn apply(m: &Matrix, v: Vector) -> Vector {
+pub(in crate::import) fn matrix_times_vector(m: &Matrix, v: Vector) -> Vector {
     m.map(|row| dot(row, v))
 }
 
 /// Returns the product of two matrices.
-pub(in crate::import) fn product(a: &Matrix, b: &Matrix) -> Matrix {
+pub(in crate::import) fn matrix_product(a: &Matrix, b: &Matrix) -> Matrix {
     let columns = transpose(b);
     a.map(|row| columns.map(|column| dot(row, column)))
 }
@@ -82,7 +85,7 @@ pub(in crate::import) fn transpose(m: &Matrix) -> Matrix {
 
 /// Transforms a symmetric matrix with the rotation `m`: `m s mᵀ`.
 pub(in crate::import) fn rotated_tensor(m: &Matrix, s: &Matrix) -> Matrix {
-    product(&product(m, s), &transpose(m))
+    matrix_product(&matrix_product(m, s), &transpose(m))
 }
 
 /// Returns the rotation matrix of a unit quaternion (w, x, y, z).
@@ -114,7 +117,7 @@ pub(in crate::import) fn axis_rotation(axis: Vector, angle: f64) -> Matrix {
 
 /// Returns sine and cosine, exact at multiples of a right angle.
 fn sin_cos(angle: f64) -> (f64, f64) {
-    let (s, c) = angle.sin_cos();
+    let (s, c) = libm::sincos(angle);
     let round_noise_to_zero = |x: f64| if x.abs() < ROUNDING { 0.0 } else { x };
     (round_noise_to_zero(s), round_noise_to_zero(c))
 }
@@ -123,45 +126,45 @@ fn sin_cos(angle: f64) -> (f64, f64) {
 pub(in crate::import) fn of_z(direction: Vector) -> Matrix {
     let axis = cross([0.0, 0.0, 1.0], direction);
     let size = length(axis);
-    let axis = if size < 1e-10 { [1.0, 0.0, 0.0] } else { scale(axis, 1.0 / size) };
-    axis_rotation(axis, size.atan2(direction[2]))
+    let axis = if size < 1e-10 { [1.0, 0.0, 0.0] } else { scale_vector(axis, 1.0 / size) };
+    axis_rotation(axis, libm::atan2(size, direction[2]))
 }
 
 /// Returns roll, pitch and yaw of a rotation: `R = R_z(yaw) R_y(pitch) R_x(roll)`. The rotations are removed
 /// one after the other, which stays accurate at the singularity (pitch ±90°).
 pub(in crate::import) fn roll_pitch_yaw(m: &Matrix) -> Vector {
     let mut m = m.map(|row| row.map(|x| if x.abs() < ROUNDING { 0.0 } else { x }));
-    let upright = m[0][0].hypot(m[1][0]) < 1e-12;
-    let yaw = if upright { 0.0 } else { round(m[1][0].atan2(m[0][0])) };
-    m = product(&axis_rotation([0.0, 0.0, 1.0], -yaw), &m);
-    let pitch = round((-m[2][0]).atan2(m[0][0]));
-    m = product(&axis_rotation([0.0, 1.0, 0.0], -pitch), &m);
-    let roll = round(m[2][1].atan2(m[1][1]));
+    let upright = libm::hypot(m[0][0], m[1][0]) < 1e-12;
+    let yaw = if upright { 0.0 } else { round_to_right_angle(libm::atan2(m[1][0], m[0][0])) };
+    m = matrix_product(&axis_rotation([0.0, 0.0, 1.0], -yaw), &m);
+    let pitch = round_to_right_angle(libm::atan2(-m[2][0], m[0][0]));
+    m = matrix_product(&axis_rotation([0.0, 1.0, 0.0], -pitch), &m);
+    let roll = round_to_right_angle(libm::atan2(m[2][1], m[1][1]));
     [roll, pitch, yaw]
 }
 
 /// Rounds an angle that is within rounding error of a multiple of a right angle.
-fn round(angle: f64) -> f64 {
+fn round_to_right_angle(angle: f64) -> f64 {
     let right = (angle / FRAC_PI_2).round() * FRAC_PI_2;
     // Adding zero converts −0 to 0.
     if (angle - right).abs() < ROUNDING { right + 0.0 } else { angle }
 }
 
 /// Returns the eigenvalues of a symmetric matrix, and its eigenvectors as columns (Jacobi's method).
-pub(in crate::import) fn principal(s: &Matrix) -> (Vector, Matrix) {
+pub(in crate::import) fn eigen_decomposition(s: &Matrix) -> (Vector, Matrix) {
     let (mut s, mut axes) = (*s, IDENTITY);
     for _ in 0..64 {
         let largest = [(0, 1), (0, 2), (1, 2)]
             .into_iter()
             .max_by(|a, b| s[a.0][a.1].abs().total_cmp(&s[b.0][b.1].abs()));
         let Some((i, j)) = largest.filter(|(i, j)| s[*i][*j] != 0.0) else { break };
-        let angle = 0.5 * (2.0 * s[i][j]).atan2(s[j][j] - s[i][i]);
-        let (sin, cos) = angle.sin_cos();
+        let angle = 0.5 * libm::atan2(2.0 * s[i][j], s[j][j] - s[i][i]);
+        let (sin, cos) = libm::sincos(angle);
         let mut turn = IDENTITY;
         (turn[i][i], turn[j][j], turn[i][j], turn[j][i]) = (cos, cos, sin, -sin);
-        s = product(&product(&transpose(&turn), &s), &turn);
+        s = matrix_product(&matrix_product(&transpose(&turn), &s), &turn);
         (s[i][j], s[j][i]) = (0.0, 0.0);
-        axes = product(&axes, &turn);
+        axes = matrix_product(&axes, &turn);
     }
     ([s[0][0], s[1][1], s[2][2]], axes)
 }
@@ -176,7 +179,10 @@ mod tests {
 
     fn of_rpy([roll, pitch, yaw]: Vector) -> Matrix {
         let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-        product(&product(&axis_rotation(z, yaw), &axis_rotation(y, pitch)), &axis_rotation(x, roll))
+        matrix_product(
+            &matrix_product(&axis_rotation(z, yaw), &axis_rotation(y, pitch)),
+            &axis_rotation(x, roll),
+        )
     }
 
     #[test]
@@ -195,16 +201,16 @@ mod tests {
 
     #[test]
     fn quaternions_and_turns_about_an_axis_agree() {
-        let (axis, angle) = (scale([1.0, 2.0, -2.0], 1.0 / 3.0), 0.7_f64);
-        let [x, y, z] = scale(axis, (angle / 2.0).sin());
+        let (axis, angle) = (scale_vector([1.0, 2.0, -2.0], 1.0 / 3.0), 0.7_f64);
+        let [x, y, z] = scale_vector(axis, (angle / 2.0).sin());
         assert!(is_close(&axis_rotation(axis, angle), &of_quaternion([(angle / 2.0).cos(), x, y, z])));
-        assert!((apply(&of_z(axis), [0.0, 0.0, 1.0])[1] - axis[1]).abs() < 1e-15);
+        assert!((matrix_times_vector(&of_z(axis), [0.0, 0.0, 1.0])[1] - axis[1]).abs() < 1e-15);
     }
 
     #[test]
     fn principal_axes_make_the_matrix_diagonal() {
         let s = [[3.0, 0.4, -0.2], [0.4, 2.0, 0.1], [-0.2, 0.1, 5.0]];
-        let (values, axes) = principal(&s);
+        let (values, axes) = eigen_decomposition(&s);
         let diagonal: Matrix =
             std::array::from_fn(|i| std::array::from_fn(|j| if i == j { values[i] } else { 0.0 }));
         assert!(is_close(&rotated_tensor(&axes, &diagonal), &s));

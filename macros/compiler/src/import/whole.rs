@@ -1,6 +1,6 @@
 //! Texts composed of pieces of several files, each with its file of origin. This module knows no file format.
 
-use super::context::{Cx, Piece, position, quote};
+use super::context::{Cx, Piece, format_position, quote_word};
 use super::element::Node;
 use super::imported::Imported;
 use super::{LARGEST_FILE, file, xml};
@@ -42,7 +42,7 @@ impl Whole {
     }
 
     /// Appends bytes of a file to the composed text.
-    pub(super) fn copy(
+    pub(super) fn append_file_bytes(
         &mut self,
         file: usize,
         from: usize,
@@ -57,7 +57,7 @@ impl Whole {
     }
 
     /// Appends a text that is attributed to a position in a file.
-    pub(super) fn append(
+    pub(super) fn append_text(
         &mut self,
         text: &str,
         (file, offset): (usize, usize),
@@ -71,7 +71,7 @@ impl Whole {
 
     fn check_size(&self, name: &Name, cx: &mut Diagnostics) -> Option<()> {
         if self.text.len() > LARGEST_FILE {
-            file::report(&file::too_large(self.text.len() as u64), name, cx);
+            file::report_file_error(&file::too_large(self.text.len() as u64), name, cx);
             return None;
         }
         Some(())
@@ -79,7 +79,7 @@ impl Whole {
 }
 
 /// Parses a composed text and calls `read` with its root element. `name` is the file that the user names.
-pub(super) fn imported(
+pub(super) fn import_composed_text(
     whole: Whole,
     name: &Name,
     format: FileFormat,
@@ -107,10 +107,10 @@ pub(super) fn report_circle(
     cx: &mut Diagnostics,
 ) {
     let shown = files.get(known).map_or("", |read| read.shown.as_str());
-    let error = cx.error(at.place.clone(), format!("{} includes itself", quote(shown)));
+    let error = cx.report_error(at.place.clone(), format!("{} includes itself", quote_word(shown)));
     let rest = open.iter().skip_while(|file| **file != known).skip(1);
     for by in rest.filter_map(|file| places.get(*file)) {
-        error.help(format!("through {} at {}", quote(&by.text), position(&by.place)));
+        error.add_help(format!("through {} at {}", quote_word(&by.text), format_position(&by.place)));
     }
 }
 
@@ -118,10 +118,10 @@ pub(super) fn report_circle(
 pub(super) fn report_many(depth: usize, at: &Name, cx: &mut Diagnostics) {
     let (most, what) =
         if depth > MAX_DEPTH { (MAX_DEPTH, "nested files") } else { (MAX_FILES, "included files") };
-    cx.error(at.place.clone(), format!("more than {most} {what}"));
+    cx.report_error(at.place.clone(), format!("more than {most} {what}"));
 }
 
 /// Returns the canonical path, so that a file has only one path.
-pub(super) fn plain(path: &Path) -> PathBuf {
+pub(super) fn canonical_path(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
 }

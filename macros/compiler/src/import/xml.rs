@@ -2,7 +2,7 @@
 //! errors are reported with the compiler's own messages. This module knows of the file formats only their
 //! depth and that xacro may generate them.
 
-use super::context::{Cx, quote};
+use super::context::{Cx, quote_word};
 use super::file::with_plain_blanks;
 use crate::diag::Place;
 use crate::syntax::FileFormat;
@@ -36,7 +36,7 @@ fn max_depth(format: FileFormat) -> usize {
 /// Returns the text of a file in which whitespace characters that XML does not know, and an XML declaration
 /// after empty lines, are replaced by spaces. Other readers of URDF accept both. Lines and columns are
 /// preserved.
-pub(super) fn cleaned(text: &str) -> Cow<'_, str> {
+pub(super) fn clean_xml_text(text: &str) -> Cow<'_, str> {
     match with_plain_blanks(text.trim_end_matches('\0')) {
         Cow::Borrowed(plain) => without_late_declaration(plain),
         Cow::Owned(plain) => Cow::Owned(without_late_declaration(&plain).into_owned()),
@@ -69,10 +69,10 @@ pub(super) fn parse<'t>(
     format: FileFormat,
     cx: &mut Cx<'_>,
 ) -> Option<Document<'t>> {
-    let Scan { root, unclosed, prefixes } = match scan(text, format) {
+    let Scan { root, unclosed, prefixes } = match scan_limits(text, format) {
         Ok(found) => found,
         Err((offset, message)) => {
-            cx.error(&cx.place(offset), message, |d| d);
+            cx.report_error(&cx.source_position(offset), message, |d| d);
             return None;
         }
     };
@@ -82,7 +82,7 @@ pub(super) fn parse<'t>(
     };
     let at = behind_name(text, root);
     let declarations = match &error {
-        Error::UnknownNamespace(..) if root < text.len() => declarations(&text[root..], &prefixes),
+        Error::UnknownNamespace(..) if root < text.len() => prefix_declarations(&text[root..], &prefixes),
         _ => String::new(),
     };
     cx.add(at, &declarations);
@@ -94,7 +94,7 @@ pub(super) fn parse<'t>(
         },
     };
     let unclosed = unclosed.map(|start| if start > at { start + declarations.len() } else { start });
-    report(&error, text, unclosed, format, cx);
+    report_parser_error(&error, text, unclosed, format, cx);
     None
 }
 
@@ -112,7 +112,7 @@ fn insert_text(text: &str, at: usize, more: &str) -> String {
 
 /// Returns declarations of the undeclared prefixes, for insertion into the root element. All are added at
 /// once, because each attempt to parse takes time proportional to the size of the file.
-fn declarations(root: &str, prefixes: &[&str]) -> String {
+fn prefix_declarations(root: &str, prefixes: &[&str]) -> String {
     let tag = &root[..scan_tag(root, 0, &mut Vec::new(), &mut |_| {}).unwrap_or(root.len())];
     let own: Vec<&str> =
         tag.split("xmlns:").skip(1).filter_map(|rest| rest.split(not_in_a_name).next()).collect();
@@ -151,7 +151,7 @@ struct Scan<'t> {
 ///
 /// The scan agrees with the parser up to the first syntax error. After it the scan may be wrong, which has no
 /// effect because the parser stops there.
-fn scan(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, String)> {
+fn scan_limits(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, String)> {
     let marks = text.bytes().filter(|b| matches!(b, b'<' | b'=')).count();
     if marks > MOST_MARKS || text.matches("xmlns").count() > MOST_NAMESPACES {
         return Err((0, "the file has too many elements, attributes or namespaces for a robot".to_string()));
@@ -177,7 +177,10 @@ fn scan(text: &str, format: FileFormat) -> Result<Scan<'_>, (usize, String)> {
             } else if rest.starts_with("<!DOCTYPE") {
                 return Err((
                     start,
-                    format!("{} has no document type and no entities of its own", format.article()),
+                    format!(
+                        "{} has no document type and no entities of its own",
+                        format.phrase_with_article()
+                    ),
                 ));
             } else if rest.starts_with("</") {
                 open.pop();
@@ -239,13 +242,15 @@ fn refuse_template(document: &Document<'_>, format: FileFormat, cx: &mut Cx<'_>)
         let name = node.tag_name();
         if name.namespace().is_some_and(|uri| uri.contains("xacro")) {
             let message =
-                format!("{} is an instruction to xacro", quote(&format!("<xacro:{}>", name.name())));
-            cx.error(&cx.place(node.range().start), message, |d| d.help(run_xacro(format)));
+                format!("{} is an instruction to xacro", quote_word(&format!("<xacro:{}>", name.name())));
+            cx.report_error(&cx.source_position(node.range().start), message, |d| {
+                d.add_help(run_xacro(format))
+            });
             return false;
         }
-        if let Some((offset, value)) = expression(node, format) {
-            let message = format!("{} is an expression of xacro", quote(value));
-            cx.error(&cx.place(offset), message, |d| d.help(run_xacro(format)));
+        if let Some((offset, value)) = unexpanded_xacro_expression(node, format) {
+            let message = format!("{} is an expression of xacro", quote_word(value));
+            cx.report_error(&cx.source_position(offset), message, |d| d.add_help(run_xacro(format)));
             return false;
         }
     }
@@ -253,7 +258,7 @@ fn refuse_template(document: &Document<'_>, format: FileFormat, cx: &mut Cx<'_>)
 }
 
 /// Returns an expression that xacro would have replaced by a value, with its byte offset.
-fn expression<'t>(node: Node<'_, 't>, format: FileFormat) -> Option<(usize, &'t str)> {
+fn unexpanded_xacro_expression<'t>(node: Node<'_, 't>, format: FileFormat) -> Option<(usize, &'t str)> {
     let is_read = READ.contains(&node.tag_name().name());
     let is_expression = |value: &str| value.contains("${") || value.contains("$(");
     let attributes = node.attributes().filter(|_| is_read || format == FileFormat::Sdf);
@@ -283,27 +288,35 @@ fn run_xacro(format: FileFormat) -> &'static str {
 }
 
 /// Reports an error of the parser.
-fn report(error: &Error, text: &str, unclosed: Option<usize>, format: FileFormat, cx: &mut Cx<'_>) {
+fn report_parser_error(
+    error: &Error,
+    text: &str,
+    unclosed: Option<usize>,
+    format: FileFormat,
+    cx: &mut Cx<'_>,
+) {
     let mut help = None;
     let message = match error {
         Error::UnexpectedCloseTag(expected, actual, _) => {
             let (expected, actual) = (format!("</{expected}>"), format!("</{actual}>"));
-            format!("expected {}, found {}", quote(&expected), quote(&actual))
+            format!("expected {}, found {}", quote_word(&expected), quote_word(&actual))
         }
         Error::UnclosedRootNode | Error::UnexpectedEndOfStream => match unclosed {
             Some(_) => "this element is never closed".to_string(),
             None => "the file ends in the middle of a tag".to_string(),
         },
         Error::NoRootNode => "there is no element".to_string(),
-        Error::DuplicatedAttribute(name, _) => format!("attribute {} is given twice", quote(name)),
-        Error::UnknownEntityReference(name, _) => format!("unknown entity {}", quote(&format!("&{name};"))),
+        Error::DuplicatedAttribute(name, _) => format!("attribute {} is given twice", quote_word(name)),
+        Error::UnknownEntityReference(name, _) => {
+            format!("unknown entity {}", quote_word(&format!("&{name};")))
+        }
         Error::MalformedEntityReference(_) => {
             help = Some("write `&amp;` for `&`");
             "this `&` does not begin an entity".to_string()
         }
         Error::UnknownNamespace(prefix, _) => {
             help = (prefix == "xacro").then_some(run_xacro(format));
-            format!("unknown namespace prefix {}", quote(prefix))
+            format!("unknown namespace prefix {}", quote_word(prefix))
         }
         other => other.to_string().replace(&format!(" at {}", other.pos()), "").replace('\'', "`"),
     };
@@ -314,8 +327,8 @@ fn report(error: &Error, text: &str, unclosed: Option<usize>, format: FileFormat
             FileFormat::Sdf => "an SDF file is XML: `<sdf version=\"…\"> … </sdf>`",
         });
     }
-    cx.error(&place_of(error, unclosed, cx), format!("malformed XML: {message}"), |d| match help {
-        Some(help) => d.help(help),
+    cx.report_error(&place_of(error, unclosed, cx), format!("malformed XML: {message}"), |d| match help {
+        Some(help) => d.add_help(help),
         None => d,
     });
 }
@@ -323,8 +336,8 @@ fn report(error: &Error, text: &str, unclosed: Option<usize>, format: FileFormat
 /// Returns the position of a parser error. The parser gives no position for a premature end of the file.
 fn place_of(error: &Error, unclosed: Option<usize>, cx: &Cx<'_>) -> Place {
     match (error, unclosed) {
-        (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, Some(offset)) => cx.place(offset),
-        (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, None) => cx.end(),
+        (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, Some(offset)) => cx.source_position(offset),
+        (Error::UnclosedRootNode | Error::UnexpectedEndOfStream, None) => cx.end_of_file(),
         _ => cx.parsed_at(error.pos().row, error.pos().col),
     }
 }

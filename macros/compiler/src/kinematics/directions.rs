@@ -3,14 +3,14 @@
 use crate::expr::Vec3;
 use crate::expr::diff::TINY;
 use crate::expr::eval::eval;
-use crate::expr::sample::sample;
+use crate::expr::sample::sample_of_symbol;
 
 /// Names of the coordinate axes.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Returns a vector divided by its length. The result for the zero vector is zero, not NaN.
-pub fn unit(v: Vec3<'_>) -> Vec3<'_> {
-    match v.values() {
+pub fn normalised_or_zero(v: Vec3<'_>) -> Vec3<'_> {
+    match v.constant_components() {
         Some(_) => v.map(|c| c / v.norm()),
         None => {
             let length = (v.dot(v) + v[0].num(TINY)).sqrt();
@@ -20,10 +20,10 @@ pub fn unit(v: Vec3<'_>) -> Vec3<'_> {
 }
 
 /// Returns two directions orthogonal to an axis and to each other, with their names.
-pub fn perpendicular(axis: Vec3<'_>) -> [(&'static str, Vec3<'_>); 2] {
+pub fn perpendicular_directions(axis: Vec3<'_>) -> [(&'static str, Vec3<'_>); 2] {
     let g = axis[0].graph();
-    let words: [(&'static str, Vec3<'_>); 3] = [0, 1, 2].map(|k| (AXES[k], Vec3::axis(g, k)));
-    let is_along = |k: usize| axis.values().is_some_and(|n| n[k].abs() == 1.0);
+    let words: [(&'static str, Vec3<'_>); 3] = [0, 1, 2].map(|k| (AXES[k], Vec3::coordinate_axis(g, k)));
+    let is_along = |k: usize| axis.constant_components().is_some_and(|n| n[k].abs() == 1.0);
     if let Some(k) = (0..3).find(|k| is_along(*k)) {
         return [words[(k + 1) % 3], words[(k + 2) % 3]];
     }
@@ -31,9 +31,9 @@ pub fn perpendicular(axis: Vec3<'_>) -> [(&'static str, Vec3<'_>); 2] {
         Some((first, second)) => [first, second],
         None => {
             // The coordinate axis farthest from the direction for sampled parameters.
-            let at = eval(&axis.0, &|s| sample(s, 0));
+            let at = eval(&axis.0, &|s| sample_of_symbol(s, 0));
             let far = (0..3).min_by(|a, b| at[*a].abs().total_cmp(&at[*b].abs())).unwrap_or(0);
-            let first = unit(axis.cross(Vec3::axis(g, far)));
+            let first = normalised_or_zero(axis.cross(Vec3::coordinate_axis(g, far)));
             [first, axis.cross(first)]
         }
     };
@@ -45,12 +45,12 @@ pub fn perpendicular(axis: Vec3<'_>) -> [(&'static str, Vec3<'_>); 2] {
 /// direction is orthogonal to the coordinate axis that is farthest from the normal.
 pub fn in_plane(normal: Vec3<'_>) -> Option<(Vec3<'_>, Vec3<'_>)> {
     let graph = normal[0].graph();
-    let n = normal.values()?;
+    let n = normal.constant_components()?;
     if let Some(k) = (0..3).find(|k| n[*k] == 1.0) {
-        return Some((Vec3::axis(graph, (k + 1) % 3), Vec3::axis(graph, (k + 2) % 3)));
+        return Some((Vec3::coordinate_axis(graph, (k + 1) % 3), Vec3::coordinate_axis(graph, (k + 2) % 3)));
     }
     let far = (0..3).min_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs()))?;
-    let raw = normal.cross(Vec3::axis(graph, far));
+    let raw = normal.cross(Vec3::coordinate_axis(graph, far));
     let first = raw.map(|c| c / raw.norm());
     Some((first, normal.cross(first)))
 }

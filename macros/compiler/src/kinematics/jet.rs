@@ -65,7 +65,7 @@ pub struct Relative<'g> {
 }
 
 /// Returns the motion of a link relative to the nearest common ancestor of this link and another.
-pub fn relative<'g>(
+pub fn relative_motion<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     link: Option<LinkId>,
@@ -90,10 +90,10 @@ pub fn relative<'g>(
     let mut motion: Option<(Spatial<'g>, Spatial<'g>)> = None;
     for l in path.iter().rev() {
         let joint = &joints[l.0];
-        let own = joint.twist(model, &v);
+        let own = joint.total_relative_twist(model, &v);
         let twist = motion.as_ref().map_or(own, |(twist, _)| joint.twist_to_child(twist).plus(&own));
         let before = motion.as_ref().map(|(twist, acceleration)| (twist, acceleration));
-        let acceleration = joint.acceleration(model, before, &v, &still);
+        let acceleration = joint.link_acceleration(model, before, &v, &still);
         motion = Some((twist, acceleration));
     }
     let (twist, acceleration) = motion.unwrap_or((zero, zero));
@@ -101,7 +101,7 @@ pub fn relative<'g>(
 }
 
 /// Returns the motion of a point of a link, in the axes of the ancestor.
-pub fn point<'g>(joints: &[Joint<'g>], on: &Relative<'g>, p: Vec3<'g>) -> Moving<'g> {
+pub fn motion_of_point<'g>(joints: &[Joint<'g>], on: &Relative<'g>, p: Vec3<'g>) -> Moving<'g> {
     let mut value = p;
     let mut at = on.link;
     while at != on.ancestor {
@@ -118,7 +118,7 @@ pub fn point<'g>(joints: &[Joint<'g>], on: &Relative<'g>, p: Vec3<'g>) -> Moving
 }
 
 /// Returns the motion of a direction fixed in a link, in the axes of the ancestor.
-pub fn direction<'g>(joints: &[Joint<'g>], on: &Relative<'g>, e: Vec3<'g>) -> Moving<'g> {
+pub fn motion_of_direction<'g>(joints: &[Joint<'g>], on: &Relative<'g>, e: Vec3<'g>) -> Moving<'g> {
     let w = on.twist.angular;
     let second = on.acceleration.angular.cross(e) + w.cross(w.cross(e));
     let in_ancestor = |v| direction_out(joints, on, v);

@@ -4,7 +4,7 @@
 
 use super::rates::{Partials, position_in, symbols_in};
 use super::spatial::{Spatial, map_spatial};
-use crate::expr::replace::replace;
+use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr, Graph, Rotation, Symbol, Vec3};
 use crate::mechanism::{Coordinate, InQ, Inertia, Link, LinkId, Model, Motion, Quantity, Space};
 
@@ -71,7 +71,7 @@ impl<'g> Joint<'g> {
 
     /// Returns the combined mass properties of the parent and of the link, or of all identical limbs in SIMD
     /// lanes.
-    pub fn composite(&self, parent: &Inertia<'g>, link: &Inertia<'g>) -> Inertia<'g> {
+    pub fn composite_inertia(&self, parent: &Inertia<'g>, link: &Inertia<'g>) -> Inertia<'g> {
         if self.limbs == 1 {
             return parent.plus_placed(link, &self.rotation, self.translation);
         }
@@ -93,10 +93,10 @@ impl<'g> Joint<'g> {
 
     /// Returns the joint's relative twist for the velocities `rates` (by entry of `v`), without motion
     /// prescribed in time.
-    pub fn relative(&self, model: &Model<'g>, rates: &[Expr<'g>]) -> Spatial<'g> {
+    pub fn relative_twist(&self, model: &Model<'g>, rates: &[Expr<'g>]) -> Spatial<'g> {
         let mut sum = Spatial::zero(model);
         for dof in &self.dofs {
-            sum = sum.plus(&dof.subspace.times(rates[dof.index] * model.graph.num(dof.ratio)));
+            sum = sum.plus(&dof.subspace.times_scalar(rates[dof.index] * model.graph.num(dof.ratio)));
         }
         sum
     }
@@ -104,20 +104,20 @@ impl<'g> Joint<'g> {
 
 impl<'g> Joint<'g> {
     /// Returns the joint's relative twist for the velocities `v`, including motion prescribed in time.
-    pub fn twist(&self, model: &Model<'g>, v: &[Expr<'g>]) -> Spatial<'g> {
-        let relative = self.relative(model, v);
+    pub fn total_relative_twist(&self, model: &Model<'g>, v: &[Expr<'g>]) -> Spatial<'g> {
+        let relative = self.relative_twist(model, v);
         self.drift.as_ref().map_or(relative, |drift| relative.plus(&drift.twist))
     }
 
     /// Returns the link's acceleration from its parent's twist and acceleration (`None` for the ground).
-    pub fn acceleration(
+    pub fn link_acceleration(
         &self,
         model: &Model<'g>,
         parent: Option<(&Spatial<'g>, &Spatial<'g>)>,
         v: &[Expr<'g>],
         a: &[Expr<'g>],
     ) -> Spatial<'g> {
-        let (rate, mut own) = (self.twist(model, v), self.relative(model, a));
+        let (rate, mut own) = (self.total_relative_twist(model, v), self.relative_twist(model, a));
         if let Some(drift) = &self.drift {
             own = own.plus(&drift.acceleration);
         }
@@ -136,13 +136,13 @@ impl<'g> Joint<'g> {
 }
 
 /// Returns the joints of all links at the configuration `q`.
-pub fn joints<'g>(model: &Model<'g>) -> Vec<Joint<'g>> {
+pub fn joints_of_model<'g>(model: &Model<'g>) -> Vec<Joint<'g>> {
     let mut partials = Partials::default();
-    model.links.iter().map(|link| joint(model.space(), link, &mut partials)).collect()
+    model.links.iter().map(|link| joint_of_link(model.configuration_space(), link, &mut partials)).collect()
 }
 
 /// Returns the joint of a link; `partials` caches derivatives of the preceding links.
-pub fn joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<'g>) -> Joint<'g> {
+pub fn joint_of_link<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<'g>) -> Joint<'g> {
     let g = space.graph;
     let zero = Vec3::zero(g);
     let quaternion_components = |first: InQ| [0, 1, 2, 3].map(|k| (first + k).expr(g));
@@ -151,7 +151,7 @@ pub fn joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<
     };
     let (motion, shift, dofs) = match &link.motion {
         Motion::Turn { axis, coordinate } => (
-            Rotation::eigenaxis(*axis, position_in(g, coordinate)),
+            Rotation::rotation_about_axis(*axis, position_in(g, coordinate)),
             zero,
             single_dof(coordinate, zero, *axis),
         ),
@@ -161,15 +161,19 @@ pub fn joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<
         Motion::Helix { axis, pitch, coordinate } => {
             let angle = position_in(g, coordinate);
             let shift = *axis * (*pitch * angle);
-            (Rotation::eigenaxis(*axis, angle), shift, single_dof(coordinate, *axis * *pitch, *axis))
+            (
+                Rotation::rotation_about_axis(*axis, angle),
+                shift,
+                single_dof(coordinate, *axis * *pitch, *axis),
+            )
         }
         Motion::Ball { q, v } => {
-            let rotation = Rotation::quaternion(quaternion_components(*q));
+            let rotation = Rotation::from_quaternion(quaternion_components(*q));
             let dofs = (0..3).map(|k| unit_dof(g, v.0 + k, None, Some(k))).collect();
             (rotation, zero, dofs)
         }
         Motion::Free { q, v } => {
-            let rotation = Rotation::quaternion(quaternion_components(*q + 3));
+            let rotation = Rotation::from_quaternion(quaternion_components(*q + 3));
             let dofs = (0..6).map(|k| match k {
                 0..3 => unit_dof(g, v.0 + k, Some(k), None),
                 _ => unit_dof(g, v.0 + k, None, Some(k - 3)),
@@ -180,8 +184,8 @@ pub fn joint<'g>(space: Space<'_, 'g>, link: &Link<'g>, partials: &mut Partials<
     };
     Joint {
         parent: link.parent,
-        translation: link.placement.point(shift),
-        rotation: link.placement.rotation.clone().then(&motion),
+        translation: link.placement.transform_point(shift),
+        rotation: link.placement.rotation.clone().compose_with(&motion),
         dofs,
         drift: None,
         limbs: 1,
@@ -238,11 +242,13 @@ fn velocities_in(twist: &Spatial<'_>) -> Vec<usize> {
 
 /// Returns an expression with all velocities set to zero.
 fn at_rest<'g>(graph: &'g Graph, e: Expr<'g>) -> Expr<'g> {
-    replace(e, &|s| matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| graph.zero()))
+    substitute_symbols(e, &|s| {
+        matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| graph.zero())
+    })
 }
 
 fn unit_dof<'g>(g: &'g Graph, index: usize, linear: Option<usize>, angular: Option<usize>) -> Dof<'g> {
-    let axis_or_zero = |k: Option<usize>| k.map_or(Vec3::zero(g), |k| Vec3::axis(g, k));
+    let axis_or_zero = |k: Option<usize>| k.map_or(Vec3::zero(g), |k| Vec3::coordinate_axis(g, k));
     Dof {
         index,
         ratio: 1.0,

@@ -10,7 +10,7 @@ use crate::mechanism::{LinkId, Model};
 pub fn twists<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<Spatial<'g>> {
     let mut twists: Vec<Spatial<'g>> = Vec::with_capacity(joints.len());
     for joint in joints {
-        let own = joint.twist(model, v);
+        let own = joint.total_relative_twist(model, v);
         twists.push(match joint.parent {
             None => own,
             Some(p) => joint.twist_to_child(&twists[p.0]).plus(&own),
@@ -31,7 +31,7 @@ pub fn accelerations<'g>(
     let mut all: Vec<Spatial<'g>> = Vec::with_capacity(joints.len());
     for joint in joints {
         let parent = joint.parent.map(|p| (twists[p.0], all[p.0]));
-        all.push(joint.acceleration(model, parent.as_ref().map(|(t, a)| (t, a)), v, a));
+        all.push(joint.link_acceleration(model, parent.as_ref().map(|(t, a)| (t, a)), v, a));
     }
     all
 }

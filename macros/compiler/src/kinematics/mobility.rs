@@ -34,11 +34,11 @@ pub fn sample_configurations(model: &Model<'_>, rows: &Rows<'_>, cx: &mut Diagno
     let mut found: Vec<Sample> = Vec::new();
     let mut worst: Option<(usize, f64)> = None;
     let wanted = if is_numeric(model) { STARTS } else { STARTS / 3 };
-    let possible = WORK / rows.cost().max(1);
+    let possible = WORK / rows.evaluation_cost().max(1);
     let starts = wanted.min(possible / STEPS).max(1);
     let steps = STEPS.min(possible);
     for seed in 0..starts {
-        match close(model, rows, seed, steps) {
+        match close_loops(model, rows, seed, steps) {
             Ok(q) => found.push((q, seed)),
             Err(open) if worst.is_none_or(|(_, best)| open.1 < best) => worst = Some(open),
             Err(_) => {}
@@ -50,8 +50,8 @@ pub fn sample_configurations(model: &Model<'_>, rows: &Rows<'_>, cx: &mut Diagno
     if let Some((row, open)) = worst.filter(|(_, open)| *open > OPEN && found.is_empty() && starts == STARTS)
     {
         let c = &model.constraints[row];
-        cx.error(c.place.clone(), format!("no configuration was found that satisfies `{}`", c.name))
-            .help(format!("the smallest residual is {open:.3}: check the lengths and axes"));
+        cx.report_error(c.place.clone(), format!("no configuration was found that satisfies `{}`", c.name))
+            .add_help(format!("the smallest residual is {open:.3}: check the lengths and axes"));
     }
     found
 }
@@ -84,11 +84,11 @@ pub fn degrees_of_freedom(
     let sample = samples.iter().find(|w| free_dof_count(w, nc) > 0).or(samples.first());
     let count_free_dofs = |rank: usize| sample.map_or(nv.saturating_sub(rank), |w| free_dof_count(w, rank));
     let freedom =
-        Freedom { coordinates: count_free_dofs(model.holonomic()), velocities: count_free_dofs(nc) };
+        Freedom { coordinates: count_free_dofs(model.holonomic_count()), velocities: count_free_dofs(nc) };
     let is_undriven = || samples.iter().all(|sample| !is_driven(model, rows, sample));
     if freedom.velocities == 0 && !samples.is_empty() && is_undriven() {
         let place = model.constraints.last().map_or(&model.place, |c| &c.place);
-        cx.error(place.clone(), "this mechanism cannot move").help(format!(
+        cx.report_error(place.clone(), "this mechanism cannot move").add_help(format!(
             "its {nv} coordinates are fixed by {nc} constraints: remove a joint or a constraint"
         ));
     }
@@ -98,14 +98,15 @@ pub fn degrees_of_freedom(
 /// Returns true if the mechanism moves at zero velocities: frames depend on time, or the rate of a constraint
 /// has a velocity-free term.
 fn is_driven(model: &Model<'_>, rows: &Rows<'_>, (q, seed): &Sample) -> bool {
-    let placements: Vec<Expr<'_>> = model.links.iter().flat_map(|link| link.placement.entries()).collect();
+    let placements: Vec<Expr<'_>> =
+        model.links.iter().flat_map(|link| link.placement.all_expressions()).collect();
     rows.has_drift(q, *seed)
         || symbols_in(&placements).into_iter().any(|s| Quantity::from_symbol(s) == Quantity::Time)
 }
 
 /// Returns a pivot for each constraint among the velocities that need not be independent, in the order of an
 /// elimination that is well-conditioned at a sample. Returns `None` if some constraint has no pivot.
-pub fn dependent(
+pub fn dependent_velocities(
     model: &Model<'_>,
     rows: &Rows<'_>,
     samples: &[Sample],
@@ -138,7 +139,7 @@ pub fn dependent(
 
 /// Closes the loops by the Levenberg–Marquardt method from a random configuration. On failure, returns the
 /// row with the largest residual, and the residual.
-fn close(model: &Model<'_>, rows: &Rows<'_>, seed: u64, steps: u64) -> Result<Vec<f64>, (usize, f64)> {
+fn close_loops(model: &Model<'_>, rows: &Rows<'_>, seed: u64, steps: u64) -> Result<Vec<f64>, (usize, f64)> {
     let spread = [0.2, 1.0, 3.0][(seed % 3) as usize];
     let mut q = random_configuration(model, seed);
     for chart in &model.charts {
@@ -155,7 +156,7 @@ fn close(model: &Model<'_>, rows: &Rows<'_>, seed: u64, steps: u64) -> Result<Ve
         }
         let jacobian = &rows.jacobian(&q, seed)[..r.len()];
         let step = damped_step(jacobian, &r, damping);
-        let next = displaced(model, &q, &step);
+        let next = displaced_configuration(model, &q, &step);
         let trial = rows.residuals(&next, seed);
         if sum_of_squares(&trial) < sum_of_squares(&r) {
             (q, r, damping) = (next, trial, damping * 0.1);
@@ -197,16 +198,16 @@ fn damped_step(rows: &[Vec<f64>], r: &[f64], damping: f64) -> Vec<f64> {
 }
 
 /// Returns `q ⊕ dv`, to first order for free joints.
-fn displaced(model: &Model<'_>, q: &[f64], dv: &[f64]) -> Vec<f64> {
+fn displaced_configuration(model: &Model<'_>, q: &[f64], dv: &[f64]) -> Vec<f64> {
     let mut out = q.to_vec();
     for chart in &model.charts {
         match *chart {
             Chart::Plain(k, v) => out[k.0] += dv[v.0],
-            Chart::Ball(k, v) => turn(&mut out[k.and_next(4)], &dv[v.and_next(3)]),
+            Chart::Ball(k, v) => rotate_quaternion(&mut out[k.and_next(4)], &dv[v.and_next(3)]),
             Chart::Free(k, v) => {
-                let shift = rotated(&q[(k + 3).and_next(4)], &dv[v.and_next(3)]);
+                let shift = rotate_vector(&q[(k + 3).and_next(4)], &dv[v.and_next(3)]);
                 out[k.and_next(3)].iter_mut().zip(shift).for_each(|(x, by)| *x += by);
-                turn(&mut out[(k + 3).and_next(4)], &dv[(v + 3).and_next(3)]);
+                rotate_quaternion(&mut out[(k + 3).and_next(4)], &dv[(v + 3).and_next(3)]);
             }
         }
     }
@@ -214,7 +215,7 @@ fn displaced(model: &Model<'_>, q: &[f64], dv: &[f64]) -> Vec<f64> {
 }
 
 /// Rotates a quaternion x y z w by a small rotation vector in body axes.
-fn turn(q: &mut [f64], w: &[f64]) {
+fn rotate_quaternion(q: &mut [f64], w: &[f64]) {
     let [x, y, z, s] = [q[0], q[1], q[2], q[3]];
     let [a, b, c] = [w[0] / 2.0, w[1] / 2.0, w[2] / 2.0];
     let next = [
@@ -228,7 +229,7 @@ fn turn(q: &mut [f64], w: &[f64]) {
 }
 
 /// Rotates a vector by a quaternion x y z w.
-fn rotated(q: &[f64], v: &[f64]) -> [f64; 3] {
+fn rotate_vector(q: &[f64], v: &[f64]) -> [f64; 3] {
     let cross = |a: [f64; 3], b: [f64; 3]| {
         [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
     };

@@ -1,13 +1,13 @@
 //! Time derivatives of expressions along the motion, and derivatives with respect to the velocities.
 
 use crate::expr::diff::Derivative;
-use crate::expr::eval::needed;
+use crate::expr::eval::nodes_in_order;
 use crate::expr::{Expr, Graph, Node, Rotation, Symbol, Vec3};
 use crate::mechanism::{Chart, Coordinate, Gradient, InQ, InV, Model, Quantity, Space};
 use std::collections::BTreeMap;
 
 /// Returns the value of a coordinate as an expression of `q`.
-pub fn position<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
+pub fn coordinate_position<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
     position_in(model.graph, c)
 }
 
@@ -17,7 +17,7 @@ pub fn position_in<'g>(g: &'g Graph, c: &Coordinate) -> Expr<'g> {
 }
 
 /// Returns the velocity of a coordinate as an expression of `v`.
-pub fn rate<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
+pub fn coordinate_velocity<'g>(model: &Model<'g>, c: &Coordinate) -> Expr<'g> {
     c.v.expr(model.graph) * model.graph.num(c.ratio)
 }
 
@@ -38,7 +38,7 @@ pub fn motion_rates<'g>(space: Space<'_, 'g>, e: &[Expr<'g>], accelerated: bool)
         _ => None,
     };
     let seeds = symbols_in(e).into_iter().filter_map(|symbol| rate(symbol).map(|rate| (symbol, rate)));
-    let mut along = Derivative::with_rates(seeds.collect(), g).knowing(rotation_rates(space));
+    let mut along = Derivative::with_rates(seeds.collect(), g).with_preset_derivatives(rotation_rates(space));
     e.iter().map(|e| along.differentiate(*e)).collect()
 }
 
@@ -57,9 +57,9 @@ pub fn rotation_rates<'g>(space: Space<'_, 'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
         let quaternion = [0, 1, 2, 3].map(|k| (first + k).expr(g));
         let axes = [0, 1, 2].map(|k| {
             let unit = [0, 1, 2].map(|i| if i == k { g.one() } else { g.zero() });
-            Rotation::quaternion(quaternion).to_parent(Vec3(unit))
+            Rotation::from_quaternion(quaternion).to_parent(Vec3(unit))
         });
-        let w = [0, 1, 2].map(|k| velocity(space, v + k));
+        let w = [0, 1, 2].map(|k| joint_velocity(space, v + k));
         for k in 0..3 {
             let (next, last) = ((k + 1) % 3, (k + 2) % 3);
             let component_of_rotation_rate = |i: usize| axes[next][i] * w[last] - axes[last][i] * w[next];
@@ -70,10 +70,10 @@ pub fn rotation_rates<'g>(space: Space<'_, 'g>) -> Vec<(Expr<'g>, Expr<'g>)> {
 }
 
 /// Returns a joint velocity, expressed in generalized speeds if these are declared.
-fn velocity<'g>(space: Space<'_, 'g>, index: InV) -> Expr<'g> {
+fn joint_velocity<'g>(space: Space<'_, 'g>, index: InV) -> Expr<'g> {
     match space.speeds {
         None => index.expr(space.graph),
-        Some(speeds) => speeds.rate(space.graph, index),
+        Some(speeds) => speeds.joint_velocity(space.graph, index),
     }
 }
 
@@ -117,7 +117,7 @@ pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
         Node::Symbol(s) => Some(s),
         _ => None,
     };
-    let mut symbols: Vec<Symbol> = needed(graph, e).into_iter().filter_map(symbol_of_node).collect();
+    let mut symbols: Vec<Symbol> = nodes_in_order(graph, e).into_iter().filter_map(symbol_of_node).collect();
     symbols.sort_unstable();
     symbols
 }
@@ -128,7 +128,7 @@ pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
 /// entries of `v`.
 pub fn configuration_rate<'g>(space: Space<'_, 'g>, k: usize) -> Expr<'g> {
     let g = space.graph;
-    let velocity_component = |index: InV| velocity(space, index);
+    let velocity_component = |index: InV| joint_velocity(space, index);
     let quaternion_components = |first: InQ| [0, 1, 2, 3].map(|k| (first + k).expr(g));
     let three_velocities = |first: InV| [0, 1, 2].map(|k| velocity_component(first + k));
     for chart in space.charts {
@@ -141,7 +141,7 @@ pub fn configuration_rate<'g>(space: Space<'_, 'g>, k: usize) -> Expr<'g> {
                 let quaternion = quaternion_components(a + 3);
                 return match k - a.0 {
                     position @ 0..3 => {
-                        Rotation::quaternion(quaternion).to_parent(Vec3(three_velocities(b)))[position]
+                        Rotation::from_quaternion(quaternion).to_parent(Vec3(three_velocities(b)))[position]
                     }
                     component => quaternion_rate(quaternion, three_velocities(b + 3), component - 3),
                 };
@@ -192,7 +192,7 @@ pub fn velocity_gradients<'g>(all: &[Expr<'g>]) -> Vec<Vec<(usize, Expr<'g>)>> {
 /// Returns the generalized forces that oppose an energy: the derivatives of its time derivative with respect
 /// to the velocities, at constant time.
 pub fn energy_gradient<'g>(model: &Model<'g>, energy: Expr<'g>) -> Gradient<'g> {
-    let gradient_of_energy_rate = || velocity_gradient(time_derivative(model.space(), energy));
+    let gradient_of_energy_rate = || velocity_gradient(time_derivative(model.configuration_space(), energy));
     model.gradients.of_energy(&model.charts, energy, gradient_of_energy_rate)
 }
 

@@ -20,7 +20,7 @@ const ROUNDING: f64 = 1e-15;
 
 /// Returns for each row whether no velocity influences it in any configuration, up to rounding. An example is
 /// the height of a wheel whose axle has a constant height.
-pub fn constant(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
+pub fn constant_rows(model: &Model<'_>, rows: &Rows<'_>) -> Vec<bool> {
     let sample_jacobian = |seed| rows.jacobian(&random_configuration(model, seed), seed);
     let samples: Vec<Vec<Vec<f64>>> = (0..SAMPLES).map(sample_jacobian).collect();
     let group_of_row = |row: usize| model.constraints[row].group;
@@ -52,21 +52,22 @@ pub fn check_constant(model: &Model<'_>, constant: &[bool], cx: &mut Diagnostics
     let tape = Tape::new(&constant.iter().map(|c| c.residual.unwrap_or(c.rate)).collect::<Vec<_>>());
     let sample_gap_values = |seed| {
         let q = random_configuration(model, seed);
-        tape.values(&|s| value_of(s, &q, seed))
+        tape.evaluate_at(&|s| value_of(s, &q, seed))
     };
     let is_violated = |gap: f64| gap.abs() > TOLERANCE || gap.is_nan();
     for ((c, gap), again) in constant.iter().zip(sample_gap_values(0)).zip(sample_gap_values(1)) {
         if gap.is_nan() && again.is_nan() {
-            cx.error(c.place.clone(), format!("`{}` is undefined in every configuration", c.name)).help(
+            let message = format!("`{}` is undefined in every configuration", c.name);
+            cx.report_error(c.place.clone(), message).add_help(
                 "one of its lengths or directions is always zero: for a circle on a plane, for example, the \
                  axes must differ",
             );
         } else if is_violated(gap) && is_violated(again) {
-            cx.error(
+            cx.report_error(
                 c.place.clone(),
                 format!("`{}` cannot be satisfied: its residual is at least {gap}", c.name),
             )
-            .help("no configuration closes this loop: check the lengths and axes along it");
+            .add_help("no configuration closes this loop: check the lengths and axes along it");
         }
     }
 }
@@ -76,14 +77,19 @@ pub fn check_constant(model: &Model<'_>, constant: &[bool], cx: &mut Diagnostics
 ///
 /// If the other rows leave no degree of freedom, every further row depends on them, whether or not it is
 /// compatible. In this case rows are removed only if a configuration is known that satisfies all of them.
-pub fn prune(model: &mut Model<'_>, rows: &Rows<'_>, constant: &[bool], samples: &[Sample]) -> bool {
+pub fn prune_redundant_rows(
+    model: &mut Model<'_>,
+    rows: &Rows<'_>,
+    constant: &[bool],
+    samples: &[Sample],
+) -> bool {
     let random = (0..SAMPLES).map(|seed| (random_configuration(model, seed), seed));
     let all = random.chain(samples.iter().cloned());
     let jacobians: Vec<Vec<Vec<f64>>> = all.map(|(q, seed)| rows.jacobian(&q, seed)).collect();
     let mut bases: Vec<Basis> = jacobians.iter().map(|_| Basis::default()).collect();
     let mut kept: Vec<usize> = Vec::new();
     for row in (0..model.constraints.len()).filter(|row| !constant[*row]) {
-        if !jacobians.iter().zip(&bases).all(|(j, basis)| basis.explains(&j[row], TOLERANCE)) {
+        if !jacobians.iter().zip(&bases).all(|(j, basis)| basis.spans_row(&j[row], TOLERANCE)) {
             kept.push(row);
             bases.iter_mut().zip(&jacobians).for_each(|(basis, j)| basis.add(&j[row], TOLERANCE));
         }
@@ -113,7 +119,7 @@ impl Basis {
 
     /// Adds a row, unless it is a combination of the previous rows up to a relative tolerance.
     pub fn add(&mut self, row: &[f64], tolerance: f64) {
-        let rest = self.rest(row);
+        let rest = self.orthogonal_component(row);
         let size = dot(&rest, &rest).sqrt();
         if size > tolerance * dot(row, row).sqrt().max(tolerance) {
             self.0.push(rest.iter().map(|x| x / size).collect());
@@ -122,13 +128,13 @@ impl Basis {
 
     /// Returns true for a row that is zero or a combination of the previous rows; false for a row with NaN
     /// entries.
-    fn explains(&self, row: &[f64], tolerance: f64) -> bool {
-        let rest = self.rest(row);
+    fn spans_row(&self, row: &[f64], tolerance: f64) -> bool {
+        let rest = self.orthogonal_component(row);
         dot(&rest, &rest).sqrt() <= tolerance * dot(row, row).sqrt().max(tolerance)
     }
 
     /// Returns the component of a row that is orthogonal to the basis.
-    fn rest(&self, row: &[f64]) -> Vec<f64> {
+    fn orthogonal_component(&self, row: &[f64]) -> Vec<f64> {
         let mut rest = row.to_vec();
         // Projected out twice, since the first projection leaves its rounding error.
         for b in self.0.iter().chain(&self.0) {

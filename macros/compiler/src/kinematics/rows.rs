@@ -2,7 +2,7 @@
 
 use super::rates::velocity_gradients;
 use crate::expr::eval::Tape;
-use crate::expr::sample::sample;
+use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Symbol};
 use crate::mechanism::{Model, Quantity};
 
@@ -39,10 +39,10 @@ impl<'g> Rows<'g> {
 
     /// Returns the approximate number of operations for evaluating residuals and Jacobian and solving a
     /// linear system with them.
-    pub fn cost(&self) -> u64 {
+    pub fn evaluation_cost(&self) -> u64 {
         let (rows, columns) = (self.size.0 as u64, self.size.1 as u64);
-        2 * self.residuals.steps() as u64
-            + self.entries.steps() as u64
+        2 * self.residuals.node_count() as u64
+            + self.entries.node_count() as u64
             + rows * rows * (rows / 3 + columns / 2)
     }
 
@@ -53,13 +53,13 @@ impl<'g> Rows<'g> {
 
     /// Returns the residuals of the holonomic constraints, which come first.
     pub fn residuals(&self, q: &[f64], seed: u64) -> Vec<f64> {
-        self.residuals.values(&|s| value_of(s, q, seed))
+        self.residuals.evaluate_at(&|s| value_of(s, q, seed))
     }
 
     /// Returns the coefficients of the velocities at a configuration, with parameters sampled by `seed`.
     pub fn jacobian(&self, q: &[f64], seed: u64) -> Vec<Vec<f64>> {
         let mut rows = vec![vec![0.0; self.size.1]; self.size.0];
-        let values = self.entries.values(&|s| value_of(s, q, seed));
+        let values = self.entries.evaluate_at(&|s| value_of(s, q, seed));
         for ((row, column), value) in self.at.iter().zip(values) {
             rows[*row][*column] = value;
         }
@@ -69,14 +69,14 @@ impl<'g> Rows<'g> {
     /// Returns true if some constraint is violated at zero velocities beyond rounding: its rate has a
     /// velocity-free term.
     pub fn has_drift(&self, q: &[f64], seed: u64) -> bool {
-        self.rates.rounded(&|s| value_of(s, q, seed)).iter().any(|rate| !rate.may_be_zero())
+        self.rates.evaluate_with_rounding(&|s| value_of(s, q, seed)).iter().any(|rate| !rate.may_be_zero())
     }
 
     /// Returns for each row whether all of its coefficients at a configuration are zero up to rounding
     /// errors.
     pub fn may_be_zero(&self, q: &[f64], seed: u64) -> Vec<bool> {
         let mut may_be = vec![true; self.size.0];
-        let entries = self.entries.rounded(&|s| value_of(s, q, seed));
+        let entries = self.entries.evaluate_with_rounding(&|s| value_of(s, q, seed));
         for ((row, _), entry) in self.at.iter().zip(entries) {
             may_be[*row] &= entry.may_be_zero();
         }
@@ -89,15 +89,16 @@ pub fn value_of(s: Symbol, q: &[f64], seed: u64) -> f64 {
     match Quantity::from_symbol(s) {
         Quantity::Configuration(k) => q[k],
         Quantity::Velocity(_) => 0.0,
-        _ => sample(s, seed),
+        _ => sample_of_symbol(s, seed),
     }
 }
 
 /// Returns random coordinates with unit quaternions.
 pub fn random_configuration(model: &Model<'_>, seed: u64) -> Vec<f64> {
-    let mut q: Vec<f64> =
-        (0..model.nq()).map(|k| 2.0 * sample(Quantity::Configuration(k).symbol(), seed) - 2.0).collect();
-    for first in model.links.iter().filter_map(|link| link.motion.quaternion()) {
+    let mut q: Vec<f64> = (0..model.nq())
+        .map(|k| 2.0 * sample_of_symbol(Quantity::Configuration(k).symbol(), seed) - 2.0)
+        .collect();
+    for first in model.links.iter().filter_map(|link| link.motion.first_quaternion_index()) {
         let norm = q[first.and_next(4)].iter().map(|c| c * c).sum::<f64>().sqrt();
         for c in &mut q[first.and_next(4)] {
             *c /= norm;

@@ -30,7 +30,7 @@ impl<'g> Spatial<'g> {
     }
 
     /// Returns the spatial vector multiplied by a scalar.
-    pub fn times(&self, s: Expr<'g>) -> Spatial<'g> {
+    pub fn times_scalar(&self, s: Expr<'g>) -> Spatial<'g> {
         Spatial { linear: self.linear * s, angular: self.angular * s }
     }
 }

@@ -3,8 +3,8 @@
 use super::redundancy::Basis;
 use super::rows::{random_configuration, value_of};
 use crate::algebra::normal::Normal;
-use crate::algebra::polynomial::{Rank, expression};
-use crate::algebra::trigonometry::simplified;
+use crate::algebra::polynomial::{Rank, polynomial_to_expression};
+use crate::algebra::trigonometry::simplify_trigonometry;
 use crate::algebra::unit::on_unit_sphere;
 use crate::expr::eval::Tape;
 use crate::expr::{Expr, Symbol};
@@ -21,19 +21,19 @@ const TOLERANCE: f64 = 1e-9;
 type Matrix<'g> = Vec<Vec<Expr<'g>>>;
 
 /// Returns the entries of a matrix in random configurations, row by row.
-fn sampled(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<Vec<Vec<f64>>> {
+fn sample_matrix(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<Vec<Vec<f64>>> {
     let entries: Vec<Expr<'_>> = rows.iter().flatten().copied().collect();
     let (tape, width) = (Tape::new(&entries), rows.first().map_or(0, Vec::len).max(1));
     let sampled_rows = |seed| {
         let q = random_configuration(model, seed);
-        tape.values(&|s| value_of(s, &q, seed)).chunks(width).map(<[f64]>::to_vec).collect()
+        tape.evaluate_at(&|s| value_of(s, &q, seed)).chunks(width).map(<[f64]>::to_vec).collect()
     };
     (0..SAMPLES).map(sampled_rows).collect()
 }
 
 /// Returns the columns of a matrix that are not zero in all configurations.
 pub fn named_columns(model: &Model<'_>, rows: &Matrix<'_>) -> Vec<usize> {
-    let all = sampled(model, rows);
+    let all = sample_matrix(model, rows);
     let width = rows.first().map_or(0, Vec::len);
     let is_named = |k: &usize| all.iter().flatten().any(|row| row[*k].abs() > TOLERANCE);
     (0..width).filter(is_named).collect()
@@ -50,7 +50,7 @@ pub fn dependent_row(model: &Model<'_>, rows: &Matrix<'_>) -> Option<usize> {
             basis.rank() == before
         })
     };
-    let found: Vec<Option<usize>> = sampled(model, rows).iter().map(depends_at).collect();
+    let found: Vec<Option<usize>> = sample_matrix(model, rows).iter().map(depends_at).collect();
     found.into_iter().collect::<Option<Vec<usize>>>().and_then(|rows| rows.into_iter().max())
 }
 
@@ -59,7 +59,7 @@ pub fn dependent_row(model: &Model<'_>, rows: &Matrix<'_>) -> Option<usize> {
 pub fn inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
     let n = rows.len();
     let mut out = vec![vec![model.graph.zero(); n]; n];
-    for (own_rows, own_columns) in blocks(rows) {
+    for (own_rows, own_columns) in connected_blocks(rows) {
         if own_rows.len() > MOST_COUPLED || own_rows.len() != own_columns.len() {
             return None;
         }
@@ -75,7 +75,7 @@ pub fn inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
 }
 
 /// Returns the sets of rows and columns that are connected by nonzero entries.
-fn blocks(rows: &Matrix<'_>) -> Vec<(Vec<usize>, Vec<usize>)> {
+fn connected_blocks(rows: &Matrix<'_>) -> Vec<(Vec<usize>, Vec<usize>)> {
     let n = rows.len();
     let mut left: Vec<usize> = (0..n).collect();
     let mut blocks = Vec::new();
@@ -110,7 +110,7 @@ fn block_inverse<'g>(model: &Model<'g>, rows: &Matrix<'g>) -> Matrix<'g> {
     let mut entry = |i: usize, j: usize| {
         let minor = minors.determinant(all & !(1 << j), all & !(1 << i));
         let signed = if (i + j).is_multiple_of(2) { minor } else { -minor };
-        shortened(model, signed / whole)
+        shorten_expression(model, signed / whole)
     };
     (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
@@ -142,7 +142,7 @@ impl<'g> Minors<'_, 'g> {
             let product = entry * self.determinant(rows & (rows - 1), columns & !(1 << j));
             if k % 2 == 0 { sum += product } else { sum -= product }
         }
-        let sum = shortened(self.model, sum);
+        let sum = shorten_expression(self.model, sum);
         self.known.insert((rows, columns), sum);
         sum
     }
@@ -150,23 +150,23 @@ impl<'g> Minors<'_, 'g> {
 
 /// Returns an equivalent expression of the configuration with fewer operations, if identities of sines and
 /// cosines or of unit quaternions give one; otherwise the expression itself.
-pub fn shortened<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
+pub fn shorten_expression<'g>(model: &Model<'g>, e: Expr<'g>) -> Expr<'g> {
     let found = short_form(model, e);
-    found.filter(|found| Tape::new(&[*found]).steps() < Tape::new(&[e]).steps()).unwrap_or(e)
+    found.filter(|found| Tape::new(&[*found]).node_count() < Tape::new(&[e]).node_count()).unwrap_or(e)
 }
 
 fn short_form<'g>(model: &Model<'g>, e: Expr<'g>) -> Option<Expr<'g>> {
     let mut normal = Normal::new(model.graph, |_: Symbol| Rank::Position);
     let p = normal.normal_form(e)?;
-    let mut p = simplified(&mut normal.ring, &p)?;
-    for quaternion in quaternions(model) {
+    let mut p = simplify_trigonometry(&mut normal.ring, &p)?;
+    for quaternion in quaternion_symbols(model) {
         p = on_unit_sphere(&mut normal.ring, &p, &quaternion)?;
     }
-    Some(expression(model.graph, &normal.ring, &p))
+    Some(polynomial_to_expression(model.graph, &normal.ring, &p))
 }
 
 /// Returns the symbols of the components of all unit quaternions.
-pub fn quaternions(model: &Model<'_>) -> Vec<[Symbol; 4]> {
-    let firsts = model.charts.iter().filter_map(Chart::quaternion);
+pub fn quaternion_symbols(model: &Model<'_>) -> Vec<[Symbol; 4]> {
+    let firsts = model.charts.iter().filter_map(Chart::first_quaternion_index);
     firsts.map(|q| [0, 1, 2, 3].map(|k| Quantity::Configuration(q.0 + k).symbol())).collect()
 }

@@ -55,7 +55,7 @@ impl Argument {
     }
 
     /// Returns the names of arguments, separated by commas.
-    pub fn list(arguments: &[Argument]) -> String {
+    pub fn list_argument_names(arguments: &[Argument]) -> String {
         arguments.iter().map(|argument| argument.name).collect::<Vec<_>>().join(", ")
     }
 }
@@ -67,7 +67,7 @@ impl ArgumentKind {
     }
 
     /// Returns the dimension and the text of its unit; `None` if the dimension is unknown.
-    pub fn dimension(self) -> Option<(Dimension, &'static str)> {
+    pub fn dimension_and_unit(self) -> Option<(Dimension, &'static str)> {
         match self {
             ArgumentKind::Mass => Some((MASS, "kg")),
             ArgumentKind::Length | ArgumentKind::Height => Some((LENGTH, "m")),

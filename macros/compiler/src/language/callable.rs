@@ -55,7 +55,7 @@ impl Callable {
     }
 
     /// Returns the name `rolls` or `slips` of a pair of surfaces.
-    pub fn verb(self) -> &'static str {
+    pub fn contact_verb(self) -> &'static str {
         OTHERS.iter().find(|(_, callable)| *callable == self).map_or("", |(word, _)| word)
     }
 

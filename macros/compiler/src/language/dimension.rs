@@ -17,12 +17,12 @@ pub struct Dimension {
 impl Dimension {
     /// Returns a dimension from its powers of metre, kilogram and second.
     pub const fn new(length: i64, mass: i64, time: i64) -> Dimension {
-        let base = [Ratio::integer(length), Ratio::integer(mass), Ratio::integer(time)];
+        let base = [Ratio::from_integer(length), Ratio::from_integer(mass), Ratio::from_integer(time)];
         Dimension { base, unknown: Vec::new() }
     }
 
     /// Returns the dimension that is a single unknown.
-    pub fn variable(v: Variable) -> Dimension {
+    pub fn unknown_dimension(v: Variable) -> Dimension {
         Dimension { unknown: vec![(v, Ratio::ONE)], ..Dimension::new(0, 0, 0) }
     }
 
@@ -37,22 +37,22 @@ impl Dimension {
     }
 
     /// Returns the exponent of an unknown dimension.
-    pub fn exponent(&self, v: Variable) -> Ratio {
+    pub fn exponent_of_variable(&self, v: Variable) -> Ratio {
         self.unknown.iter().find(|(u, _)| *u == v).map_or(Ratio::ZERO, |(_, e)| *e)
     }
 
     /// Returns the dimension of a product of two quantities.
-    pub fn times(&self, other: &Dimension) -> Option<Dimension> {
+    pub fn dimension_of_product(&self, other: &Dimension) -> Option<Dimension> {
         self.times_power(other, Ratio::ONE)
     }
 
     /// Returns the dimension of a quotient of two quantities.
-    pub fn quotient(&self, other: &Dimension) -> Option<Dimension> {
-        self.times_power(other, Ratio::integer(-1))
+    pub fn dimension_of_quotient(&self, other: &Dimension) -> Option<Dimension> {
+        self.times_power(other, Ratio::from_integer(-1))
     }
 
     /// Returns the dimension of a power of a quantity.
-    pub fn power(&self, exponent: Ratio) -> Option<Dimension> {
+    pub fn dimension_of_power(&self, exponent: Ratio) -> Option<Dimension> {
         Dimension::new(0, 0, 0).times_power(self, exponent)
     }
 
@@ -60,7 +60,7 @@ impl Dimension {
     pub fn times_power(&self, other: &Dimension, exponent: Ratio) -> Option<Dimension> {
         let mut base = self.base;
         for (sum, e) in base.iter_mut().zip(other.base) {
-            *sum = sum.plus(e.times(exponent)?)?;
+            *sum = sum.checked_sum(e.checked_product(exponent)?)?;
         }
         let mut unknown = Vec::with_capacity(self.unknown.len() + other.unknown.len());
         let (mut left, mut right) = (self.unknown.iter().peekable(), other.unknown.iter().peekable());
@@ -69,7 +69,7 @@ impl Dimension {
             let Some(v) = a.into_iter().chain(b).min() else { break };
             let mut sum = left.next_if(|_| a == Some(v)).map_or(Ratio::ZERO, |(_, e)| *e);
             if let Some((_, e)) = right.next_if(|_| b == Some(v)) {
-                sum = sum.plus(e.times(exponent)?)?;
+                sum = sum.checked_sum(e.checked_product(exponent)?)?;
             }
             if !sum.is_zero() {
                 unknown.push((v, sum));

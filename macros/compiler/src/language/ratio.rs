@@ -16,12 +16,12 @@ const READABLE: i64 = 120;
 
 impl Ratio {
     /// The exponent zero.
-    pub const ZERO: Ratio = Ratio::integer(0);
+    pub const ZERO: Ratio = Ratio::from_integer(0);
     /// The exponent one.
-    pub const ONE: Ratio = Ratio::integer(1);
+    pub const ONE: Ratio = Ratio::from_integer(1);
 
     /// Returns an integer as a fraction.
-    pub const fn integer(n: i64) -> Ratio {
+    pub const fn from_integer(n: i64) -> Ratio {
         Ratio { n, d: 1 }
     }
 
@@ -30,7 +30,7 @@ impl Ratio {
         if d == 0 {
             return None;
         }
-        let common = divisor(n.abs(), d.abs()).max(1) * d.signum();
+        let common = greatest_common_divisor(n.abs(), d.abs()).max(1) * d.signum();
         let (n, d) = (n / common, d / common);
         (n.abs() <= LIMIT && d <= LIMIT).then_some(Ratio { n, d })
     }
@@ -50,7 +50,7 @@ impl Ratio {
     }
 
     /// Returns numerator and denominator of the fraction.
-    pub fn parts(self) -> (i64, i64) {
+    pub fn numerator_and_denominator(self) -> (i64, i64) {
         (self.n, self.d)
     }
 
@@ -60,12 +60,12 @@ impl Ratio {
     }
 
     /// Returns `self + other`.
-    pub fn plus(self, other: Ratio) -> Option<Ratio> {
+    pub fn checked_sum(self, other: Ratio) -> Option<Ratio> {
         Ratio::new(self.n * other.d + other.n * self.d, self.d * other.d)
     }
 
     /// Returns `self × other`.
-    pub fn times(self, other: Ratio) -> Option<Ratio> {
+    pub fn checked_product(self, other: Ratio) -> Option<Ratio> {
         Ratio::new(self.n * other.n, self.d * other.d)
     }
 
@@ -76,7 +76,7 @@ impl Ratio {
 }
 
 /// Returns the greatest common divisor by Euclid's algorithm.
-fn divisor(mut a: i64, mut b: i64) -> i64 {
+fn greatest_common_divisor(mut a: i64, mut b: i64) -> i64 {
     while b != 0 {
         (a, b) = (b, a % b);
     }
@@ -98,9 +98,9 @@ mod tests {
         assert_eq!(Ratio::from_value(std::f64::consts::PI), None);
         assert_eq!(Ratio::from_value(f64::NAN), None);
         let half = Ratio::new(1, 2).unwrap();
-        assert_eq!(half.plus(half), Some(Ratio::ONE));
-        assert_eq!(half.times(half).unwrap().parts(), (1, 4));
-        let large = Ratio::integer(LIMIT);
-        assert_eq!(large.times(large), None);
+        assert_eq!(half.checked_sum(half), Some(Ratio::ONE));
+        assert_eq!(half.checked_product(half).unwrap().numerator_and_denominator(), (1, 4));
+        let large = Ratio::from_integer(LIMIT);
+        assert_eq!(large.checked_product(large), None);
     }
 }

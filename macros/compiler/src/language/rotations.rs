@@ -15,18 +15,22 @@ pub struct RotationRow {
     pub natural: bool,
 }
 
-const fn turn(name: &'static str, synonyms: &'static str, arguments: &'static [Argument]) -> RotationRow {
+const fn rotation_row(
+    name: &'static str,
+    synonyms: &'static str,
+    arguments: &'static [Argument],
+) -> RotationRow {
     RotationRow { name, synonyms, arguments, natural: false }
 }
 
-const fn natural(name: &'static str, arguments: &'static [Argument]) -> RotationRow {
+const fn natural_rotation_row(name: &'static str, arguments: &'static [Argument]) -> RotationRow {
     RotationRow { name, synonyms: "", arguments, natural: true }
 }
 
 const ANGLE: Argument = Argument::new("angle", ArgumentKind::Angle);
 const VECTOR: Argument = Argument::new("vector", ArgumentKind::Vector);
 
-const fn number(name: &'static str) -> Argument {
+const fn number_argument(name: &'static str) -> Argument {
     Argument::new(name, ArgumentKind::Number)
 }
 
@@ -34,29 +38,30 @@ table! {
     /// A rotation of the language.
     Rotation: RotationRow {
         /// Rotation about the x axis.
-        X = turn("x", "rx rotx rotatex xrot", &[ANGLE]);
+        X = rotation_row("x", "rx rotx rotatex xrot", &[ANGLE]);
         /// Rotation about the y axis.
-        Y = turn("y", "ry roty rotatey yrot", &[ANGLE]);
+        Y = rotation_row("y", "ry roty rotatey yrot", &[ANGLE]);
         /// Rotation about the z axis.
-        Z = turn("z", "rz rotz rotatez zrot", &[ANGLE]);
+        Z = rotation_row("z", "rz rotz rotatez zrot", &[ANGLE]);
         /// Rotation about a direction.
-        Eigenaxis = turn("eigenaxis", "axisangle angleaxis about axis",
+        Eigenaxis = rotation_row("eigenaxis", "axisangle angleaxis about axis",
             &[Argument::new("direction", ArgumentKind::Direction), ANGLE]);
         /// Rotation by a unit quaternion.
-        Quaternion = turn("quaternion", "quat q", &[number("x"), number("y"), number("z"), number("w")]);
+        Quaternion = rotation_row("quaternion", "quat q",
+            &[number_argument("x"), number_argument("y"), number_argument("z"), number_argument("w")]);
         /// Axes of cylindrical coordinates of a vector.
-        Cylindrical = natural("cylindrical", &[VECTOR]);
+        Cylindrical = natural_rotation_row("cylindrical", &[VECTOR]);
         /// Axes of spherical coordinates of a vector.
-        Spherical = natural("spherical", &[VECTOR]);
+        Spherical = natural_rotation_row("spherical", &[VECTOR]);
         /// Tangent, normal and binormal of a curve (Frenet and Serret).
-        Frenet = natural("frenet",
+        Frenet = natural_rotation_row("frenet",
             &[Argument::length("curve"), Argument::new("coordinate", ArgumentKind::Coordinate)]);
     }
 }
 
 impl Rotation {
     /// Returns the index of the coordinate axis of the rotation.
-    pub fn axis(self) -> Option<usize> {
+    pub fn index_of_axis(self) -> Option<usize> {
         [Rotation::X, Rotation::Y, Rotation::Z].iter().position(|about| *about == self)
     }
 }

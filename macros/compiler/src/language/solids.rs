@@ -29,7 +29,7 @@ const X: Argument = Argument::length("x length");
 const Y: Argument = Argument::length("y length");
 const Z: Argument = Argument::length("z length");
 
-const fn moment(name: &'static str) -> Argument {
+const fn moment_argument(name: &'static str) -> Argument {
     Argument::new(name, ArgumentKind::Inertia)
 }
 
@@ -105,13 +105,13 @@ table! {
         Sphere = SolidRow {
             name: "sphere", synonyms: "ball",
             arguments: &[MASS, RADIUS], piece: Some(PieceKind::Sphere),
-            inertia: |n, _| Sym3::scalar(n[0] * n[1].square() * 0.4),
+            inertia: |n, _| Sym3::multiple_of_identity(n[0] * n[1].square() * 0.4),
         };
         /// A thin hollow ball.
         Shell = SolidRow {
             name: "shell", synonyms: "hollowsphere sphericalshell",
             arguments: &[MASS, RADIUS], piece: Some(PieceKind::Sphere),
-            inertia: |n, _| Sym3::scalar(n[0] * n[1].square() * (2.0 / 3.0)),
+            inertia: |n, _| Sym3::multiple_of_identity(n[0] * n[1].square() * (2.0 / 3.0)),
         };
         /// A cuboid.
         Cuboid = SolidRow {
@@ -131,7 +131,7 @@ table! {
             arguments: &[MASS, X, Y], piece: Some(PieceKind::Cuboid),
             inertia: |n, _| {
                 let m = n[0] * (1.0 / 12.0);
-                diagonal([m * n[2].square(), m * n[1].square(), m * (n[1].square() + n[2].square())])
+                diagonal_inertia([m * n[2].square(), m * n[1].square(), m * (n[1].square() + n[2].square())])
             },
         };
         /// An ellipsoid.
@@ -146,16 +146,16 @@ table! {
         /// Three principal moments of inertia.
         Diagonal = SolidRow {
             name: "diagonal", synonyms: "diag principal",
-            arguments: &[moment("xx"), moment("yy"), moment("zz")], piece: None,
-            inertia: |n, _| diagonal([n[0], n[1], n[2]]),
+            arguments: &[moment_argument("xx"), moment_argument("yy"), moment_argument("zz")], piece: None,
+            inertia: |n, _| diagonal_inertia([n[0], n[1], n[2]]),
         };
     }
 }
 
 impl Solid {
     /// Returns the syntax of the solid: `rod(mass, length, axis)`.
-    pub fn usage(self) -> String {
-        format!("{}({})", self.name(), Argument::list(self.row().arguments))
+    pub fn usage_syntax(self) -> String {
+        format!("{}({})", self.name(), Argument::list_argument_names(self.row().arguments))
     }
 
     /// True for a solid whose last argument is an axis.
@@ -164,14 +164,14 @@ impl Solid {
     }
 }
 
-fn diagonal(moments: [Expr<'_>; 3]) -> Sym3<'_> {
+fn diagonal_inertia(moments: [Expr<'_>; 3]) -> Sym3<'_> {
     Sym3 { diagonal: moments, off: [moments[0].zero(); 3] }
 }
 
 /// Returns moments proportional to the sums of squares of two of three lengths.
 fn of_three_lengths<'g>(m: Expr<'g>, n: &[Expr<'g>]) -> Sym3<'g> {
     let squared_length = |k: usize| n[k].square();
-    diagonal([
+    diagonal_inertia([
         m * (squared_length(2) + squared_length(3)),
         m * (squared_length(1) + squared_length(3)),
         m * (squared_length(1) + squared_length(2)),
@@ -180,7 +180,7 @@ fn of_three_lengths<'g>(m: Expr<'g>, n: &[Expr<'g>]) -> Sym3<'g> {
 
 /// Returns `t 1 + (a − t) n nᵀ`: moment `a` about the axis `n`, moment `t` about all normals of `n`.
 fn axisymmetric<'g>(axial: Expr<'g>, transverse: Expr<'g>, n: Vec3<'g>) -> Sym3<'g> {
-    if let Some(k) = (0..3).find(|k| n[*k].value().is_some_and(|c| c.abs() == 1.0)) {
+    if let Some(k) = (0..3).find(|k| n[*k].constant_value().is_some_and(|c| c.abs() == 1.0)) {
         let diagonal = std::array::from_fn(|i| if i == k { axial } else { transverse });
         return Sym3 { diagonal, off: [axial.zero(); 3] };
     }

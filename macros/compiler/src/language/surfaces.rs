@@ -40,7 +40,7 @@ const AXIS: Argument = Argument::AXIS;
 const HALF_ANGLE: Argument = Argument::new("half_angle", ArgumentKind::HalfAngle);
 const AXES: &[Argument] = &[Argument::length("a"), Argument::length("b"), Argument::length("c")];
 
-const fn row(
+const fn surface_row(
     name: &'static str,
     arguments: &'static [Argument],
     contacts: &'static [Option<SurfaceId>],
@@ -53,42 +53,42 @@ table! {
     /// A surface of a body.
     SurfaceId: SurfaceRow {
         /// The rim of a disk.
-        Circle = row("circle", &[RADIUS, AXIS], NONE, &[]);
+        Circle = surface_row("circle", &[RADIUS, AXIS], NONE, &[]);
         /// A tyre: radius of the centre line, radius of the section.
-        Torus = row("torus", &[RADIUS, Argument::length("tube_radius"), AXIS], NONE, &[]);
+        Torus = surface_row("torus", &[RADIUS, Argument::length("tube_radius"), AXIS], NONE, &[]);
         /// A sphere.
-        Sphere = row("sphere", &[RADIUS], ROUND, &[Sphere]);
+        Sphere = surface_row("sphere", &[RADIUS], ROUND, &[Sphere]);
         /// An ellipsoid, by its semi-axes.
-        Ellipsoid = row("ellipsoid", AXES, NONE, &[]);
+        Ellipsoid = surface_row("ellipsoid", AXES, NONE, &[]);
         /// A plane, by its normal towards the other surface.
-        Plane = row("plane", &[Argument::new("normal", ArgumentKind::Direction)], ON_PLANE,
+        Plane = surface_row("plane", &[Argument::new("normal", ArgumentKind::Direction)], ON_PLANE,
             &[Circle, Torus, Sphere, Ellipsoid, Cone]);
         /// The inside of a sphere.
-        Bowl = row("bowl", &[RADIUS], ROUND, &[Sphere]);
+        Bowl = surface_row("bowl", &[RADIUS], ROUND, &[Sphere]);
         /// The outside of an infinitely long cylinder.
-        Cylinder = row("cylinder", &[RADIUS, AXIS], &[None, Some(Sphere), Some(Capsule)], &[Sphere]);
+        Cylinder = surface_row("cylinder", &[RADIUS, AXIS], &[None, Some(Sphere), Some(Capsule)], &[Sphere]);
         /// A cylinder with two ends.
-        Drum = row("cylinder", &[RADIUS, LENGTH, AXIS], &[Some(Sphere), Some(Capsule)], &[]);
+        Drum = surface_row("cylinder", &[RADIUS, LENGTH, AXIS], &[Some(Sphere), Some(Capsule)], &[]);
         /// The inside of a cylinder.
-        Tube = row("tube", &[RADIUS, AXIS], ROUND, &[Sphere]);
+        Tube = surface_row("tube", &[RADIUS, AXIS], ROUND, &[Sphere]);
         /// The outside of a cone, with the axis from the apex into the cone.
-        Cone = row("cone", &[HALF_ANGLE, AXIS], ROUND, &[Sphere, Cone]);
+        Cone = surface_row("cone", &[HALF_ANGLE, AXIS], ROUND, &[Sphere, Cone]);
         /// The inside of a cone, with the axis from the apex to the opening.
-        Funnel = row("funnel", &[HALF_ANGLE, AXIS], ROUND, &[Sphere, Cone]);
+        Funnel = surface_row("funnel", &[HALF_ANGLE, AXIS], ROUND, &[Sphere, Cone]);
         /// A surface given by its points, which depend on two coordinates.
-        Sheet = row("surface",
+        Sheet = surface_row("surface",
             &[Argument::new("u", ArgumentKind::Coordinate), Argument::new("w", ArgumentKind::Coordinate),
                 Argument::length("point")],
             NONE, &[Circle, Torus, Sphere, Ellipsoid]);
         /// A height over x and y, as an expression of the horizontal coordinates `u`, `w`.
-        Terrain = row("terrain", &[Argument::new("height", ArgumentKind::Height)], ON_TERRAIN, &[]);
+        Terrain = surface_row("terrain", &[Argument::new("height", ArgumentKind::Height)], ON_TERRAIN, &[]);
         /// A box, by its edges.
-        Cuboid = row("cuboid", AXES,
+        Cuboid = surface_row("cuboid", AXES,
             &[Some(Sphere), Some(Capsule), Some(Cuboid), Some(Cylinder), Some(Drum)], &[]);
         /// A cylinder between two hemispheres, by radius and distance of their centres.
-        Capsule = row("capsule", &[RADIUS, LENGTH, AXIS], &[None, Some(Sphere), Some(Capsule)], &[]);
+        Capsule = surface_row("capsule", &[RADIUS, LENGTH, AXIS], &[None, Some(Sphere), Some(Capsule)], &[]);
         /// The convex hull of points.
-        Hull = row("hull", &[Argument::new("points", ArgumentKind::Points)], &[Some(Sphere)], &[]);
+        Hull = surface_row("hull", &[Argument::new("points", ArgumentKind::Points)], &[Some(Sphere)], &[]);
     }
 }
 

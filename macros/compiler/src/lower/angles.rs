@@ -26,13 +26,13 @@ pub struct Angles {
 
 impl Angles {
     /// Finds the angles whose sines or cosines a program computes.
-    pub fn find(program: &Program) -> Angles {
+    pub fn find_angles(program: &Program) -> Angles {
         let n = program.instructions.len();
         let mut angles = Angles { list: Vec::new(), covered: vec![false; n], before: vec![false; n] };
         let mut plain = vec![false; n];
         for (k, op) in program.instructions.iter().enumerate() {
             let mut all = true;
-            op.operands(|o| all &= !matches!(o, Operand::Value(j) if !plain[j]));
+            op.visit_operands(|o| all &= !matches!(o, Operand::Value(j) if !plain[j]));
             plain[k] = all && !matches!(op, Op::Call(..) | Op::Atan2(..) | Op::Pow(..) | Op::Table(..));
             if let Op::Call(f @ (Elementary::Sin | Elementary::Cos), angle) = *op
                 && all
@@ -48,7 +48,7 @@ impl Angles {
         }
         for k in (0..n).rev().filter(|k| plain[*k]) {
             if angles.before[k] {
-                program.instructions[k].operands(|o| {
+                program.instructions[k].visit_operands(|o| {
                     if let Operand::Value(j) = o {
                         angles.before[j] = true;
                     }
@@ -76,13 +76,13 @@ impl Angles {
     /// the inputs on which they depend.
     pub fn widest_first(&self, program: &Program, lanes: impl Fn(Operand) -> usize) -> Vec<&Angle> {
         let mut list: Vec<&Angle> = self.list.iter().collect();
-        list.sort_by_key(|angle| (Reverse(lanes(angle.angle)), input(program, angle.angle)));
+        list.sort_by_key(|angle| (Reverse(lanes(angle.angle)), first_input_of_angle(program, angle.angle)));
         list
     }
 }
 
 /// Returns the first input of an angle that is an input, or an operation on inputs.
-fn input(program: &Program, angle: Operand) -> Option<Symbol> {
+fn first_input_of_angle(program: &Program, angle: Operand) -> Option<Symbol> {
     let mut first = None;
     let mut note = |o: Operand| {
         if let Operand::Symbol(s) = o {
@@ -90,7 +90,7 @@ fn input(program: &Program, angle: Operand) -> Option<Symbol> {
         }
     };
     match angle {
-        Operand::Value(k) => program.instructions[k].operands(&mut note),
+        Operand::Value(k) => program.instructions[k].visit_operands(&mut note),
         own => note(own),
     }
     first

@@ -10,18 +10,19 @@ use crate::machine::{ADD, MULTIPLY};
 
 impl Program {
     /// Puts the terms of sums in the order in which most products fuse.
-    pub(super) fn chained(mut self) -> Program {
+    pub(super) fn order_terms_for_fusion(mut self) -> Program {
         // Rewritten additions move to where their sum is used, after all its operands.
         let mut late = vec![false; self.instructions.len()];
         let mut times = Times::default();
         for k in 0..self.instructions.len() {
             let before = times.instruction_time(&self, k);
             times.known.push(before);
-            let Some((sum, ops)) = self.sum_to_chain(k).and_then(|sum| sum.chain().map(|ops| (sum, ops)))
+            let Some((sum, ops)) =
+                self.sum_to_chain(k).and_then(|sum| sum.chain_of_additions().map(|ops| (sum, ops)))
             else {
                 continue;
             };
-            let time = times.chain(&self, &sum.terms);
+            let time = times.time_of_chain(&self, &sum.terms);
             // One instruction less is worth the longer latency of a fused addition for each term.
             if time > before + (MULTIPLY - ADD) * sum.terms.len() as u32 {
                 continue;
@@ -38,14 +39,14 @@ impl Program {
 
     /// Returns the sum that ends with instruction `k`, if another order of its terms saves an instruction.
     fn sum_to_chain(&self, k: usize) -> Option<Sum> {
-        let ends = self.instructions[k].terms()?;
+        let ends = self.instructions[k].two_terms()?;
         // With a product among its terms the last addition is fused already.
-        if ends.iter().any(|t| self.fuses(*t)) {
+        if ends.iter().any(|t| self.is_fusable_product(*t)) {
             return None;
         }
         let chain_from_end = |from: usize| {
             let mut sum = Sum { additions: vec![k], terms: Vec::new() };
-            self.descend(ends[1 - from], &mut sum).then(|| {
+            self.collect_terms(ends[1 - from], &mut sum).then(|| {
                 sum.additions.reverse();
                 sum.terms.push(ends[from]);
                 sum.terms.reverse();
@@ -57,17 +58,17 @@ impl Program {
 
     /// Collects the terms of a sum from the last to the first, which must be a product; returns false if it
     /// is not, or if the sum is too long.
-    fn descend(&self, top: Term, sum: &mut Sum) -> bool {
+    fn collect_terms(&self, top: Term, sum: &mut Sum) -> bool {
         let Some(terms) = self.lone_addition(top.operand).filter(|_| sum.additions.len() < LONGEST) else {
             return false;
         };
         let mut terms = terms.map(|t| t.with_outer_sign(top.negative));
-        sum.additions.push(top.operand.number());
-        let products = terms.map(|t| self.fuses(t));
+        sum.additions.push(top.operand.instruction_index());
+        let products = terms.map(|t| self.is_fusable_product(t));
         match products {
             [true, true] => {
                 // The product that is computed first comes first.
-                if terms[0].operand.number() > terms[1].operand.number() {
+                if terms[0].operand.instruction_index() > terms[1].operand.instruction_index() {
                     terms.swap(0, 1);
                 }
                 sum.terms.extend([terms[1], terms[0]]);
@@ -76,12 +77,12 @@ impl Program {
             [true, false] | [false, true] => {
                 let rest = usize::from(products[0]);
                 sum.terms.push(terms[1 - rest]);
-                self.descend(terms[rest], sum)
+                self.collect_terms(terms[rest], sum)
             }
             [false, false] => [0, 1].into_iter().any(|rest| {
                 let before = (sum.additions.len(), sum.terms.len());
                 sum.terms.push(terms[1 - rest]);
-                let found = self.descend(terms[rest], sum);
+                let found = self.collect_terms(terms[rest], sum);
                 if !found {
                     sum.additions.truncate(before.0);
                     sum.terms.truncate(before.1);
@@ -92,7 +93,7 @@ impl Program {
     }
 
     /// Returns true for a product whose only use is this term.
-    fn fuses(&self, term: Term) -> bool {
+    fn is_fusable_product(&self, term: Term) -> bool {
         self.lone_product(term.operand).is_some()
     }
 
@@ -107,7 +108,7 @@ impl Program {
             todo.push(k);
             while let Some(&top) = todo.last() {
                 let before = todo.len();
-                self.instructions[top].operands(|o| match o {
+                self.instructions[top].visit_operands(|o| match o {
                     Operand::Value(a) if !is_placed[a] => todo.push(a),
                     _ => {}
                 });
@@ -119,7 +120,7 @@ impl Program {
                 }
             }
         }
-        self.reordered(&order)
+        self.reorder_instructions(&order)
     }
 }
 
@@ -140,9 +141,9 @@ mod tests {
         let first = symbols[4..].iter().fold(products, |sum, s| sum + *s);
         for (sum, fused) in [(first, 2), (rest + products, 1)] {
             let program = lower(&[sum]).run_passes(PART);
-            assert_eq!(program.instructions.len() + fused, program.counts.total());
+            assert_eq!(program.instructions.len() + fused, program.counts.total_operations());
             // Each of 0, 1, … 7 occurs equally often; 0 · 1 + 2 · 3 equals 0 + 1 + 2 + 3.
-            assert_eq!(program.run(&|s| f64::from(s.0 % 8)), [140_000.0]);
+            assert_eq!(program.interpret_program(&|s| f64::from(s.0 % 8)), [140_000.0]);
         }
     }
 }

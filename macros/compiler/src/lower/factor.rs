@@ -6,10 +6,11 @@ use super::{Op, Operand, Program};
 
 impl Program {
     /// Extracts common factors from the sums of a program.
-    pub(super) fn factored(self) -> Program {
+    pub(super) fn factor_sums(self) -> Program {
         let inner = self.inner_additions();
         let sums = (0..self.instructions.len()).filter(|k| !inner[*k]);
-        let mut groups = sums.filter_map(|k| Some((k, self.grouped(self.terms_of(k)?)?))).peekable();
+        let mut groups =
+            sums.filter_map(|k| Some((k, self.group_by_common_factor(self.terms_of(k)?)?))).peekable();
         if groups.peek().is_none() {
             drop(groups);
             return self;
@@ -18,18 +19,18 @@ impl Program {
         let mut values: Vec<Operand> = Vec::with_capacity(self.instructions.len());
         for (k, op) in self.instructions.iter().enumerate() {
             values.push(match groups.next_if(|(sum, _)| *sum == k) {
-                Some((_, groups)) => out.add_groups(&groups, &|o| o.among(&values)),
-                None => out.push(op.mapped(|o| o.among(&values))),
+                Some((_, groups)) => out.add_groups(&groups, &|o| o.translate_value(&values)),
+                None => out.append_instruction(op.map_operands(|o| o.translate_value(&values))),
             });
         }
         drop(groups);
-        out.outputs = self.outputs.iter().map(|o| o.among(&values)).collect();
+        out.outputs = self.outputs.iter().map(|o| o.translate_value(&values)).collect();
         out.gathers = self.gathers;
-        out.sweep();
+        out.remove_unused();
         out
     }
 
-    fn push(&mut self, op: Op) -> Operand {
+    fn append_instruction(&mut self, op: Op) -> Operand {
         self.instructions.push(op);
         Operand::Value(self.instructions.len() - 1)
     }
@@ -38,7 +39,7 @@ impl Program {
     fn inner_additions(&self) -> Vec<bool> {
         let mut inner = vec![false; self.instructions.len()];
         for op in &self.instructions {
-            for term in op.terms().into_iter().flatten() {
+            for term in op.two_terms().into_iter().flatten() {
                 if let Operand::Value(k) = term.operand {
                     inner[k] = self.lone_addition(term.operand).is_some();
                 }
@@ -50,7 +51,7 @@ impl Program {
     /// Returns the terms of the sum that ends with instruction `k`, from left to right.
     fn terms_of(&self, k: usize) -> Option<Vec<Term>> {
         let mut terms = Vec::new();
-        let [a, b] = self.instructions[k].terms()?;
+        let [a, b] = self.instructions[k].two_terms()?;
         let mut todo = vec![b, a];
         while let Some(term) = todo.pop() {
             if terms.len() + todo.len() > LONGEST {
@@ -67,7 +68,7 @@ impl Program {
     }
 
     /// Groups the terms of a sum by common factors. Returns `None` if no factor is common to two terms.
-    fn grouped(&self, mut open: Vec<Term>) -> Option<Vec<Group>> {
+    fn group_by_common_factor(&self, mut open: Vec<Term>) -> Option<Vec<Group>> {
         if !self.may_share_factors(&open) {
             return None;
         }
@@ -91,7 +92,7 @@ impl Program {
             None => Group { factor: None, others: vec![t] },
         }));
         // Groups are ordered by when their values are computed.
-        groups.sort_by_key(|g| g.others.iter().map(|t| t.operand.number()).max());
+        groups.sort_by_key(|g| g.others.iter().map(|t| t.operand.instruction_index()).max());
         saved.then_some(groups)
     }
 
@@ -100,7 +101,7 @@ impl Program {
         let mut factors: Vec<u64> = Vec::new();
         for term in terms {
             let Some((a, b)) = self.lone_product(term.operand) else { continue };
-            let [a, b] = [a, b].map(likeness);
+            let [a, b] = [a, b].map(sign_independent_key);
             if factors.contains(&a) || factors.contains(&b) {
                 return true;
             }
@@ -143,12 +144,12 @@ impl Program {
         for group in groups {
             let mut value = self.sum_of(&group.others, at);
             if let Some(factor) = group.factor {
-                value.operand = self.push(Op::Mul(at(factor), value.operand));
+                value.operand = self.append_instruction(Op::Mul(at(factor), value.operand));
             }
             sum = Some(sum.map_or(value, |sum| self.sum_of_two(sum, value)));
         }
         match sum {
-            Some(Term { operand, negative: true }) => self.push(Op::Neg(operand)),
+            Some(Term { operand, negative: true }) => self.append_instruction(Op::Neg(operand)),
             Some(Term { operand, negative: false }) => operand,
             None => Operand::Const(0.0),
         }
@@ -158,17 +159,17 @@ impl Program {
     fn sum_of(&mut self, terms: &[Term], at: &dyn Fn(Operand) -> Operand) -> Term {
         let known: f64 = terms.iter().filter_map(signed_constant).sum();
         let is_known = terms.iter().any(|t| signed_constant(t).is_some());
-        let constant = is_known.then_some(Term::positive(Operand::Const(known)));
+        let constant = is_known.then_some(Term::positive_term(Operand::Const(known)));
         let rest = terms.iter().filter(|t| signed_constant(t).is_none());
         let mut all = rest.map(|t| Term { operand: at(t.operand), ..*t }).chain(constant);
-        let first = all.next().unwrap_or(Term::positive(Operand::Const(0.0)));
+        let first = all.next().unwrap_or(Term::positive_term(Operand::Const(0.0)));
         all.fold(first, |sum, term| self.sum_of_two(sum, term))
     }
 
     /// Adds the instruction for a sum of two terms.
     fn sum_of_two(&mut self, a: Term, b: Term) -> Term {
-        let (op, negative) = Term::sum(a, b);
-        Term { operand: self.push(op), negative }
+        let (op, negative) = Term::add_two_terms(a, b);
+        Term { operand: self.append_instruction(op), negative }
     }
 }
 
@@ -179,7 +180,7 @@ struct Group {
 }
 
 /// Returns a key that is the same for operands equal up to sign.
-fn likeness(o: Operand) -> u64 {
+fn sign_independent_key(o: Operand) -> u64 {
     match o {
         Operand::Const(c) => c.abs().to_bits(),
         Operand::Symbol(s) => 1 << 32 | u64::from(s.0),

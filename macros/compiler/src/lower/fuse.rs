@@ -14,7 +14,7 @@ impl Program {
     pub(super) fn products_to_fuse(&self) -> Vec<bool> {
         let mut fuses = vec![false; self.instructions.len()];
         for product in (0..self.instructions.len()).filter_map(|k| self.product_to_fuse(k)) {
-            fuses[product.number()] = true;
+            fuses[product.instruction_index()] = true;
         }
         fuses
     }
@@ -29,16 +29,16 @@ impl Program {
     pub(super) fn with_fused_products(mut self) -> Program {
         let counts = self.counts;
         for k in 0..self.instructions.len() {
-            if let Some(op) = self.fuse(k) {
+            if let Some(op) = self.fuse_instruction(k) {
                 self.instructions[k] = op;
             }
         }
-        self.sweep();
+        self.remove_unused();
         self.counts = counts;
         self
     }
 
-    fn fuse(&self, k: usize) -> Option<Op> {
+    fn fuse_instruction(&self, k: usize) -> Option<Op> {
         let product = self.product_to_fuse(k)?;
         let (x, y) = self.lone_product(product)?;
         match self.instructions[k] {
@@ -54,7 +54,11 @@ impl Program {
         let is_product = |o: Operand| self.lone_product(o).is_some();
         let product = match self.instructions[k] {
             // Of two products the later one is fused, because the earlier one is ready by then.
-            Op::Add(a, b) if is_product(a) && (!is_product(b) || a.number() > b.number()) => a,
+            Op::Add(a, b)
+                if is_product(a) && (!is_product(b) || a.instruction_index() > b.instruction_index()) =>
+            {
+                a
+            }
             Op::Sub(a, b) if !is_product(b) => a,
             Op::Add(_, b) | Op::Sub(_, b) => b,
             _ => return None,
@@ -66,12 +70,12 @@ impl Program {
     pub(super) fn with_products_at_their_sums(self) -> Program {
         let n = self.instructions.len();
         let waits = self.products_to_fuse();
-        let product_to_place = |k: usize| self.product_to_fuse(k).map(Operand::number);
+        let product_to_place = |k: usize| self.product_to_fuse(k).map(Operand::instruction_index);
         let order: Vec<usize> =
             (0..n).filter(|k| !waits[*k]).flat_map(|k| product_to_place(k).into_iter().chain([k])).collect();
         match order.iter().enumerate().all(|(place, k)| place == *k) {
             true => self,
-            false => self.reordered(&order),
+            false => self.reorder_instructions(&order),
         }
     }
 }

@@ -10,21 +10,21 @@ const HOISTED: u32 = 1 << 31;
 const MINUS: u32 = 1 << 30;
 
 /// Returns the node that a symbol names, and true for its negative; `None` for a symbol of the graph.
-pub fn hoisted(symbol: Symbol) -> Option<(Id, bool)> {
+pub fn node_of_hoisted_symbol(symbol: Symbol) -> Option<(Id, bool)> {
     (symbol.0 & HOISTED != 0).then_some((symbol.0 & !(HOISTED | MINUS), symbol.0 & MINUS != 0))
 }
 
 /// Replaces symbols of hoisted nodes by other symbols.
 pub fn place_hoisted(program: &mut Program, place: &mut dyn FnMut(Id, bool) -> Symbol) {
     let mut placed = |o: Operand| match o {
-        Operand::Symbol(s) => match hoisted(s) {
+        Operand::Symbol(s) => match node_of_hoisted_symbol(s) {
             Some((id, negative)) => Operand::Symbol(place(id, negative)),
             None => o,
         },
         _ => o,
     };
     for op in &mut program.instructions {
-        *op = op.mapped(&mut placed);
+        *op = op.map_operands(&mut placed);
     }
     for output in &mut program.outputs {
         *output = placed(*output);
@@ -35,7 +35,7 @@ pub fn place_hoisted(program: &mut Program, place: &mut dyn FnMut(Id, bool) -> S
 }
 
 /// Returns the symbol of a hoisted node as an operand.
-pub(super) fn operand(id: Id) -> Operand {
+pub(super) fn operand_of_hoisted_node(id: Id) -> Operand {
     Operand::Symbol(Symbol(HOISTED | id))
 }
 
@@ -43,13 +43,13 @@ pub(super) fn operand(id: Id) -> Operand {
 pub(super) fn is_constant(o: Operand) -> bool {
     match o {
         Operand::Const(_) | Operand::Tuple(_) => true,
-        Operand::Symbol(s) => hoisted(s).is_some(),
+        Operand::Symbol(s) => node_of_hoisted_symbol(s).is_some(),
         Operand::Value(_) | Operand::Gather(_) => false,
     }
 }
 
 /// Returns the negative of a constant or hoisted value.
-pub(super) fn negated(o: Operand) -> Operand {
+pub(super) fn negate_hoisted(o: Operand) -> Operand {
     match o {
         Operand::Const(c) => Operand::Const(-c),
         Operand::Symbol(Symbol(s)) => Operand::Symbol(Symbol(s ^ MINUS)),
@@ -71,7 +71,7 @@ pub(super) fn hoisted_nodes(
             Node::Symbol(s) => known(*s),
             _ => {
                 let (mut all, mut any) = (true, false);
-                node.operands(|a| {
+                node.visit_operands(|a| {
                     any |= before[place(a)];
                     all &= before[place(a)] || matches!(nodes[place(a)], Node::Const(_));
                 });
@@ -86,7 +86,7 @@ pub(super) fn hoisted_nodes(
 mod tests {
     use crate::expr::eval::eval_one;
     use crate::expr::{Graph, Symbol};
-    use crate::lower::{hoisted, lower_without};
+    use crate::lower::{lower_without, node_of_hoisted_symbol};
 
     /// Checks a program with two parameters and two variables: it neither computes nor negates values of the
     /// parameters alone.
@@ -106,7 +106,7 @@ mod tests {
         ] {
             let program = lower_without(&outputs, &is_known);
             let expected: Vec<f64> = outputs.iter().map(|e| eval_one(*e, &value_of_symbol)).collect();
-            let found = program.run(&|s| match hoisted(s) {
+            let found = program.interpret_program(&|s| match node_of_hoisted_symbol(s) {
                 Some((id, negative)) => {
                     eval_one(g.expr(id), &value_of_symbol) * if negative { -1.0 } else { 1.0 }
                 }
@@ -115,7 +115,7 @@ mod tests {
             for (found, expected) in found.iter().zip(&expected) {
                 assert!((found - expected).abs() < 1e-14, "{found} is not {expected}");
             }
-            assert_eq!(program.counts.total() + program.counts.calls, operations, "{outputs:?}");
+            assert_eq!(program.counts.total_operations() + program.counts.calls, operations, "{outputs:?}");
         }
     }
 }

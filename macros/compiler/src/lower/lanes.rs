@@ -23,7 +23,7 @@ impl Lanes {
     }
 
     /// Returns the operand of a node that needs no instruction.
-    pub(super) fn leaf(
+    pub(super) fn leaf_operand(
         &mut self,
         graph: &Graph,
         node: Node,
@@ -34,30 +34,30 @@ impl Lanes {
             Node::Const(c) => Operand::Const(c),
             Node::Symbol(s) => Operand::Symbol(s),
             Node::Tuple(k) => {
-                program.tuples.push(graph.tuple(k));
-                self.tuples.push(graph.tuple(k).len());
+                program.tuples.push(graph.lanes_of_tuple(k));
+                self.tuples.push(graph.lanes_of_tuple(k).len());
                 Operand::Tuple(program.tuples.len() - 1)
             }
             Node::Gather(k) => {
-                program.gathers.push(graph.gather(k));
-                self.gathers.push(graph.gather(k).len());
+                program.gathers.push(graph.symbols_of_gather(k));
+                self.gathers.push(graph.symbols_of_gather(k).len());
                 Operand::Gather(program.gathers.len() - 1)
             }
-            Node::Lane(_, a) if self.width(at(a)) == 1 => at(a),
+            Node::Lane(_, a) if self.lane_count(at(a)) == 1 => at(a),
             _ => return None,
         })
     }
 
     /// Returns the operation that sums `n` lanes of an operand.
-    pub(super) fn sum(&self, n: usize, a: Operand) -> Op {
-        match self.width(a) {
+    pub(super) fn lane_sum_operation(&self, n: usize, a: Operand) -> Op {
+        match self.lane_count(a) {
             1 => Op::Mul(Operand::Const(n as f64), a),
             _ => Op::Sum(n, a),
         }
     }
 
     /// Records the number of lanes of the next instruction.
-    pub(super) fn push(&mut self, op: &Op) {
+    pub(super) fn record_lanes(&mut self, op: &Op) {
         let width = self.width_of(op);
         self.widths.push(width);
     }
@@ -68,13 +68,13 @@ impl Lanes {
             return 2 * n;
         }
         if !matches!(op, Op::Sum(..) | Op::Lane(..)) {
-            op.operands(|o| width = width.max(self.width(o)));
+            op.visit_operands(|o| width = width.max(self.lane_count(o)));
         }
         width
     }
 
     /// Returns the number of lanes of an operand.
-    pub(super) fn width(&self, o: Operand) -> usize {
+    pub(super) fn lane_count(&self, o: Operand) -> usize {
         match o {
             Operand::Const(_) | Operand::Symbol(_) => 1,
             Operand::Value(k) => self.widths[k],
@@ -87,18 +87,19 @@ impl Lanes {
 impl Program {
     /// Adds the cheapest candidate with lanes as the SIMD variant, if it is cheaper than the program itself.
     pub fn or_in_lanes(mut self, candidates: impl IntoIterator<Item = Program>) -> Program {
-        let costs = candidates.into_iter().map(|program| (program.cost(), program));
+        let costs = candidates.into_iter().map(|program| (program.estimated_cost(), program));
         let best = costs.min_by_key(|(cost, _)| *cost);
-        self.simd = best.filter(|(cost, _)| *cost < self.cost()).map(|(_, program)| Box::new(program));
+        self.simd =
+            best.filter(|(cost, _)| *cost < self.estimated_cost()).map(|(_, program)| Box::new(program));
         self
     }
 
     /// Returns the estimated cost of the program, in tenths of an instruction on one lane.
-    pub fn cost(&self) -> usize {
+    pub fn estimated_cost(&self) -> usize {
         let gathers: usize = self.gathers.iter().map(|g| GATHER_COST * g.len()).sum();
         // A product that will be fused costs nothing in addition to its sum.
         let fuses = self.products_to_fuse();
-        let all = self.instructions.iter().zip(self.lanes()).zip(&fuses);
+        let all = self.instructions.iter().zip(self.lane_counts()).zip(&fuses);
         let instructions: usize = all
             .map(|((op, lanes), fuses)| match op {
                 _ if *fuses => 0,
@@ -114,10 +115,10 @@ impl Program {
     }
 
     /// Returns the number of lanes of each value; one for scalars.
-    pub fn lanes(&self) -> Vec<usize> {
+    pub fn lane_counts(&self) -> Vec<usize> {
         let mut lanes = Lanes::of_inputs(self);
         for op in &self.instructions {
-            lanes.push(op);
+            lanes.record_lanes(op);
         }
         lanes.widths
     }

@@ -10,7 +10,7 @@ impl Program {
         let end = self.instructions.len();
         let mut last = vec![0; end];
         for (k, op) in self.instructions.iter().enumerate() {
-            op.operands(|o| {
+            op.visit_operands(|o| {
                 if let Operand::Value(a) = o {
                     last[a] = k;
                 }
@@ -21,7 +21,7 @@ impl Program {
                 last[*a] = end;
             }
         }
-        let lanes = self.lanes();
+        let lanes = self.lane_counts();
         let mut released = vec![0; end + 1];
         last.iter().zip(&lanes).for_each(|(last, lanes)| released[*last] += lanes);
         let (mut held, mut most) = (0, 0);
@@ -37,7 +37,7 @@ impl Program {
     /// Returns the number of instructions that may branch: table lookups, which search their grid, and
     /// functions of the math library. All sines and cosines count once, since large angles fall back to the
     /// library. Square roots, magnitudes, signs, minima and maxima do not branch.
-    pub fn branches(&self) -> usize {
+    pub fn branch_count(&self) -> usize {
         let is_angle = |op: &&Op| matches!(op, Op::Call(Function::Sin | Function::Cos, _));
         let others = self.instructions.iter().filter(|op| match op {
             Op::Call(
@@ -73,8 +73,8 @@ mod tests {
     fn only_angles_tables_and_the_library_branch() {
         let g = Graph::new();
         let [a, b] = std::array::from_fn(|k| g.symbol(Symbol(k as u32)));
-        assert_eq!(lower(&[(a * b).sqrt() + a / b]).branches(), 0);
-        assert_eq!(lower(&[a.sin() * b.cos(), b.sin()]).branches(), 1);
-        assert_eq!(lower(&[a.sin() + b.call(crate::expr::Function::Exp)]).branches(), 2);
+        assert_eq!(lower(&[(a * b).sqrt() + a / b]).branch_count(), 0);
+        assert_eq!(lower(&[a.sin() * b.cos(), b.sin()]).branch_count(), 1);
+        assert_eq!(lower(&[a.sin() + b.apply_function(crate::expr::Function::Exp)]).branch_count(), 2);
     }
 }

@@ -16,6 +16,7 @@ pub mod pipeline;
 mod program;
 mod reassociate;
 mod registers;
+mod scalars;
 mod schedule;
 mod share_subsums;
 mod terms;
@@ -23,7 +24,7 @@ mod text;
 mod times;
 
 pub use angles::{Angle, Angles};
-pub use hoist::{hoisted, place_hoisted};
+pub use hoist::{node_of_hoisted_symbol, place_hoisted};
 pub use program::{Counts, Op, Operand, Program};
 
 /// Drafts a program of the outputs. Products and sums are separate instructions until [`pipeline::FINISH`] or
@@ -32,19 +33,19 @@ pub fn lower(outputs: &[Expr<'_>]) -> Program {
     lower_without(outputs, &|_| false)
 }
 
-/// Drafts a program of the outputs that takes values which depend on `known` symbols alone as arguments, see
-/// [`hoisted`].
+/// Drafts a program of the outputs that takes values which depend on `known` symbols alone as arguments, see the
+/// module `hoist`.
 pub fn lower_without(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     let start = Instant::now();
-    let program = select(outputs, known);
-    pipeline::observe(pipeline::SELECT, &program, start.elapsed());
+    let program = select_instructions(outputs, known);
+    pipeline::report_to_observer(pipeline::SELECT, &program, start.elapsed());
     let mut program = program.run_passes(pipeline::DRAFT);
-    program.counts = program.count();
+    program.counts = program.count_operations();
     program
 }
 
 /// Translates expressions to instructions, one for each node.
-fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
+fn select_instructions(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     let Some(first) = outputs.first() else {
         return Program::default();
     };
@@ -52,13 +53,13 @@ fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
     // Position of each node in the order, counted from one. Only the entries of needed nodes are written, so
     // that a small function does not pay for a large graph.
     let mut places = graph.borrow_table();
-    let order = needed(outputs, &mut places);
+    let order = collect_needed_nodes(outputs, &mut places);
     let index_of_node = |id: Id| places[id as usize] as usize - 1;
     let nodes = nodes_of(graph, &order);
     let hoisted = hoist::hoisted_nodes(&nodes, index_of_node, known);
     let mut uses = vec![0_u32; order.len()];
     for (node, _) in nodes.iter().zip(&hoisted).filter(|(_, hoisted)| !**hoisted) {
-        node.operands(|a| uses[index_of_node(a)] += 1);
+        node.visit_operands(|a| uses[index_of_node(a)] += 1);
     }
     for output in outputs {
         uses[index_of_node(output.id())] += 1;
@@ -70,18 +71,18 @@ fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
         let operand_of_node = |a: Id| values[index_of_node(a)];
         if hoisted[k] {
             values.push(match *node {
-                Node::Neg(a) => hoist::negated(operand_of_node(a)),
-                _ => hoist::operand(order[k]),
+                Node::Neg(a) => hoist::negate_hoisted(operand_of_node(a)),
+                _ => hoist::operand_of_hoisted_node(order[k]),
             });
             continue;
         }
-        if let Some(leaf) = lanes.leaf(graph, *node, &mut program, &operand_of_node) {
+        if let Some(leaf) = lanes.leaf_operand(graph, *node, &mut program, &operand_of_node) {
             values.push(leaf);
             continue;
         }
         let op = match *node {
             Node::Const(_) | Node::Symbol(_) | Node::Tuple(_) | Node::Gather(_) => continue,
-            Node::Sum(n, a) => lanes.sum(n.into(), operand_of_node(a)),
+            Node::Sum(n, a) => lanes.lane_sum_operation(n.into(), operand_of_node(a)),
             Node::Lane(k, a) => Op::Lane(k.into(), operand_of_node(a)),
             Node::Join(n, a, b) => Op::Join(n.into(), operand_of_node(a), operand_of_node(b)),
             Node::Neg(a) => match nodes[index_of_node(a)] {
@@ -104,24 +105,24 @@ fn select(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> Program {
             }
         };
         values.push(Operand::Value(program.instructions.len()));
-        lanes.push(&op);
+        lanes.record_lanes(&op);
         program.instructions.push(op);
     }
     program.outputs = outputs.iter().map(|o| values[index_of_node(o.id())]).collect();
     for id in &order {
         places[*id as usize] = 0;
     }
-    program.sweep();
+    program.remove_unused();
     program
 }
 
 /// Returns the number of operations of the outputs, without negations and elementary functions: that of a
 /// program before its sums are factored, within a few hundredths. Cheaper than drafting the program.
-pub fn size(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> usize {
+pub fn operation_count(outputs: &[Expr<'_>], known: &dyn Fn(Symbol) -> bool) -> usize {
     let Some(first) = outputs.first() else { return 0 };
     let graph = first.graph();
     let mut places = graph.borrow_table();
-    let order = needed(outputs, &mut places);
+    let order = collect_needed_nodes(outputs, &mut places);
     let nodes = nodes_of(graph, &order);
     let hoisted = hoist::hoisted_nodes(&nodes, |id| places[id as usize] as usize - 1, known);
     for id in &order {
@@ -141,7 +142,7 @@ fn nodes_of(graph: &Graph, ids: &[Id]) -> Vec<Node> {
 
 /// Returns the ids of all nodes that the outputs need, operands first, and writes the position of each node,
 /// counted from one, to the table.
-fn needed(outputs: &[Expr<'_>], places: &mut [u32]) -> Vec<Id> {
+fn collect_needed_nodes(outputs: &[Expr<'_>], places: &mut [u32]) -> Vec<Id> {
     let Some(first) = outputs.first() else {
         return Vec::new();
     };
@@ -163,7 +164,7 @@ fn needed(outputs: &[Expr<'_>], places: &mut [u32]) -> Vec<Id> {
         visit(output.id(), &mut todo);
     }
     while let Some(id) = todo.pop() {
-        nodes[id as usize].operands(|a| visit(a, &mut todo));
+        nodes[id as usize].visit_operands(|a| visit(a, &mut todo));
     }
     let mut order: Vec<Id> = Vec::new();
     for (k, &word) in bits.iter().enumerate() {

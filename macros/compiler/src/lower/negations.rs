@@ -27,12 +27,16 @@ impl Program {
         if reversed.is_empty() && !self.instructions.iter().any(|op| matches!(op, Op::Neg(_))) {
             return self;
         }
-        let best = Signs::optimised(&self, &[]);
+        let best = Signs::optimise_signs(&self, &[]);
         if reversed.is_empty() {
-            return best.rewrite();
+            return best.rewrite_program();
         }
-        let other = Signs::optimised(&self, &reversed);
-        if other.negations() <= best.negations() + 1 { other.rewrite() } else { best.rewrite() }
+        let other = Signs::optimise_signs(&self, &reversed);
+        if other.negation_count() <= best.negation_count() + 1 {
+            other.rewrite_program()
+        } else {
+            best.rewrite_program()
+        }
     }
 
     /// Returns values `c - q` that are used by sines and cosines alone.
@@ -66,9 +70,9 @@ struct Signs<'a> {
 
 impl<'a> Signs<'a> {
     /// Searches signs that need few negations, from all free signs plus, with some values fixed to minus.
-    fn optimised(program: &'a Program, negative: &[usize]) -> Signs<'a> {
+    fn optimise_signs(program: &'a Program, negative: &[usize]) -> Signs<'a> {
         let mut signs = Signs::new(program, negative);
-        signs.search();
+        signs.search_signs();
         signs
     }
 
@@ -88,13 +92,13 @@ impl<'a> Signs<'a> {
         }
         for (k, op) in program.instructions.iter().enumerate() {
             let keeps = keeps_signs(op);
-            op.operands(|o| {
+            op.visit_operands(|o| {
                 if let Operand::Value(a) = o {
                     signs.users[a].push(k);
                     signs.sink[a] |= !keeps;
                 }
             });
-            signs.negative[k] = signs.sign(k);
+            signs.negative[k] = signs.sign_of_value(k);
         }
         for output in &program.outputs {
             if let Operand::Value(a) = output {
@@ -110,7 +114,7 @@ impl<'a> Signs<'a> {
     }
 
     /// Returns the sign of a value from the signs of its operands, or the chosen sign if it is free.
-    fn sign(&self, k: usize) -> bool {
+    fn sign_of_value(&self, k: usize) -> bool {
         match self.program.instructions[k] {
             _ if self.is_free(k) => self.choice[k],
             Op::Neg(a) => !self.is_negative(a),
@@ -133,12 +137,12 @@ impl<'a> Signs<'a> {
     }
 
     /// Returns the number of negations that the signs cost.
-    fn negations(&self) -> usize {
+    fn negation_count(&self) -> usize {
         self.sink.iter().zip(&self.negative).filter(|(sink, negative)| **sink && **negative).count()
     }
 
     /// Changes free signs as long as that saves negations.
-    fn search(&mut self) {
+    fn search_signs(&mut self) {
         for least in [1, 0, 1, 0, 1] {
             let mut better = false;
             for k in 0..self.negative.len() {
@@ -161,7 +165,7 @@ impl<'a> Signs<'a> {
         if self.is_free(k) && !self.fixed[k] {
             found.push(path.clone());
         } else if path.len() < DEPTH {
-            self.program.instructions[k].operands(|o| {
+            self.program.instructions[k].visit_operands(|o| {
                 if let Operand::Value(a) = o {
                     path.push(a);
                     self.paths_to_free(path, found);
@@ -179,7 +183,7 @@ impl<'a> Signs<'a> {
             self.choice[k] = !self.negative[k];
         }
         let mut changed = Vec::new();
-        if self.propagate(path, &mut changed) >= least {
+        if self.propagate_signs(path, &mut changed) >= least {
             return true;
         }
         for c in changed {
@@ -192,11 +196,11 @@ impl<'a> Signs<'a> {
     }
 
     /// Updates the signs that depend on changed signs; returns the number of negations saved.
-    fn propagate(&mut self, from: &[usize], changed: &mut Vec<usize>) -> isize {
+    fn propagate_signs(&mut self, from: &[usize], changed: &mut Vec<usize>) -> isize {
         let mut gain = 0;
         let mut todo: BTreeSet<usize> = from.iter().copied().collect();
         while let Some(k) = todo.pop_first() {
-            let sign = self.sign(k);
+            let sign = self.sign_of_value(k);
             if sign == self.negative[k] {
                 continue;
             }
@@ -215,7 +219,7 @@ impl<'a> Signs<'a> {
     }
 
     /// Writes the program with its values stored with these signs.
-    fn rewrite(&self) -> Program {
+    fn rewrite_program(&self) -> Program {
         let mut out = Rewrite {
             signs: self,
             instructions: Vec::new(),
@@ -226,7 +230,7 @@ impl<'a> Signs<'a> {
         for k in 0..self.negative.len() {
             out.add(k);
         }
-        let outputs = self.program.outputs.iter().map(|o| out.positive(*o)).collect();
+        let outputs = self.program.outputs.iter().map(|o| out.operand_with_plus(*o)).collect();
         let mut program = Program {
             instructions: out.instructions,
             outputs,
@@ -234,7 +238,7 @@ impl<'a> Signs<'a> {
             gathers: self.program.gathers.clone(),
             ..Program::default()
         };
-        program.sweep();
+        program.remove_unused();
         program
     }
 }
@@ -251,12 +255,12 @@ struct Rewrite<'a> {
 }
 
 impl Rewrite<'_> {
-    fn push(&mut self, op: Op) -> Operand {
+    fn append_instruction(&mut self, op: Op) -> Operand {
         self.instructions.push(op);
         Operand::Value(self.instructions.len() - 1)
     }
 
-    fn stored(&self, o: Operand) -> Operand {
+    fn stored_operand(&self, o: Operand) -> Operand {
         match o {
             Operand::Value(a) => self.stored[a],
             other => other,
@@ -264,12 +268,12 @@ impl Rewrite<'_> {
     }
 
     /// Returns an operand with plus; adds a negation if it is stored with minus.
-    fn positive(&mut self, o: Operand) -> Operand {
+    fn operand_with_plus(&mut self, o: Operand) -> Operand {
         let Operand::Value(a) = o else { return o };
         if let Some(found) = self.positive[a] {
             return found;
         }
-        let negated = self.push(Op::Neg(self.stored[a]));
+        let negated = self.append_instruction(Op::Neg(self.stored[a]));
         self.positive[a] = Some(negated);
         negated
     }
@@ -278,30 +282,32 @@ impl Rewrite<'_> {
         let (signs, negative) = (self.signs, self.signs.negative[k]);
         let stored = match signs.program.instructions[k] {
             // The sign of the value records the negation.
-            Op::Neg(a) => self.stored(a),
+            Op::Neg(a) => self.stored_operand(a),
             Op::Mul(a, b) => {
-                let (a, b) = self.factors(a, b, (signs.is_negative(a) != signs.is_negative(b)) != negative);
-                self.push(Op::Mul(a, b))
+                let (a, b) =
+                    self.factors_with_signs(a, b, (signs.is_negative(a) != signs.is_negative(b)) != negative);
+                self.append_instruction(Op::Mul(a, b))
             }
             Op::Div(a, b) => {
-                let (a, b) = self.factors(a, b, (signs.is_negative(a) != signs.is_negative(b)) != negative);
-                self.push(Op::Div(a, b))
+                let (a, b) =
+                    self.factors_with_signs(a, b, (signs.is_negative(a) != signs.is_negative(b)) != negative);
+                self.append_instruction(Op::Div(a, b))
             }
             Op::Call(f, a) if f.is_odd() || f.is_even() => {
-                let a = self.stored(a);
-                self.push(Op::Call(f, a))
+                let a = self.stored_operand(a);
+                self.append_instruction(Op::Call(f, a))
             }
             Op::Sum(n, a) => {
-                let a = self.stored(a);
-                self.push(Op::Sum(n, a))
+                let a = self.stored_operand(a);
+                self.append_instruction(Op::Sum(n, a))
             }
-            op => match op.terms() {
-                Some(terms) => {
-                    self.sum(terms.map(|t| t.with_outer_sign(signs.is_negative(t.operand) != negative)))
-                }
+            op => match op.two_terms() {
+                Some(terms) => self.add_sum_of_terms(
+                    terms.map(|t| t.with_outer_sign(signs.is_negative(t.operand) != negative)),
+                ),
                 None => {
-                    let op = op.mapped(|o| self.positive(o));
-                    self.push(op)
+                    let op = op.map_operands(|o| self.operand_with_plus(o));
+                    self.append_instruction(op)
                 }
             },
         };
@@ -310,27 +316,27 @@ impl Rewrite<'_> {
     }
 
     /// Adds the instruction for the sum of two terms; at most one term is negative, unless one is a constant.
-    fn sum(&mut self, terms: [Term; 2]) -> Operand {
-        let mut terms = terms.map(|t| Term { operand: self.stored(t.operand), ..t });
+    fn add_sum_of_terms(&mut self, terms: [Term; 2]) -> Operand {
+        let mut terms = terms.map(|t| Term { operand: self.stored_operand(t.operand), ..t });
         if terms.iter().all(|t| t.negative) {
             let constant = usize::from(!is_constant(terms[0].operand));
-            terms[constant] = Term::positive(self.negated(terms[constant].operand));
+            terms[constant] = Term::positive_term(self.negate_constant(terms[constant].operand));
         }
         let [a, b] = terms;
-        self.push(Term::sum(a, b).0)
+        self.append_instruction(Term::add_two_terms(a, b).0)
     }
 
-    fn factors(&mut self, a: Operand, b: Operand, negate: bool) -> (Operand, Operand) {
-        let (a, b) = (self.stored(a), self.stored(b));
+    fn factors_with_signs(&mut self, a: Operand, b: Operand, negate: bool) -> (Operand, Operand) {
+        let (a, b) = (self.stored_operand(a), self.stored_operand(b));
         match (negate, is_constant(a)) {
             (false, _) => (a, b),
-            (true, true) => (self.negated(a), b),
-            (true, false) => (a, self.negated(b)),
+            (true, true) => (self.negate_constant(a), b),
+            (true, false) => (a, self.negate_constant(b)),
         }
     }
 
     /// Returns the operand for the negative of a constant.
-    fn negated(&mut self, o: Operand) -> Operand {
+    fn negate_constant(&mut self, o: Operand) -> Operand {
         match o {
             Operand::Tuple(k) => {
                 let negative: Vec<f64> = self.tuples[k].iter().map(|x| -x).collect();
@@ -340,7 +346,7 @@ impl Rewrite<'_> {
                     self.tuples.len() - 1
                 }))
             }
-            known => hoist::negated(known),
+            known => hoist::negate_hoisted(known),
         }
     }
 }
@@ -374,7 +380,7 @@ mod tests {
             vec![(b - a).sin() * c, -(g.num(2.0) * difference), difference.cos()],
         ] {
             let program = lower(&outputs);
-            let values = program.run(&|s| f64::from(s.0) + 0.5);
+            let values = program.interpret_program(&|s| f64::from(s.0) + 0.5);
             let expected = crate::expr::eval::eval(&outputs, &|s| f64::from(s.0) + 0.5);
             assert_eq!(values, expected);
             let negations = program.instructions.iter().filter(|op| matches!(op, super::Op::Neg(_)));

@@ -20,7 +20,7 @@ pub const SELECT: &str = "select";
 const FACTOR: Pass = Pass {
     name: "factor",
     about: "common factors of the terms of a sum are taken out",
-    run: Program::factored,
+    run: Program::factor_sums,
 };
 const NEGATIONS: Pass = Pass {
     name: "negations",
@@ -30,7 +30,7 @@ const NEGATIONS: Pass = Pass {
 const CHAIN: Pass = Pass {
     name: "chain",
     about: "sums begin with a product, so that more products fuse",
-    run: Program::chained,
+    run: Program::order_terms_for_fusion,
 };
 const SHARE_SUBSUMS: Pass = Pass {
     name: "share-subsums",
@@ -47,10 +47,11 @@ const FUSE: Pass = Pass {
     about: "a product whose only use is a sum becomes one instruction with it",
     run: Program::with_fused_products,
 };
-const SCHEDULE: Pass = Pass {
+/// Order of the instructions.
+pub const SCHEDULE: Pass = Pass {
     name: "schedule",
     about: "instructions are put in an order that keeps the processor busy",
-    run: Program::scheduled,
+    run: Program::schedule_instructions,
 };
 
 /// Passes over every candidate program of a function, before its operations are counted.
@@ -68,7 +69,7 @@ impl Program {
         for pass in passes {
             let start = Instant::now();
             self = (pass.run)(self);
-            observe(pass.name, &self, start.elapsed());
+            report_to_observer(pass.name, &self, start.elapsed());
         }
         Program { simd, ..self }
     }
@@ -92,14 +93,14 @@ pub fn with_observer<T>(observer: Observer, f: impl FnOnce() -> T) -> T {
 }
 
 /// Sets the name of the function that the next passes belong to.
-pub fn begin(function: &str) {
+pub fn begin_function(function: &str) {
     if OBSERVER.with(|cell| cell.borrow().is_some()) {
         FUNCTION.with(|name| name.replace(function.to_string()));
     }
 }
 
 /// Reports a pass to the observer, if there is one.
-pub(super) fn observe(pass: &str, program: &Program, time: Duration) {
+pub(super) fn report_to_observer(pass: &str, program: &Program, time: Duration) {
     OBSERVER.with(|cell| {
         if let Ok(mut observer) = cell.try_borrow_mut()
             && let Some(observer) = observer.as_mut()

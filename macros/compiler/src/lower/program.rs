@@ -1,6 +1,6 @@
 //! Straight-line programs: instructions, their operands, and operation counts.
 
-use crate::expr::eval::joined;
+use crate::expr::eval::join_lanes;
 use crate::expr::lanes::MAX_LANES;
 use crate::expr::{Extreme, Function, Lookup, Symbol};
 use std::collections::BTreeSet;
@@ -22,7 +22,7 @@ pub enum Operand {
 
 impl Operand {
     /// Returns the index of the instruction that computes the operand, or zero.
-    pub fn number(self) -> usize {
+    pub fn instruction_index(self) -> usize {
         match self {
             Operand::Value(k) => k,
             _ => 0,
@@ -30,7 +30,7 @@ impl Operand {
     }
 
     /// Replaces a value by the operand that computes it in another program.
-    pub fn among(self, values: &[Operand]) -> Operand {
+    pub fn translate_value(self, values: &[Operand]) -> Operand {
         match self {
             Operand::Value(k) => values[k],
             other => other,
@@ -77,7 +77,7 @@ pub enum Op {
 
 impl Op {
     /// Calls `f` with every operand of the operation.
-    pub fn operands(&self, mut f: impl FnMut(Operand)) {
+    pub fn visit_operands(&self, mut f: impl FnMut(Operand)) {
         match *self {
             Op::Neg(a) | Op::Call(_, a) | Op::Sum(_, a) | Op::Lane(_, a) => f(a),
             Op::Add(a, b)
@@ -91,7 +91,7 @@ impl Op {
                 f(a);
                 f(b);
             }
-            Op::Table(lookup, a, b, c) => [a, b, c].into_iter().take(lookup.variables()).for_each(f),
+            Op::Table(lookup, a, b, c) => [a, b, c].into_iter().take(lookup.variable_count()).for_each(f),
             Op::MulAdd(a, b, c) | Op::MulSub(a, b, c) | Op::NegMulAdd(a, b, c) => {
                 f(a);
                 f(b);
@@ -136,7 +136,7 @@ pub struct Counts {
 
 impl Counts {
     /// Returns the number of multiplications, additions and divisions together.
-    pub fn total(&self) -> usize {
+    pub fn total_operations(&self) -> usize {
         self.mul + self.add + self.div
     }
 }
@@ -145,26 +145,26 @@ impl Program {
     /// Returns the program that computes only the chosen outputs.
     pub fn with_outputs(mut self, chosen: &[usize]) -> Program {
         self.outputs = chosen.iter().filter_map(|k| self.outputs.get(*k).copied()).collect();
-        self.sweep();
-        self.counts = self.count();
+        self.remove_unused();
+        self.counts = self.count_operations();
         self.simd = self.simd.map(|program| Box::new(program.with_outputs(chosen)));
         self
     }
 
     /// Permutes the instructions; in `order`, operands must precede operations.
-    pub fn reordered(mut self, order: &[usize]) -> Program {
+    pub fn reorder_instructions(mut self, order: &[usize]) -> Program {
         let mut number = vec![0; self.instructions.len()];
         for (place, k) in order.iter().enumerate() {
             number[*k] = place;
         }
-        self.instructions = order.iter().map(|k| self.instructions[*k].renumbered(&number)).collect();
+        self.instructions = order.iter().map(|k| self.instructions[*k].renumber_operands(&number)).collect();
         self.uses = order.iter().map(|k| self.uses[*k]).collect();
-        self.outputs.iter_mut().for_each(|o| *o = renumber(*o, &number));
+        self.outputs.iter_mut().for_each(|o| *o = renumber_operand(*o, &number));
         self
     }
 
     /// Removes unused instructions, renumbers the others and counts uses.
-    pub fn sweep(&mut self) {
+    pub fn remove_unused(&mut self) {
         let n = self.instructions.len();
         self.uses.clear();
         self.uses.resize(n, 0);
@@ -179,7 +179,7 @@ impl Program {
                 dead += 1;
                 continue;
             }
-            self.instructions[k].operands(|o| {
+            self.instructions[k].visit_operands(|o| {
                 if let Operand::Value(a) = o {
                     self.uses[a] += 1;
                 }
@@ -193,7 +193,7 @@ impl Program {
         for k in 0..n {
             if self.uses[k] > 0 {
                 number[k] = next;
-                self.instructions[next] = self.instructions[k].renumbered(&number);
+                self.instructions[next] = self.instructions[k].renumber_operands(&number);
                 self.uses[next] = self.uses[k];
                 next += 1;
             }
@@ -201,12 +201,12 @@ impl Program {
         self.instructions.truncate(next);
         self.uses.truncate(next);
         for output in &mut self.outputs {
-            *output = renumber(*output, &number);
+            *output = renumber_operand(*output, &number);
         }
     }
 
     /// Counts the operations of the program.
-    pub fn count(&self) -> Counts {
+    pub fn count_operations(&self) -> Counts {
         let mut counts = Counts::default();
         for op in &self.instructions {
             match op {
@@ -225,14 +225,14 @@ impl Program {
     }
 
     /// Returns the symbols of the inputs that the program uses.
-    pub fn symbols(&self) -> BTreeSet<Symbol> {
+    pub fn used_symbols(&self) -> BTreeSet<Symbol> {
         let mut symbols: BTreeSet<Symbol> = self.gathers.iter().flatten().copied().collect();
         let mut note = |o: Operand| match o {
             Operand::Symbol(s) => drop(symbols.insert(s)),
             Operand::Const(_) | Operand::Value(_) | Operand::Tuple(_) | Operand::Gather(_) => {}
         };
         for op in &self.instructions {
-            op.operands(&mut note);
+            op.visit_operands(&mut note);
         }
         self.outputs.iter().for_each(|o| note(*o));
         symbols
@@ -243,7 +243,7 @@ impl Program {
         let mut finite = true;
         let mut check = |o: Operand| finite &= !matches!(o, Operand::Const(c) if !c.is_finite());
         for op in &self.instructions {
-            op.operands(&mut check);
+            op.visit_operands(&mut check);
         }
         self.outputs.iter().for_each(|o| check(*o));
         finite && self.tuples.iter().flatten().all(|c| c.is_finite())
@@ -251,7 +251,7 @@ impl Program {
 
     /// Returns the text of an operation on constants whose result is not finite, if there is one. Operations
     /// on constants with a finite result may remain where a pass has changed a sign.
-    pub fn undefined(&self) -> Option<String> {
+    pub fn undefined_operation(&self) -> Option<String> {
         let constant_value = |o: Operand| match o {
             Operand::Const(c) => Some(c),
             _ => None,
@@ -260,11 +260,11 @@ impl Program {
             let (value, text) = match *op {
                 Op::Call(f, a) => {
                     let a = constant_value(a)?;
-                    (f.apply(a), format!("{}({a})", f.name()))
+                    (f.evaluate_at(a), format!("{}({a})", f.function_name()))
                 }
                 Op::Pow(a, b) => {
                     let (a, b) = (constant_value(a)?, constant_value(b)?);
-                    (a.powf(b), format!("pow({a}, {b})"))
+                    (libm::pow(a, b), format!("pow({a}, {b})"))
                 }
                 Op::Div(a, b) => {
                     let (a, b) = (constant_value(a)?, constant_value(b)?);
@@ -277,8 +277,8 @@ impl Program {
     }
 
     /// Interprets the program; returns the values of the outputs.
-    pub fn run(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
-        self.run_with(symbol, &Lookup::apply)
+    pub fn interpret_program(&self, symbol: &dyn Fn(Symbol) -> f64) -> Vec<f64> {
+        self.run_with(symbol, &Lookup::evaluate_surrogate)
     }
 
     /// Interprets the program with a function that evaluates table lookups from their variables.
@@ -313,11 +313,11 @@ impl Program {
             let result = match *op {
                 Op::Sum(n, a) => [operand_lanes(&values, a)[..n].iter().sum(); N],
                 Op::Lane(k, a) => [operand_lanes(&values, a)[k]; N],
-                Op::Join(n, a, b) => joined(n, operand_lanes(&values, a), operand_lanes(&values, b)),
+                Op::Join(n, a, b) => join_lanes(n, operand_lanes(&values, a), operand_lanes(&values, b)),
                 op => {
                     let mut operands = Vec::with_capacity(3);
-                    op.operands(|o| operands.push(operand_lanes(&values, o)));
-                    std::array::from_fn(|lane| op.apply(|k| operands[k][lane], table))
+                    op.visit_operands(|o| operands.push(operand_lanes(&values, o)));
+                    std::array::from_fn(|lane| op.evaluate_in_lane(|k| operands[k][lane], table))
                 }
             };
             values.push(result);
@@ -328,7 +328,7 @@ impl Program {
 
 impl Op {
     /// Returns the result of the operation in one lane from its operands in that lane.
-    fn apply(self, get: impl Fn(usize) -> f64, table: &dyn Fn(Lookup, [f64; 3]) -> f64) -> f64 {
+    fn evaluate_in_lane(self, get: impl Fn(usize) -> f64, table: &dyn Fn(Lookup, [f64; 3]) -> f64) -> f64 {
         match self {
             Op::Neg(_) => -get(0),
             Op::Add(..) => get(0) + get(1),
@@ -338,23 +338,23 @@ impl Op {
             Op::MulAdd(..) => get(0).mul_add(get(1), get(2)),
             Op::MulSub(..) => get(0).mul_add(get(1), -get(2)),
             Op::NegMulAdd(..) => (-get(0)).mul_add(get(1), get(2)),
-            Op::Call(f, _) => f.apply(get(0)),
-            Op::Atan2(..) => get(0).atan2(get(1)),
-            Op::Pow(..) => get(0).powf(get(1)),
-            Op::Extreme(f, ..) => f.apply(get(0), get(1)),
+            Op::Call(f, _) => f.evaluate_at(get(0)),
+            Op::Atan2(..) => libm::atan2(get(0), get(1)),
+            Op::Pow(..) => libm::pow(get(0), get(1)),
+            Op::Extreme(f, ..) => f.evaluate_extreme(get(0), get(1)),
             Op::Table(lookup, ..) => {
-                table(lookup, std::array::from_fn(|k| if k < lookup.variables() { get(k) } else { 0.0 }))
+                table(lookup, std::array::from_fn(|k| if k < lookup.variable_count() { get(k) } else { 0.0 }))
             }
             Op::Sum(..) | Op::Lane(..) | Op::Join(..) => get(0),
         }
     }
 
-    fn renumbered(self, number: &[usize]) -> Op {
-        self.mapped(|o| renumber(o, number))
+    fn renumber_operands(self, number: &[usize]) -> Op {
+        self.map_operands(|o| renumber_operand(o, number))
     }
 
     /// Returns the operation with each operand replaced by its image under a function.
-    pub fn mapped(self, mut n: impl FnMut(Operand) -> Operand) -> Op {
+    pub fn map_operands(self, mut n: impl FnMut(Operand) -> Operand) -> Op {
         match self {
             Op::Neg(a) => Op::Neg(n(a)),
             Op::Add(a, b) => Op::Add(n(a), n(b)),
@@ -369,7 +369,7 @@ impl Op {
             Op::Pow(a, b) => Op::Pow(n(a), n(b)),
             Op::Extreme(f, a, b) => Op::Extreme(f, n(a), n(b)),
             Op::Table(lookup, a, b, c) => {
-                let last = lookup.variables().saturating_sub(1);
+                let last = lookup.variable_count().saturating_sub(1);
                 let mut x = [a, b, c];
                 x.iter_mut().take(last + 1).for_each(|x| *x = n(*x));
                 let [a, b, c] = std::array::from_fn(|k: usize| x[k.min(last)]);
@@ -382,7 +382,7 @@ impl Op {
     }
 }
 
-fn renumber(o: Operand, number: &[usize]) -> Operand {
+fn renumber_operand(o: Operand, number: &[usize]) -> Operand {
     match o {
         Operand::Value(k) => Operand::Value(number[k]),
         other => other,

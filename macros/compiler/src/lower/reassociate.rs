@@ -13,8 +13,8 @@ impl Program {
     /// Orders the terms of sums on the critical path by the times at which they become available, late terms
     /// last.
     pub(super) fn with_late_terms_last(mut self) -> Program {
-        let sums = self.sums();
-        let lanes = self.lanes();
+        let sums = self.sums_by_instruction();
+        let lanes = self.lane_counts();
         let is_multi_lane_operand = |o: Operand| match o {
             Operand::Value(a) => lanes[a] > 1,
             Operand::Tuple(_) | Operand::Gather(_) => true,
@@ -24,9 +24,10 @@ impl Program {
         let mut ordered: Vec<Option<Sum>> = Vec::with_capacity(sums.len());
         for (k, sum) in sums.into_iter().enumerate() {
             let before = times.instruction_time(&self, k);
-            let sum = sum.map(|sum| times.ordered(&self, sum, &is_multi_lane_operand));
-            let sum =
-                sum.map(|sum| (times.chain(&self, &sum.terms), sum)).filter(|(time, _)| *time <= before);
+            let sum = sum.map(|sum| times.order_terms(&self, sum, &is_multi_lane_operand));
+            let sum = sum
+                .map(|sum| (times.time_of_chain(&self, &sum.terms), sum))
+                .filter(|(time, _)| *time <= before);
             let (time, sum) = sum.map_or((before, None), |(time, sum)| (time, Some(sum)));
             times.known.push(time);
             ordered.push(sum);
@@ -41,8 +42,8 @@ impl Program {
             let before = times.instruction_time(&self, k);
             times.known.push(before);
             let Some(sum) = sum.as_ref().filter(|_| before + rest[k] > end) else { continue };
-            let time = times.chain(&self, &sum.terms);
-            let Some(ops) = sum.chain().filter(|_| time <= before) else { continue };
+            let time = times.time_of_chain(&self, &sum.terms);
+            let Some(ops) = sum.chain_of_additions().filter(|_| time <= before) else { continue };
             times.known[k] = time;
             for (at, op) in sum.additions.iter().zip(ops) {
                 rewritten.push((*at, op));
@@ -59,19 +60,19 @@ impl Program {
     }
 
     /// Returns for each instruction the sum of at least three terms that ends with it.
-    fn sums(&self) -> Vec<Option<Sum>> {
+    fn sums_by_instruction(&self) -> Vec<Option<Sum>> {
         let mut sums: Vec<Option<Sum>> = self.instructions.iter().map(|_| None).collect();
         let mut inside = vec![false; self.instructions.len()];
         for k in (0..self.instructions.len()).rev() {
-            let Some(ends) = self.instructions[k].terms().filter(|_| !inside[k]) else { continue };
+            let Some(ends) = self.instructions[k].two_terms().filter(|_| !inside[k]) else { continue };
             let mut sum = Sum { additions: vec![k], terms: Vec::new() };
             let mut todo = ends.to_vec();
             while let Some(term) = todo.pop() {
                 let inner = self.lone_addition(term.operand);
                 match inner.filter(|_| sum.terms.len() + todo.len() < LONGEST) {
                     Some(inner) => {
-                        sum.additions.push(term.operand.number());
-                        inside[term.operand.number()] = true;
+                        sum.additions.push(term.operand.instruction_index());
+                        inside[term.operand.instruction_index()] = true;
                         todo.extend(inner.map(|t| t.with_outer_sign(term.negative)));
                     }
                     None => sum.terms.push(term),
@@ -90,7 +91,7 @@ impl Program {
         let mut users = vec![Vec::new(); n];
         let mut missing = vec![0; n];
         for k in (0..n).filter(|k| late[*k]) {
-            self.instructions[k].operands(|o| {
+            self.instructions[k].visit_operands(|o| {
                 if let Operand::Value(a) = o {
                     users[a].push(k);
                     missing[k] += 1;
@@ -111,17 +112,18 @@ impl Program {
                 }
             }
         }
-        self.reordered(&order)
+        self.reorder_instructions(&order)
     }
 }
 
 impl Times {
     /// Orders the terms of a sum by time, scalars before vectors of lanes; at least one of the first two
     /// terms is not a product.
-    fn ordered(&self, program: &Program, mut sum: Sum, is_wide: &dyn Fn(Operand) -> bool) -> Sum {
-        sum.terms
-            .sort_by_key(|term| (is_wide(term.operand), self.term(program, *term).0, term.operand.number()));
-        let single = sum.terms.iter().position(|term| !self.term(program, *term).1);
+    fn order_terms(&self, program: &Program, mut sum: Sum, is_wide: &dyn Fn(Operand) -> bool) -> Sum {
+        sum.terms.sort_by_key(|term| {
+            (is_wide(term.operand), self.time_of_term(program, *term).0, term.operand.instruction_index())
+        });
+        let single = sum.terms.iter().position(|term| !self.time_of_term(program, *term).1);
         if let Some(k) = single.filter(|k| *k > 1) {
             sum.terms[..=k].rotate_right(1);
         }
@@ -145,7 +147,7 @@ impl Program {
                 continue;
             }
             let op = &self.instructions[k];
-            let pair = op.terms();
+            let pair = op.two_terms();
             let terms = match (&sums[k], &pair) {
                 (Some(sum), _) => {
                     sum.additions.iter().for_each(|a| is_part[*a] = true);
@@ -154,7 +156,7 @@ impl Program {
                 (None, Some(pair)) => pair.as_slice(),
                 (None, None) => {
                     let time = rest[k] + latency(op);
-                    op.operands(|o| raise_remaining_time(&mut rest, o, time));
+                    op.visit_operands(|o| raise_remaining_time(&mut rest, o, time));
                     continue;
                 }
             };
@@ -166,7 +168,7 @@ impl Program {
                 }
                 match self.lone_product(term.operand) {
                     Some((a, b)) => {
-                        is_part[term.operand.number()] = true;
+                        is_part[term.operand.instruction_index()] = true;
                         raise_remaining_time(&mut rest, a, time);
                         raise_remaining_time(&mut rest, b, time);
                     }
@@ -205,7 +207,7 @@ mod tests {
                 + value_of_index(7)
                 + value_of_index(8) * value_of_index(9)
         };
-        assert!((fused.run(&value_of_symbol)[0] - expected).abs() < 1e-14);
-        assert_eq!(fused.time(), 16 + 6 * (4 + 13) + 4);
+        assert!((fused.interpret_program(&value_of_symbol)[0] - expected).abs() < 1e-14);
+        assert_eq!(fused.estimated_time(), 16 + 6 * (4 + 13) + 4);
     }
 }

@@ -26,11 +26,11 @@ impl Program {
                 needs.results.clone_from(&results);
                 consider(needs.depth_first(&self), &needs);
                 if self.instructions.len() <= GREEDY {
-                    consider(needs.backwards(), &needs);
+                    consider(needs.schedule_backwards(), &needs);
                 }
             }
         }
-        self.reordered(&best)
+        self.reorder_instructions(&best)
     }
 
     /// Returns the instructions of the results, with `together` consecutive arrays of equal length entry by
@@ -72,7 +72,7 @@ impl Needs {
         let mut arguments: BTreeMap<Symbol, usize> = BTreeMap::new();
         let of = program.instructions.iter().map(|op| {
             let mut list = Vec::new();
-            op.operands(|o| {
+            op.visit_operands(|o| {
                 let next = n + arguments.len();
                 match o {
                     Operand::Value(k) => list.push(k),
@@ -152,7 +152,7 @@ impl Needs {
 
     /// Returns an order that is chosen from the last instruction to the first: the next instruction adds the
     /// fewest live values before it, and of equal ones its value became live last.
-    fn backwards(&self) -> Vec<usize> {
+    fn schedule_backwards(&self) -> Vec<usize> {
         let n = self.of.len();
         let mut users = vec![0_usize; self.count];
         self.of.iter().flatten().for_each(|a| users[*a] += 1);

@@ -3,7 +3,7 @@
 //! matrix, overlap only if their instructions are interleaved. The next instruction is the one with the
 //! longest remaining latency among those whose operands are available.
 
-use super::times::{issue, latency};
+use super::times::{issue_slots, latency};
 use super::{Operand, Program};
 use crate::machine::{CYCLE, MOST_PARALLELISM};
 use std::cmp::Reverse;
@@ -11,26 +11,26 @@ use std::collections::BinaryHeap;
 
 impl Program {
     /// Orders the instructions by their latencies.
-    pub(super) fn scheduled(self) -> Program {
-        match self.order() {
-            Some(order) => self.reordered(&order),
+    pub(super) fn schedule_instructions(self) -> Program {
+        match self.scheduled_order() {
+            Some(order) => self.reorder_instructions(&order),
             None => self,
         }
     }
 
     /// Returns the estimated time of a call in half cycles: the number of instructions plus the cycles of the
     /// critical path, since consecutive calls overlap only in part.
-    pub fn time(&self) -> usize {
+    pub fn estimated_time(&self) -> usize {
         let fused = self.as_fused();
-        let longest = fused.critical_latency(&fused.users()).into_iter().max().unwrap_or(0) / CYCLE;
+        let longest = fused.critical_latency(&fused.users_of_values()).into_iter().max().unwrap_or(0) / CYCLE;
         fused.instructions.len() + longest as usize
     }
 
     /// Returns for each instruction the instructions that use its value, once per use.
-    fn users(&self) -> Vec<Vec<usize>> {
+    fn users_of_values(&self) -> Vec<Vec<usize>> {
         let mut users = vec![Vec::new(); self.instructions.len()];
         for (k, op) in self.instructions.iter().enumerate() {
-            op.operands(|o| {
+            op.visit_operands(|o| {
                 if let Operand::Value(a) = o {
                     users[a].push(k);
                 }
@@ -52,9 +52,9 @@ impl Program {
 
     /// Returns the schedule as indices of instructions, or `None` if the program has enough parallelism in
     /// any order.
-    fn order(&self) -> Option<Vec<usize>> {
+    fn scheduled_order(&self) -> Option<Vec<usize>> {
         let n = self.instructions.len();
-        let users = self.users();
+        let users = self.users_of_values();
         let mut missing = vec![0; n];
         users.iter().flatten().for_each(|k| missing[*k] += 1);
         let rest = self.critical_latency(&users);
@@ -85,7 +85,7 @@ impl Program {
                     waiting.push(Reverse((ready[user], user)));
                 }
             }
-            time += issue(&self.instructions[k]);
+            time += issue_slots(&self.instructions[k]);
         }
     }
 }
@@ -97,7 +97,7 @@ mod tests {
     use crate::lower::{Op, Operand, lower};
 
     /// Returns a long chain of operations, and a longer one that follows it in the program.
-    fn chains<'g>(g: &'g Graph) -> Vec<Expr<'g>> {
+    fn test_chains<'g>(g: &'g Graph) -> Vec<Expr<'g>> {
         let [x, y] = [0, 1].map(|k| g.symbol(Symbol(k)));
         let chain_of_products = |from: Expr<'g>, n: usize| (0..n).fold(from, |e, _| e * e + x * y);
         let first = chain_of_products(x + y, 8);
@@ -107,14 +107,14 @@ mod tests {
     #[test]
     fn scheduling_keeps_values_and_uses() {
         let g = Graph::new();
-        let before = lower(&chains(&g)).run_passes(PART);
-        let after = before.clone().scheduled();
+        let before = lower(&test_chains(&g)).run_passes(PART);
+        let after = before.clone().schedule_instructions();
         let value_of_symbol = |s: Symbol| 0.3 + 0.1 * f64::from(s.0);
-        assert_eq!(before.run(&value_of_symbol), after.run(&value_of_symbol));
+        assert_eq!(before.interpret_program(&value_of_symbol), after.interpret_program(&value_of_symbol));
         assert_eq!(after.counts, before.counts);
         let mut uses = vec![0; after.instructions.len()];
         for (k, op) in after.instructions.iter().enumerate() {
-            op.operands(|o| {
+            op.visit_operands(|o| {
                 if let Operand::Value(a) = o {
                     assert!(a < k, "{a} is used by {k}");
                     uses[a] += 1;
@@ -135,8 +135,11 @@ mod tests {
         let index_of_division = |program: &crate::lower::Program| {
             program.instructions.iter().position(|op| matches!(op, Op::Div(..))).expect("there is a quotient")
         };
-        let program = lower(&chains(&g)).run_passes(PART);
+        let program = lower(&test_chains(&g)).run_passes(PART);
         assert!(index_of_division(&program) > 8, "the quotient comes after the other chain");
-        assert!(index_of_division(&program.scheduled()) < 6, "the quotient begins the longest chain");
+        assert!(
+            index_of_division(&program.schedule_instructions()) < 6,
+            "the quotient begins the longest chain"
+        );
     }
 }

@@ -36,7 +36,7 @@ enum Key {
 
 impl Key {
     /// Returns the number of the key: zero for the number 1, then the values, then the sums.
-    fn number(self) -> u32 {
+    fn key_number(self) -> u32 {
         match self {
             Key::One => 0,
             Key::Atom(a) => 1 + a as u32,
@@ -85,9 +85,9 @@ impl Program {
     fn sharing_sums(&self, length: usize) -> Option<(usize, Program)> {
         let all = Sums::from_program(self);
         let is_small = self.instructions.len() <= EXHAUSTIVE_INSTRUCTIONS;
-        let mut cost = (length, self.counts.total());
+        let mut cost = (length, self.counts.total_operations());
         let mut best: Option<(usize, Program)> = None;
-        let mut fewest = all.operations();
+        let mut fewest = all.operation_count();
         let mut tried: Vec<Vec<Terms>> = Vec::new();
         for (short, products) in SHORT {
             let mut sums = all.clone();
@@ -96,16 +96,16 @@ impl Program {
                 continue;
             }
             tried.push(sums.sums.clone());
-            sums.share();
-            let operations = sums.operations();
+            sums.share_frequent_pairs();
+            let operations = sums.operation_count();
             if operations > fewest || (operations == fewest && !is_small && tried.len() > 1) {
                 continue;
             }
             fewest = operations;
             // Choose the signs of the new sums, and let sums begin with a product again.
-            let mut program = self.with_sums(&sums).with_cheap_signs().chained();
-            program.counts = program.count();
-            let operations = program.counts.total();
+            let mut program = self.with_sums(&sums).with_cheap_signs().order_terms_for_fusion();
+            program.counts = program.count_operations();
+            let operations = program.counts.total_operations();
             if operations > cost.1 {
                 continue;
             }
@@ -132,20 +132,20 @@ impl Program {
         };
         for (k, op) in self.instructions.iter().enumerate() {
             let value = match sums.ends[k] {
-                Some(sum) => out.sum(sum),
+                Some(sum) => out.operand_of_sum(sum),
                 None => {
                     let values = &out.values;
                     // An operand may have become a scalar because its terms in lanes cancelled.
-                    match op.mapped(|o| o.among(values)) {
-                        Op::Lane(_, a) if out.lanes.width(a) == 1 => a,
-                        Op::Sum(n, a) => out.push(out.lanes.sum(n, a)),
-                        op => out.push(op),
+                    match op.map_operands(|o| o.translate_value(values)) {
+                        Op::Lane(_, a) if out.lanes.lane_count(a) == 1 => a,
+                        Op::Sum(n, a) => out.append_instruction(out.lanes.lane_sum_operation(n, a)),
+                        op => out.append_instruction(op),
                     }
                 }
             };
             out.values.push(value);
         }
-        let outputs = self.outputs.iter().map(|o| o.among(&out.values)).collect();
+        let outputs = self.outputs.iter().map(|o| o.translate_value(&out.values)).collect();
         let mut program = Program {
             instructions: out.instructions,
             outputs,
@@ -153,7 +153,7 @@ impl Program {
             gathers: self.gathers.clone(),
             ..Program::default()
         };
-        program.sweep();
+        program.remove_unused();
         program
     }
 }
@@ -170,7 +170,7 @@ impl Sums {
         };
         let mut known = AtomNumbers { values: vec![None; n], others: BTreeMap::new() };
         for (k, op) in program.instructions.iter().enumerate() {
-            let Some(signed) = op.terms() else { continue };
+            let Some(signed) = op.two_terms() else { continue };
             let mut terms = Terms::new();
             for term in signed {
                 let sign = if term.negative { -1.0 } else { 1.0 };
@@ -187,9 +187,9 @@ impl Sums {
                             continue;
                         }
                         Some(sum) => Key::Sum(sum),
-                        None => sums.atom(term.operand, &mut known),
+                        None => sums.key_of_atom(term.operand, &mut known),
                     },
-                    o => sums.atom(o, &mut known),
+                    o => sums.key_of_atom(o, &mut known),
                 };
                 add(&mut terms, key, sign);
             }
@@ -203,15 +203,15 @@ impl Sums {
             _ => None,
         };
         let mut wanted: Vec<usize> = program.outputs.iter().filter_map(|o| sum_ending_at(*o)).collect();
-        for op in program.instructions.iter().filter(|op| op.terms().is_none()) {
-            op.operands(|o| wanted.extend(sum_ending_at(o)));
+        for op in program.instructions.iter().filter(|op| op.two_terms().is_none()) {
+            op.visit_operands(|o| wanted.extend(sum_ending_at(o)));
         }
         sums.wanted = wanted;
         sums
     }
 
     /// Returns the number of additions and multiplications of the sums.
-    fn operations(&self) -> usize {
+    fn operation_count(&self) -> usize {
         let mut seen = vec![false; self.sums.len()];
         let mut todo = self.wanted.clone();
         let mut operations = 0;
@@ -231,7 +231,7 @@ impl Sums {
     }
 
     /// Returns the key of an operand that is not a sum.
-    fn atom(&mut self, o: Operand, known: &mut AtomNumbers) -> Key {
+    fn key_of_atom(&mut self, o: Operand, known: &mut AtomNumbers) -> Key {
         let place = match o {
             Operand::Value(k) => &mut known.values[k],
             Operand::Const(c) => known.others.entry((0, c.to_bits())).or_default(),
@@ -273,37 +273,38 @@ impl Sums {
     }
 
     /// Replaces the pairs of terms that most sums share by sums of their own.
-    fn share(&mut self) {
+    fn share_frequent_pairs(&mut self) {
         let mut pairs = Pairs::from_sums(&self.sums, self.atoms.len());
         while let Some((pair, list)) = pairs.take_most_shared() {
             let new = Key::Sum(self.sums.len());
             let mut with_new = Vec::new();
             for &k in &list {
                 let terms = &mut self.sums[k];
-                let Some(c) = terms.iter().find(|(key, _)| key.number() == pair.first()).map(|(_, c)| *c)
+                let Some(c) =
+                    terms.iter().find(|(key, _)| key.key_number() == pair.first_key()).map(|(_, c)| *c)
                 else {
                     continue;
                 };
-                let is_member_of_pair = |key: u32| key == pair.first() || key == pair.second();
+                let is_member_of_pair = |key: u32| key == pair.first_key() || key == pair.second_key();
                 for (i, a) in terms.iter().enumerate() {
                     for b in &terms[i + 1..] {
-                        if is_member_of_pair(a.0.number()) || is_member_of_pair(b.0.number()) {
-                            pairs.remove(Pair::new(*a, *b), k);
+                        if is_member_of_pair(a.0.key_number()) || is_member_of_pair(b.0.key_number()) {
+                            pairs.remove_sum_from_pair(Pair::new(*a, *b), k);
                         }
                     }
                 }
-                terms.retain(|(key, _)| !is_member_of_pair(key.number()));
+                terms.retain(|(key, _)| !is_member_of_pair(key.key_number()));
                 with_new.extend(terms.iter().map(|term| (Pair::new(*term, (new, c)), k)));
                 terms.push((new, c));
             }
             pairs.add(with_new);
-            let [a, b] = [pair.first(), pair.second()].map(|number| self.key(number));
-            self.sums.push(vec![(a, 1.0), (b, pair.ratio())]);
+            let [a, b] = [pair.first_key(), pair.second_key()].map(|number| self.key_of_number(number));
+            self.sums.push(vec![(a, 1.0), (b, pair.coefficient_ratio())]);
         }
     }
 
     /// Returns the key of the atom or sum with this number.
-    fn key(&self, number: u32) -> Key {
+    fn key_of_number(&self, number: u32) -> Key {
         match number {
             0 => Key::One,
             n if n < FIRST_SUM => Key::Atom(n as usize - 1),
@@ -349,14 +350,14 @@ struct Writer<'a> {
 const LOST: Operand = Operand::Const(f64::NAN);
 
 impl Writer<'_> {
-    fn push(&mut self, op: Op) -> Operand {
-        self.lanes.push(&op);
+    fn append_instruction(&mut self, op: Op) -> Operand {
+        self.lanes.record_lanes(&op);
         self.instructions.push(op);
         Operand::Value(self.instructions.len() - 1)
     }
 
     /// Returns the operand of a sum, which is written before its first use.
-    fn sum(&mut self, k: usize) -> Operand {
+    fn operand_of_sum(&mut self, k: usize) -> Operand {
         // Iterative, because sums may be nested deeply.
         let mut todo = vec![k];
         while let Some(&top) = todo.last() {
@@ -383,21 +384,22 @@ impl Writer<'_> {
         for (key, c) in &self.sums.sums[k] {
             terms.push(match *key {
                 Key::One => (Operand::Const(c.abs()), c.signum()),
-                Key::Atom(a) => (self.sums.atoms[a].among(&self.values), *c),
+                Key::Atom(a) => (self.sums.atoms[a].translate_value(&self.values), *c),
                 Key::Sum(s) => (self.written[s].unwrap_or(LOST), *c),
             });
         }
         // Terms are added in the order in which they are computed, positive ones before negative ones.
-        terms.sort_by_key(|(o, c)| (*c < 0.0, o.number()));
+        terms.sort_by_key(|(o, c)| (*c < 0.0, o.instruction_index()));
         let mut sum: Option<Operand> = None;
         for (o, c) in terms {
             let size = c.abs();
-            let term = if size == 1.0 { o } else { self.push(Op::Mul(Operand::Const(size), o)) };
+            let term =
+                if size == 1.0 { o } else { self.append_instruction(Op::Mul(Operand::Const(size), o)) };
             sum = Some(match (sum, c < 0.0) {
                 (None, false) => term,
-                (None, true) => self.push(Op::Neg(term)),
-                (Some(sum), false) => self.push(Op::Add(sum, term)),
-                (Some(sum), true) => self.push(Op::Sub(sum, term)),
+                (None, true) => self.append_instruction(Op::Neg(term)),
+                (Some(sum), false) => self.append_instruction(Op::Add(sum, term)),
+                (Some(sum), true) => self.append_instruction(Op::Sub(sum, term)),
             });
         }
         sum.unwrap_or(Operand::Const(0.0))

@@ -13,7 +13,7 @@ pub(super) struct Term {
 }
 
 impl Term {
-    pub fn positive(operand: Operand) -> Term {
+    pub fn positive_term(operand: Operand) -> Term {
         Term { operand, negative: false }
     }
 
@@ -24,7 +24,7 @@ impl Term {
 
     /// Returns the operation that adds two terms, and true if its result has to be negated: if both terms are
     /// negative.
-    pub fn sum(a: Term, b: Term) -> (Op, bool) {
+    pub fn add_two_terms(a: Term, b: Term) -> (Op, bool) {
         let op = match (a.negative, b.negative) {
             (false, false) | (true, true) => Op::Add(a.operand, b.operand),
             (false, true) => Op::Sub(a.operand, b.operand),
@@ -42,11 +42,11 @@ pub(super) struct Sum {
 
 impl Sum {
     /// Returns the operations that add the terms in order, or `None` if all terms are negative.
-    pub fn chain(&self) -> Option<Vec<Op>> {
+    pub fn chain_of_additions(&self) -> Option<Vec<Op>> {
         let mut ops = Vec::with_capacity(self.additions.len());
         let mut sum = *self.terms.first()?;
         for (term, at) in self.terms[1..].iter().zip(&self.additions) {
-            let (op, negative) = Term::sum(sum, *term);
+            let (op, negative) = Term::add_two_terms(sum, *term);
             ops.push(op);
             sum = Term { operand: Operand::Value(*at), negative };
         }
@@ -56,10 +56,10 @@ impl Sum {
 
 impl Op {
     /// Returns the two terms of an addition or a subtraction.
-    pub(super) fn terms(&self) -> Option<[Term; 2]> {
+    pub(super) fn two_terms(&self) -> Option<[Term; 2]> {
         match *self {
-            Op::Add(a, b) => Some([Term::positive(a), Term::positive(b)]),
-            Op::Sub(a, b) => Some([Term::positive(a), Term { operand: b, negative: true }]),
+            Op::Add(a, b) => Some([Term::positive_term(a), Term::positive_term(b)]),
+            Op::Sub(a, b) => Some([Term::positive_term(a), Term { operand: b, negative: true }]),
             _ => None,
         }
     }
@@ -68,19 +68,19 @@ impl Op {
 impl Program {
     /// Returns the terms of an addition with a single use.
     pub(super) fn lone_addition(&self, o: Operand) -> Option<[Term; 2]> {
-        self.lone(o)?.terms()
+        self.single_use_operation(o)?.two_terms()
     }
 
     /// Returns the factors of a product with a single use.
     pub(super) fn lone_product(&self, o: Operand) -> Option<(Operand, Operand)> {
-        match *self.lone(o)? {
+        match *self.single_use_operation(o)? {
             Op::Mul(a, b) => Some((a, b)),
             _ => None,
         }
     }
 
     /// Returns the operation of a value with a single use.
-    fn lone(&self, o: Operand) -> Option<&Op> {
+    fn single_use_operation(&self, o: Operand) -> Option<&Op> {
         match o {
             Operand::Value(k) if self.uses[k] == 1 => Some(&self.instructions[k]),
             _ => None,

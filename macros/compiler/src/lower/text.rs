@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 impl Program {
     /// Returns the instructions and outputs as text, with names for symbols.
-    pub fn text(&self, name: &dyn Fn(Symbol) -> String) -> String {
+    pub fn program_text(&self, name: &dyn Fn(Symbol) -> String) -> String {
         let mut text = String::new();
         let format_operand = |o: Operand| self.operand_text(o, name);
         for (k, op) in self.instructions.iter().enumerate() {
@@ -41,13 +41,13 @@ fn op_text(op: &Op, at: &dyn Fn(Operand) -> String) -> String {
         Op::MulAdd(a, b, c) => format!("fused {} * {} + {}", at(a), at(b), at(c)),
         Op::MulSub(a, b, c) => format!("fused {} * {} - {}", at(a), at(b), at(c)),
         Op::NegMulAdd(a, b, c) => format!("fused {} - {} * {}", at(c), at(a), at(b)),
-        Op::Call(f, a) => format!("{}({})", f.name(), at(a)),
+        Op::Call(f, a) => format!("{}({})", f.function_name(), at(a)),
         Op::Atan2(a, b) => format!("atan2({}, {})", at(a), at(b)),
         Op::Pow(a, b) => format!("pow({}, {})", at(a), at(b)),
-        Op::Extreme(f, a, b) => format!("{}({}, {})", f.name(), at(a), at(b)),
+        Op::Extreme(f, a, b) => format!("{}({}, {})", f.function_name(), at(a), at(b)),
         Op::Table(lookup, a, b, c) => {
-            let x: Vec<String> = [a, b, c].into_iter().take(lookup.variables()).map(at).collect();
-            format!("table{}{:?}({})", lookup.table(), lookup.orders(), x.join(", "))
+            let x: Vec<String> = [a, b, c].into_iter().take(lookup.variable_count()).map(at).collect();
+            format!("table{}{:?}({})", lookup.table_index(), lookup.derivative_orders(), x.join(", "))
         }
         Op::Sum(n, a) => format!("sum of {n} lanes of {}", at(a)),
         Op::Lane(k, a) => format!("lane {k} of {}", at(a)),

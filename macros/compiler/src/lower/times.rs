@@ -12,7 +12,7 @@ pub(super) struct Times {
 }
 
 impl Times {
-    fn value(&self, o: Operand) -> u32 {
+    fn time_of_value(&self, o: Operand) -> u32 {
         match o {
             Operand::Value(k) => self.known.get(k).copied().unwrap_or(0),
             _ => 0,
@@ -22,26 +22,26 @@ impl Times {
     /// Returns the time at which the value of instruction `k` is available.
     pub fn instruction_time(&self, program: &Program, k: usize) -> u32 {
         let op = &program.instructions[k];
-        if let Some([a, b]) = op.terms() {
-            return self.chain(program, &[a, b]);
+        if let Some([a, b]) = op.two_terms() {
+            return self.time_of_chain(program, &[a, b]);
         }
         let mut start = 0;
-        op.operands(|o| start = start.max(self.value(o)));
+        op.visit_operands(|o| start = start.max(self.time_of_value(o)));
         start + if matches!(op, Op::Call(..)) { SINE } else { latency(op) }
     }
 
     /// Returns the time at which a term can be added, and true if it is a product that fuses; its factors
     /// must be available then.
-    pub fn term(&self, program: &Program, term: Term) -> (u32, bool) {
+    pub fn time_of_term(&self, program: &Program, term: Term) -> (u32, bool) {
         match program.lone_product(term.operand) {
-            Some((a, b)) => (self.value(a).max(self.value(b)), true),
-            None => (self.value(term.operand), false),
+            Some((a, b)) => (self.time_of_value(a).max(self.time_of_value(b)), true),
+            None => (self.time_of_value(term.operand), false),
         }
     }
 
     /// Returns the time at which the sum of terms that are added in order is available.
-    pub fn chain(&self, program: &Program, terms: &[Term]) -> u32 {
-        let mut times = terms.iter().map(|term| self.term(program, *term));
+    pub fn time_of_chain(&self, program: &Program, terms: &[Term]) -> u32 {
+        let mut times = terms.iter().map(|term| self.time_of_term(program, *term));
         let (Some(first), Some(second)) = (times.next(), times.next()) else { return 0 };
         let start = match (first, second) {
             // The earlier of two products is a separate instruction.
@@ -61,22 +61,22 @@ pub(super) fn latency(op: &Op) -> u32 {
         Op::Lane(..) | Op::Join(..) => MOVE_LANE,
         Op::Add(..) | Op::Sub(..) => ADD,
         Op::Mul(..) | Op::MulAdd(..) | Op::MulSub(..) | Op::NegMulAdd(..) | Op::Extreme(..) => MULTIPLY,
-        Op::Sum(lanes, _) => HALVE * halvings(*lanes),
+        Op::Sum(lanes, _) => HALVE * lane_reduction_steps(*lanes),
         Op::Div(..) => DIVIDE,
         Op::Atan2(..) | Op::Pow(..) | Op::Table(..) => CALL,
     }
 }
 
 /// Returns the number of issue slots of an operation.
-pub(super) fn issue(op: &Op) -> u32 {
+pub(super) fn issue_slots(op: &Op) -> u32 {
     match op {
         Op::Call(..) => 0,
-        Op::Sum(lanes, _) => 2 * halvings(*lanes),
+        Op::Sum(lanes, _) => 2 * lane_reduction_steps(*lanes),
         _ => 1,
     }
 }
 
 /// Returns the number of steps that add the upper half of the lanes to the lower half.
-fn halvings(lanes: usize) -> u32 {
+fn lane_reduction_steps(lanes: usize) -> u32 {
     lanes.next_power_of_two().trailing_zeros()
 }

@@ -11,7 +11,7 @@ use crate::mechanism::{Inertia, Model};
 
 /// Returns `M⁻¹ r`, or `None` for a mechanism with coupled coordinates.
 pub fn accelerations<'g>(model: &Model<'g>, joints: &[Joint<'g>], r: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
-    solve(model, joints, vec![Spatial::zero(model); joints.len()], r)
+    solve_articulated(model, joints, vec![Spatial::zero(model); joints.len()], r)
 }
 
 /// Returns `v̇ = M⁻¹ (τ − h)`, or `None` for a mechanism with coupled coordinates.
@@ -25,10 +25,10 @@ pub fn forward_dynamics<'g>(
     tau: &[Expr<'g>],
 ) -> Option<Vec<Expr<'g>>> {
     let r: Vec<Expr<'g>> = tau.iter().zip(passive_forces(model, true)).map(|(t, h)| *t - h).collect();
-    solve(model, joints, wrenches, &r)
+    solve_articulated(model, joints, wrenches, &r)
 }
 
-fn solve<'g>(
+fn solve_articulated<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mut wrenches: Vec<Spatial<'g>>,
@@ -38,7 +38,7 @@ fn solve<'g>(
         return None;
     }
     let mut inertias: Vec<Articulated<'g>> =
-        model.links.iter().map(|l| Articulated::rigid(&l.inertia)).collect();
+        model.links.iter().map(|l| Articulated::from_rigid_inertia(&l.inertia)).collect();
     let mut handles: Vec<Vec<Eliminated<'g>>> = vec![Vec::new(); joints.len()];
     for (k, joint) in joints.iter().enumerate().rev() {
         let (mut inertia, mut wrench) = (inertias[k], wrenches[k]);
@@ -48,8 +48,8 @@ fn solve<'g>(
             let handle = Eliminated::new(dof, &inertia, &wrench, r[dof.index], inverse);
             inverse = next.and_then(|next| inertia.second_inverse(&dof.subspace, &next.subspace));
             // The reduced inertia after the last elimination of a root is used by no later step.
-            inertia.eliminate(&handle);
-            wrench = handle.transmit(&wrench);
+            inertia.eliminate_dof(&handle);
+            wrench = handle.transmit_wrench(&wrench);
             handles[k].push(handle);
         }
         if let Some(parent) = joint.parent {
@@ -57,16 +57,20 @@ fn solve<'g>(
             wrenches[parent.0] = joint.add_wrench(&wrenches[parent.0], &wrench);
         }
     }
-    Some(outward(model, joints, &handles))
+    Some(outward_recursion(model, joints, &handles))
 }
 
-fn outward<'g>(model: &Model<'g>, joints: &[Joint<'g>], handles: &[Vec<Eliminated<'g>>]) -> Vec<Expr<'g>> {
+fn outward_recursion<'g>(
+    model: &Model<'g>,
+    joints: &[Joint<'g>],
+    handles: &[Vec<Eliminated<'g>>],
+) -> Vec<Expr<'g>> {
     let mut result = vec![model.graph.zero(); model.nv()];
     let mut motions: Vec<Spatial<'g>> = Vec::with_capacity(joints.len());
     for (k, joint) in joints.iter().enumerate() {
         let mut motion = joint.parent.map_or(Spatial::zero(model), |p| joint.twist_to_child(&motions[p.0]));
         for (dof, handle) in joint.dofs.iter().zip(handles[k].iter().rev()) {
-            (result[dof.index], motion) = handle.accelerate(&dof.subspace, &motion);
+            (result[dof.index], motion) = handle.acceleration_of_dof(&dof.subspace, &motion);
         }
         motions.push(motion);
     }
@@ -97,18 +101,18 @@ struct Axis {
 
 impl Axis {
     fn from_subspace(s: &Spatial<'_>) -> Option<Axis> {
-        let mut nonzero = (0..6).filter(|e| !entry(s, *e).is_zero());
+        let mut nonzero = (0..6).filter(|e| !spatial_entry(s, *e).is_zero());
         let first = nonzero.next()?;
-        let value = entry(s, first).value().filter(|c| c.abs() == 1.0)?;
+        let value = spatial_entry(s, first).constant_value().filter(|c| c.abs() == 1.0)?;
         nonzero.next().is_none().then_some(Axis { entry: first, backwards: value < 0.0 })
     }
 
-    fn signed<'g>(self, e: Expr<'g>) -> Expr<'g> {
+    fn apply_sign<'g>(self, e: Expr<'g>) -> Expr<'g> {
         if self.backwards { -e } else { e }
     }
 }
 
-fn entry<'g>(s: &Spatial<'g>, e: usize) -> Expr<'g> {
+fn spatial_entry<'g>(s: &Spatial<'g>, e: usize) -> Expr<'g> {
     if e < 3 { s.linear[e] } else { s.angular[e - 3] }
 }
 
@@ -132,30 +136,30 @@ impl<'g> Eliminated<'g> {
         inverse: Option<Expr<'g>>,
     ) -> Eliminated<'g> {
         let axis = Axis::from_subspace(&dof.subspace);
-        let mut column = inertia.times(&dof.subspace);
+        let mut column = inertia.multiply_by_motion(&dof.subspace);
         let inverse = inverse.unwrap_or_else(|| r.num(1.0) / dof.subspace.dot(&column));
         if let Some(axis) = axis {
             column = with_entry(column, axis.entry, r.zero());
         }
         let effort = (r - dof.subspace.dot(wrench)) * inverse;
-        Eliminated { axis, column, scaled: column.times(inverse), effort, r }
+        Eliminated { axis, column, scaled: column.times_scalar(inverse), effort, r }
     }
 
     /// Returns the wrench that the joint transmits towards the parent.
-    fn transmit(&self, wrench: &Spatial<'g>) -> Spatial<'g> {
-        let sum = wrench.plus(&self.column.times(self.effort));
-        self.axis.map_or(sum, |axis| with_entry(sum, axis.entry, axis.signed(self.r)))
+    fn transmit_wrench(&self, wrench: &Spatial<'g>) -> Spatial<'g> {
+        let sum = wrench.plus(&self.column.times_scalar(self.effort));
+        self.axis.map_or(sum, |axis| with_entry(sum, axis.entry, axis.apply_sign(self.r)))
     }
 
     /// Returns the acceleration of the degree of freedom, and the link's motion including it.
-    fn accelerate(&self, subspace: &Spatial<'g>, motion: &Spatial<'g>) -> (Expr<'g>, Spatial<'g>) {
+    fn acceleration_of_dof(&self, subspace: &Spatial<'g>, motion: &Spatial<'g>) -> (Expr<'g>, Spatial<'g>) {
         let a = self.effort - self.scaled.dot(motion);
         match self.axis {
             Some(axis) => {
-                let before = axis.signed(entry(motion, axis.entry));
-                (a - before, with_entry(*motion, axis.entry, axis.signed(a)))
+                let before = axis.apply_sign(spatial_entry(motion, axis.entry));
+                (a - before, with_entry(*motion, axis.entry, axis.apply_sign(a)))
             }
-            None => (a, motion.plus(&subspace.times(a))),
+            None => (a, motion.plus(&subspace.times_scalar(a))),
         }
     }
 }
@@ -170,11 +174,15 @@ struct Articulated<'g> {
 }
 
 impl<'g> Articulated<'g> {
-    fn rigid(inertia: &Inertia<'g>) -> Articulated<'g> {
-        Articulated { m: Sym3::scalar(inertia.mass), h: Mat3::skew(inertia.moment), i: inertia.tensor }
+    fn from_rigid_inertia(inertia: &Inertia<'g>) -> Articulated<'g> {
+        Articulated {
+            m: Sym3::multiple_of_identity(inertia.mass),
+            h: Mat3::skew(inertia.moment),
+            i: inertia.tensor,
+        }
     }
 
-    fn times(&self, s: &Spatial<'g>) -> Spatial<'g> {
+    fn multiply_by_motion(&self, s: &Spatial<'g>) -> Spatial<'g> {
         Spatial {
             linear: self.m * s.linear + self.h.transpose() * s.angular,
             angular: self.h * s.linear + self.i * s.angular,
@@ -184,13 +192,13 @@ impl<'g> Articulated<'g> {
     /// Returns `1 / D` of the second degree of freedom after elimination of the first, or `None` if the
     /// inertia does not couple the two, see [`second_inverse`].
     fn second_inverse(&self, first: &Spatial<'g>, second: &Spatial<'g>) -> Option<Expr<'g>> {
-        let column = self.times(first);
-        second_inverse(first.dot(&column), second.dot(&column), second.dot(&self.times(second)))
+        let column = self.multiply_by_motion(first);
+        second_inverse(first.dot(&column), second.dot(&column), second.dot(&self.multiply_by_motion(second)))
     }
 
     /// Subtracts `U Uᵀ / D`. If the joint leaves a coordinate axis free, the row and column of that axis are
     /// then exactly zero.
-    fn eliminate(&mut self, handle: &Eliminated<'g>) {
+    fn eliminate_dof(&mut self, handle: &Eliminated<'g>) {
         let (f, n) = (handle.column.linear, handle.column.angular);
         let outer_product = |a: Vec3<'g>, b: Vec3<'g>| Mat3::from_fn(|i, j| a[i] * b[j]);
         self.m = self.m - Sym3::from_upper(&outer_product(handle.scaled.linear, f));
@@ -202,11 +210,11 @@ impl<'g> Articulated<'g> {
                 for row in &mut self.h.0 {
                     row[k] = zero;
                 }
-                clear(&mut self.m, k);
+                clear_row_and_column(&mut self.m, k);
             }
             Some(Axis { entry, .. }) => {
                 self.h.0[entry - 3] = [zero; 3];
-                clear(&mut self.i, entry - 3);
+                clear_row_and_column(&mut self.i, entry - 3);
             }
             None => {}
         }
@@ -220,7 +228,7 @@ impl<'g> Articulated<'g> {
         let h = joint.rotation.mat_to_parent(self.h);
         let i = joint.rotation.sym_to_parent(self.i);
         let p = Mat3::skew(joint.translation);
-        let moved = h + p * m.full();
+        let moved = h + p * m.full_matrix();
         let entry_of_product = |h: &Mat3<'g>, row: usize, column: usize| h.row(row).dot(p.column(column));
         let both = h + moved;
         let shift = Sym3 {
@@ -238,7 +246,7 @@ impl<'g> Articulated<'g> {
     }
 }
 
-fn clear(s: &mut Sym3<'_>, k: usize) {
+fn clear_row_and_column(s: &mut Sym3<'_>, k: usize) {
     let zero = s.diagonal[k].zero();
     s.diagonal[k] = zero;
     // The off-diagonal entries are xy, xz, yz. Those of axis k are the two whose indices include k.

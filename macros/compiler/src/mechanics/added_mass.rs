@@ -15,7 +15,7 @@ use crate::mechanism::Model;
 
 /// Returns the effective mass matrix: `mass` minus the coefficients of the forces that are linear in
 /// accelerations.
-pub fn effective<'g>(model: &Model<'g>, mass: &Matrix<'g>) -> Matrix<'g> {
+pub fn effective_mass_matrix<'g>(model: &Model<'g>, mass: &Matrix<'g>) -> Matrix<'g> {
     let mut m = mass.clone();
     for force in &model.acceleration_forces {
         for (i, d) in known_gradient(model, force.rate) {

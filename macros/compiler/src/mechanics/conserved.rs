@@ -3,10 +3,10 @@
 //! states that satisfy the constraints, with random parameters. A quantity that is conserved for special
 //! parameters only is not found.
 
-use super::{added_mass, constraints, crba, energy, lagrange, momentum, rnea, velocities};
+use super::{added_mass, constraints, crba, energy, lagrange, momentum, rnea, velocity_symbols};
 use crate::diag::Diagnostics;
 use crate::expr::eval::Tape;
-use crate::expr::sample::sample;
+use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Symbol, Vec3};
 use crate::kinematics::redundancy::Basis;
 use crate::kinematics::{Joint, Rows, mobility, random_configuration};
@@ -35,19 +35,19 @@ pub struct Conserved<'g> {
 
 /// Returns independent conserved quantities, the simplest first. The list is empty for mechanisms with
 /// sliding or unilateral contacts, and if no configuration that satisfies the constraints is found.
-pub fn conserved<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'g>> {
+pub fn conserved_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'g>> {
     let rubs = model.constraints.iter().any(|c| !c.friction.is_empty()) || !model.contacts.is_empty();
     if model.nv() == 0 || rubs {
         return Vec::new();
     }
-    let candidates = candidates(model, joints);
+    let candidates = candidate_quantities(model, joints);
     let values: Vec<Expr<'g>> = candidates.iter().map(|c| c.value).collect();
     let (tape, motion) = (Tape::new(&values), Motion::new(model, joints));
     let mut kept = vec![true; values.len()];
     let mut gradients: Vec<Vec<Vec<f64>>> = Vec::new();
-    let places = places(model);
+    let places = consistent_configurations(model);
     for (k, (q, seed)) in places.iter().enumerate() {
-        let state = State::random(model, &motion, q, *seed, k as u64);
+        let state = State::random_state(model, &motion, q, *seed, k as u64);
         let Some(rates) = state.and_then(|state| {
             gradients.push(state.gradients(&tape));
             state.are_constant(&motion, &tape)
@@ -73,8 +73,8 @@ pub fn conserved<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'
 }
 
 /// Returns all quantities of a mechanism that may be conserved, such as the momenta of its coordinates.
-fn candidates<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'g>> {
-    let v = velocities(model);
+fn candidate_quantities<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'g>> {
+    let v = velocity_symbols(model);
     let p = momentum::generalized_momentum(model, joints, &v);
     let kinetic = energy::kinetic_energy(model, joints, &v);
     let potential = energy::potential_energy(model, joints);
@@ -100,7 +100,7 @@ fn candidates<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Conserved<'g>>
 }
 
 /// Returns configurations that satisfy the constraints, each with the seed of its parameters.
-fn places(model: &Model<'_>) -> Vec<(Vec<f64>, u64)> {
+fn consistent_configurations(model: &Model<'_>) -> Vec<(Vec<f64>, u64)> {
     if model.constraints.is_empty() {
         return (0..STATES).map(|seed| (random_configuration(model, seed), seed)).collect();
     }
@@ -120,11 +120,11 @@ struct Motion<'g> {
 
 impl<'g> Motion<'g> {
     fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> Motion<'g> {
-        let mut all = added_mass::effective(model, &crba::mass_matrix(model, joints)).concat();
-        all.extend(rnea::inverse_dynamics(model, joints, &velocities(model), None));
+        let mut all = added_mass::effective_mass_matrix(model, &crba::mass_matrix(model, joints)).concat();
+        all.extend(rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None));
         all.extend(constraints::jacobian(model).concat());
-        all.extend(constraints::rates(model));
-        all.extend(constraints::biases(model));
+        all.extend(constraints::constraint_velocities(model));
+        all.extend(constraints::constraint_biases(model));
         let (equations, rates) = (Tape::new(&all), Tape::new(&lagrange::configuration_rates(model)));
         Motion { nv: model.nv(), nc: model.constraints.len(), equations, rates }
     }
@@ -142,12 +142,13 @@ struct State {
 impl State {
     /// Returns a state with the configuration `q` and a random velocity that satisfies the constraints, or
     /// `None` if the velocity is not finite. `at` is the seed of the velocity, `seed` that of the parameters.
-    fn random(model: &Model<'_>, motion: &Motion<'_>, q: &[f64], seed: u64, at: u64) -> Option<State> {
-        let random_velocity = |k: usize| 4.0 * sample(Quantity::Velocity(k).symbol(), 100 + at) - 4.0;
-        let t = sample(Quantity::Time.symbol(), seed);
+    fn random_state(model: &Model<'_>, motion: &Motion<'_>, q: &[f64], seed: u64, at: u64) -> Option<State> {
+        let random_velocity =
+            |k: usize| 4.0 * sample_of_symbol(Quantity::Velocity(k).symbol(), 100 + at) - 4.0;
+        let t = sample_of_symbol(Quantity::Time.symbol(), seed);
         let mut state = State { t, q: q.to_vec(), v: (0..model.nv()).map(random_velocity).collect(), seed };
         if motion.nc > 0 {
-            let values = motion.equations.values(&|s| state.value(s));
+            let values = motion.equations.evaluate_at(&|s| state.value_of_symbol(s));
             let (nv, nc) = (motion.nv, motion.nc);
             let jacobian: Vec<&[f64]> = values[nv * nv + nv..][..nc * nv].chunks(nv).collect();
             let gap = &values[nv * nv + nv + nc * nv..][..nc];
@@ -155,7 +156,7 @@ impl State {
             let product_of_jacobian_rows =
                 |i: usize, j: usize| jacobian[i].iter().zip(jacobian[j]).map(|(a, b)| a * b).sum();
             let normal = (0..nc).map(|i| (0..nc).map(|j| product_of_jacobian_rows(i, j)).collect()).collect();
-            let y = solved(normal, gap.to_vec());
+            let y = solve_linear_system(normal, gap.to_vec());
             for (row, y) in jacobian.iter().zip(y) {
                 state.v.iter_mut().zip(*row).for_each(|(v, entry)| *v -= entry * y);
             }
@@ -163,24 +164,24 @@ impl State {
         state.q.iter().chain(&state.v).all(|x| x.is_finite()).then_some(state)
     }
 
-    fn value(&self, s: Symbol) -> f64 {
+    fn value_of_symbol(&self, s: Symbol) -> f64 {
         match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => self.q[k],
             Quantity::Velocity(k) => self.v[k],
             Quantity::Time => self.t,
             Quantity::Input(_) => 0.0,
-            _ => sample(s, self.seed),
+            _ => sample_of_symbol(s, self.seed),
         }
     }
 
-    fn values(&self, tape: &Tape<'_>) -> Vec<f64> {
-        tape.values(&|s| self.value(s))
+    fn tape_values(&self, tape: &Tape<'_>) -> Vec<f64> {
+        tape.evaluate_at(&|s| self.value_of_symbol(s))
     }
 
     /// Returns the time derivatives of the configuration, and the accelerations, without inputs.
-    fn motion(&self, motion: &Motion<'_>) -> (Vec<f64>, Vec<f64>) {
+    fn state_derivatives(&self, motion: &Motion<'_>) -> (Vec<f64>, Vec<f64>) {
         let (nv, nc) = (motion.nv, motion.nc);
-        let values = self.values(&motion.equations);
+        let values = self.tape_values(&motion.equations);
         let (mass, rest) = values.split_at(nv * nv);
         let (bias, rest) = rest.split_at(nv);
         let (jacobian, rest) = rest.split_at(nc * nv);
@@ -192,13 +193,13 @@ impl State {
         };
         let system = (0..nv + nc).map(|i| (0..nv + nc).map(|j| entry_of_system(i, j)).collect()).collect();
         let right = bias.iter().chain(&rest[nc..]).map(|x| -x).collect();
-        let mut a = solved(system, right);
+        let mut a = solve_linear_system(system, right);
         a.truncate(nv);
-        (self.values(&motion.rates), a)
+        (self.tape_values(&motion.rates), a)
     }
 
     /// Returns the state displaced by `h` times constant time derivatives `t`, `q` and `v`.
-    fn displaced(&self, h: f64, t: f64, q: &[f64], v: &[f64]) -> State {
+    fn displaced_state(&self, h: f64, t: f64, q: &[f64], v: &[f64]) -> State {
         let displaced_by_rate =
             |x: &[f64], rate: &[f64]| x.iter().zip(rate).map(|(x, rate)| x + h * rate).collect();
         State {
@@ -212,7 +213,7 @@ impl State {
     /// Returns the derivatives of the values along a direction `(t, q, v)` of time, configuration and
     /// velocity, by central differences of fourth order.
     fn directional_derivatives(&self, tape: &Tape<'_>, t: f64, q: &[f64], v: &[f64]) -> Vec<f64> {
-        let values_at = |h: f64| self.displaced(h * STEP, t, q, v).values(tape);
+        let values_at = |h: f64| self.displaced_state(h * STEP, t, q, v).tape_values(tape);
         let all = [values_at(-2.0), values_at(-1.0), values_at(1.0), values_at(2.0)];
         let central_difference =
             |k: usize| (8.0 * (all[2][k] - all[1][k]) - (all[3][k] - all[0][k])) / (12.0 * STEP);
@@ -221,7 +222,7 @@ impl State {
 
     /// Returns for each value whether it is constant along the motion, or `None` if the motion is not finite.
     fn are_constant(&self, motion: &Motion<'_>, tape: &Tape<'_>) -> Option<Vec<bool>> {
-        let (q, v) = self.motion(motion);
+        let (q, v) = self.state_derivatives(motion);
         let (no_q, no_v) = (vec![0.0; q.len()], vec![0.0; v.len()]);
         let whole = self.directional_derivatives(tape, 1.0, &q, &v);
         let parts = [
@@ -229,7 +230,7 @@ impl State {
             self.directional_derivatives(tape, 0.0, &q, &no_v),
             self.directional_derivatives(tape, 0.0, &no_q, &v),
         ];
-        let now = self.values(tape);
+        let now = self.tape_values(tape);
         let is_constant_entry = |k: usize| {
             let size: f64 = parts.iter().map(|part| part[k].abs()).sum();
             whole[k].abs() <= LEFT * size + ROUNDING * now[k].abs()
@@ -254,7 +255,7 @@ impl State {
 
 /// Solves `m x = r` by elimination with complete pivoting. Unknowns that the rows leave undetermined are
 /// zero.
-fn solved(mut m: Vec<Vec<f64>>, mut r: Vec<f64>) -> Vec<f64> {
+fn solve_linear_system(mut m: Vec<Vec<f64>>, mut r: Vec<f64>) -> Vec<f64> {
     /// Pivots below this fraction of the first pivot count as zero.
     const PIVOT_TOLERANCE: f64 = 1e-11;
     let n = r.len();

@@ -41,26 +41,26 @@ pub fn residuals<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
 }
 
 /// Returns the velocities `J v + …` of all constraints.
-pub fn rates<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+pub fn constraint_velocities<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     model.constraints.iter().map(|c| c.rate).collect()
 }
 
 /// Returns `J̇ v + …`: the time derivatives of the constraint velocities at zero accelerations.
-pub fn biases<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+pub fn constraint_biases<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     model.constraints.iter().map(|c| c.bias).collect()
 }
 
 /// Returns accelerations and multipliers for forces `τ − h` and biases `J̇ v`, then measures of their
 /// reliability: the pivot of each constraint, and the value of that pivot before the elimination of other
 /// constraints reduced it.
-pub fn solve<'g>(
+pub fn solve_constrained<'g>(
     mass: &Matrix<'g>,
     jacobian: &Matrix<'g>,
     force: Vec<Expr<'g>>,
     bias: Vec<Expr<'g>>,
 ) -> Vec<Expr<'g>> {
     let nv = mass.len();
-    let k = system(mass, jacobian);
+    let k = constrained_system_matrix(mass, jacobian);
     let (order, _) = elimination_order(&k, nv, &[]);
     solve_in(k, right_side(force, bias), &order, nv).with_reliability(nv)
 }
@@ -75,7 +75,7 @@ pub(super) fn right_side<'g>(mut force: Vec<Expr<'g>>, bias: Vec<Expr<'g>>) -> V
 /// Returns the terms from which multipliers of minimum norm are computed for dependent constraints: the
 /// unconstrained accelerations `M⁻¹ f`, the residuals `−b − J M⁻¹ f` of the constraints, the matrix
 /// `J M⁻¹ Jᵀ`, and the accelerations `M⁻¹ Jᵀ` per unit of each multiplier.
-pub fn responses<'g>(
+pub fn minimum_norm_terms<'g>(
     mass: &Matrix<'g>,
     jacobian: &Matrix<'g>,
     force: Vec<Expr<'g>>,
@@ -84,9 +84,9 @@ pub fn responses<'g>(
 ) -> Vec<Expr<'g>> {
     let dot_product =
         |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).map(|(a, b)| *a * *b).reduce(|a, b| a + b);
-    let mut out = ldl::solve(mass.clone(), force, joints);
+    let mut out = ldl::solve_symmetric(mass.clone(), force, joints);
     let given: Matrix<'g> =
-        jacobian.iter().map(|row| ldl::solve(mass.clone(), row.clone(), joints)).collect();
+        jacobian.iter().map(|row| ldl::solve_symmetric(mass.clone(), row.clone(), joints)).collect();
     let lacking =
         jacobian.iter().zip(bias).map(|(row, b)| dot_product(row, &out).map_or(-*b, |sum| -*b - sum));
     let lacking: Vec<Expr<'g>> = lacking.collect();
@@ -104,10 +104,10 @@ pub fn responses<'g>(
 
 /// Returns the generalized forces `Jᵀ λ` of the constraints, including the friction that is proportional to
 /// their normal forces.
-pub fn forces<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Vec<Expr<'g>> {
+pub fn constraint_forces<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let mut forces = vec![model.graph.zero(); model.nv()];
     for ((row, drag), l) in jacobian(model).iter().zip(friction::jacobian_of_friction(model)).zip(lambda) {
-        let size = l.call(Function::Abs);
+        let size = l.apply_function(Function::Abs);
         for ((force, entry), drag) in forces.iter_mut().zip(row).zip(drag) {
             *force += *entry * *l + drag * size;
         }
@@ -116,17 +116,22 @@ pub fn forces<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Vec<Expr<'g>> {
 }
 
 /// Returns the multipliers as arguments of the generated function.
-pub fn multipliers<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+pub fn multiplier_symbols<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.constraints.len()).map(|k| Quantity::Given(Supplied::Multiplier, k).expr(model.graph)).collect()
 }
 
 /// Returns the approximate number of products of the elimination.
-pub fn products(model: &Model<'_>, mass: &Matrix<'_>) -> usize {
-    elimination_order(&system(mass, &jacobian(model)), mass.len(), &friction::slipping(model)).1
+pub fn elimination_product_count(model: &Model<'_>, mass: &Matrix<'_>) -> usize {
+    elimination_order(
+        &constrained_system_matrix(mass, &jacobian(model)),
+        mass.len(),
+        &friction::sliding_contact_constraints(model),
+    )
+    .1
 }
 
 /// Returns the matrix of the system of accelerations and multipliers.
-pub fn system<'g>(mass: &Matrix<'g>, jacobian: &Matrix<'g>) -> Matrix<'g> {
+pub fn constrained_system_matrix<'g>(mass: &Matrix<'g>, jacobian: &Matrix<'g>) -> Matrix<'g> {
     let mut k: Matrix<'g> = mass.clone();
     for (row, c) in k.iter_mut().zip(0..) {
         row.extend(jacobian.iter().map(|j| j[c]));
@@ -140,7 +145,7 @@ pub fn system<'g>(mass: &Matrix<'g>, jacobian: &Matrix<'g>) -> Matrix<'g> {
 
 /// Solves for accelerations and multipliers by independent velocities (Kane and Levinson, *Dynamics: Theory
 /// and Applications*, 1985; the projection `Nᵀ M N` of Gibbs, Appell and Kane), with the same results as
-/// [`solve`]. The dependent velocities are eliminated with the given pivots, `a = N s + a₀`, then
+/// [`solve_constrained`]. The dependent velocities are eliminated with the given pivots, `a = N s + a₀`, then
 /// `Nᵀ M N s = Nᵀ (τ − h − M a₀)`. The multipliers follow from the residuals of the dependent equations.
 pub fn solve_by_speeds<'g>(
     model: &Model<'g>,
@@ -156,7 +161,7 @@ pub fn solve_by_speeds<'g>(
     // Columns of N, with a₀ as the last.
     let mut right: Matrix<'g> = rows.iter().map(|row| free.iter().map(|k| -row[*k]).collect()).collect();
     right.iter_mut().zip(bias).for_each(|(row, b)| row.push(-b));
-    let (solved, sizes) = eliminate(rows.clone(), right, &pivots);
+    let (solved, sizes) = eliminate_rows(rows.clone(), right, &pivots);
     let column = |c: usize| -> Vec<Expr<'g>> {
         let independent_velocity = |k: usize| if free.get(c) == Some(&k) { g.one() } else { g.zero() };
         let component_of_velocity = |k: usize| {
@@ -183,7 +188,7 @@ pub fn solve_by_speeds<'g>(
     let left: Vec<Expr<'g>> = multiply_by_mass(&a).iter().zip(force).map(|(m, f)| *m - *f).collect();
     let transposed: Matrix<'g> = (0..nv).map(|k| rows.iter().map(|row| row[k]).collect()).collect();
     let backwards: Vec<(usize, usize)> = pivots.iter().map(|(row, column)| (*column, *row)).collect();
-    let (lambda, _) = eliminate(transposed, left.into_iter().map(|l| vec![l]).collect(), &backwards);
+    let (lambda, _) = eliminate_rows(transposed, left.into_iter().map(|l| vec![l]).collect(), &backwards);
     let mut out = a;
     out.extend((0..rows.len()).map(|c| {
         let at = backwards.iter().find(|(_, row)| *row == c);
@@ -196,7 +201,7 @@ pub fn solve_by_speeds<'g>(
 
 /// Eliminates the rows by the Gauss–Jordan method with the given pivots (row, column), and applies the steps
 /// to the right sides. Returns the solved right sides, and the pivot of each row.
-fn eliminate<'g>(
+fn eliminate_rows<'g>(
     mut rows: Matrix<'g>,
     mut right: Matrix<'g>,
     pivots: &[(usize, usize)],
@@ -262,8 +267,8 @@ pub fn elimination_order(k: &Matrix<'_>, nv: usize, last: &[usize]) -> (Vec<usiz
     (order, products)
 }
 
-/// Returns the forces and biases of the equations of motion as the symbols that [`solve`] takes as arguments
-/// at run time.
+/// Returns the forces and biases of the equations of motion as the symbols that [`solve_constrained`] takes
+/// as arguments at run time.
 pub fn argument_symbols<'g>(model: &Model<'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     let (nv, nc) = (model.nv(), model.constraints.len());
     let argument_expressions =
@@ -285,13 +290,16 @@ pub struct FirstOrder<'g> {
 pub fn first_order<'g>(model: &Model<'g>, a: &[Expr<'g>]) -> FirstOrder<'g> {
     let rows = jacobian(model);
     let zero = model.graph.zero();
-    let forces = forces(model, &multipliers(model));
+    let forces = constraint_forces(model, &multiplier_symbols(model));
     let along_accelerations = |row: &Vec<Expr<'g>>| row.iter().zip(a).fold(zero, |sum, (j, a)| sum + *j * *a);
-    let accelerations: Vec<Expr<'g>> =
-        rows.iter().zip(biases(model)).map(|(row, bias)| along_accelerations(row) + bias).collect();
+    let accelerations: Vec<Expr<'g>> = rows
+        .iter()
+        .zip(constraint_biases(model))
+        .map(|(row, bias)| along_accelerations(row) + bias)
+        .collect();
     FirstOrder {
-        forces: symbolic::derivatives(model, &forces),
-        accelerations: symbolic::derivatives(model, &accelerations),
-        rates: symbolic::derivatives(model, &rates(model)).by_q,
+        forces: symbolic::force_derivatives(model, &forces),
+        accelerations: symbolic::force_derivatives(model, &accelerations),
+        rates: symbolic::force_derivatives(model, &constraint_velocities(model)).by_q,
     }
 }

@@ -22,9 +22,9 @@ pub fn mass_matrix_in_lanes<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: u
     let dofs =
         joints.iter().enumerate().flat_map(|(k, joint)| (0..joint.dofs.len()).map(move |row| (k, row)));
     let matrix = vec![vec![model.graph.zero(); model.nv()]; model.nv()];
-    let (composites, shared) = (composites(model, joints), SharedMotions::new(model, joints));
+    let (composites, shared) = (composite_inertias(model, joints), SharedMotions::new(model, joints));
     let mut columns = Columns { joints, dofs: dofs.collect(), composites, shared, matrix };
-    paths.propagate(&mut columns);
+    paths.propagate_to_root(&mut columns);
     let Columns { composites, shared, matrix: mut m, .. } = columns;
     shared.add_masses(&composites, &mut m);
     inertances::add_to_mass_matrix(model, &mut m);
@@ -58,7 +58,7 @@ impl<'g> Visitor<'g> for Columns<'_, 'g> {
     fn start(&mut self, dof: usize) -> Spatial<'g> {
         let ((link, row), joints) = (self.dofs[dof], self.joints);
         let own = &joints[link].dofs[row];
-        if self.shared.has(link) {
+        if self.shared.has_link(link) {
             // A link in `SharedMotions` is placed on the ground, so no ancestor has entries with it.
             // `SharedMotions` adds its own entries.
             return own.subspace;
@@ -73,8 +73,8 @@ impl<'g> Visitor<'g> for Columns<'_, 'g> {
     fn visit(&mut self, group: &LaneGroup<Spatial<'g>>) {
         let joints = self.joints;
         for other in &joints[group.link].dofs {
-            let subspace = map_spatial(&other.subspace, |c| group.spread(c));
-            for (dof, entry) in group.parts(subspace.dot(&group.item)) {
+            let subspace = map_spatial(&other.subspace, |c| group.repeat_for_members(c));
+            for (dof, entry) in group.lanes_of_members(subspace.dot(&group.item)) {
                 let (link, row) = self.dofs[dof];
                 self.add(&joints[link].dofs[row], other, entry);
             }
@@ -83,11 +83,11 @@ impl<'g> Visitor<'g> for Columns<'_, 'g> {
 }
 
 /// Returns the composite mass properties of each link: those of the link with all its descendants.
-pub fn composites<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Inertia<'g>> {
+pub fn composite_inertias<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Inertia<'g>> {
     let mut sums: Vec<Inertia<'g>> = model.links.iter().map(|l| l.inertia).collect();
     for (k, joint) in joints.iter().enumerate().rev() {
         if let Some(parent) = joint.parent {
-            sums[parent.0] = joint.composite(&sums[parent.0], &sums[k]);
+            sums[parent.0] = joint.composite_inertia(&sums[parent.0], &sums[k]);
         }
     }
     sums

@@ -5,7 +5,7 @@
 //! algorithms*, 2018, § IV).
 
 use super::crba::Matrix;
-use super::{accelerations, rnea, velocities};
+use super::{acceleration_symbols, rnea, velocity_symbols};
 use crate::expr::Expr;
 use crate::expr::replace::replace_all;
 use crate::kinematics::Joint;
@@ -22,7 +22,7 @@ pub mod symbolic;
 mod trunk;
 
 pub use factor::Factor;
-pub use trunk::{Inverse, Trunk, divided};
+pub use trunk::{Inverse, Trunk, divided_inverse_terms};
 
 /// Derivatives of forces: a row for each entry of `τ`, a column for each velocity.
 pub struct ForceDerivatives<'g> {
@@ -62,7 +62,7 @@ pub fn inverse_dynamics<'g>(
     a: &[Expr<'g>],
     method: DerivationMethod,
 ) -> ForceDerivatives<'g> {
-    let v = velocities(model);
+    let v = velocity_symbols(model);
     if let DerivationMethod::Recursion(most) = method
         && is_analytic(model)
     {
@@ -70,8 +70,9 @@ pub fn inverse_dynamics<'g>(
         symbolic::add_passive_forces(model, &mut found);
         return found;
     }
-    let symbols = accelerations(model);
-    let found = symbolic::derivatives(model, &rnea::inverse_dynamics(model, joints, &v, Some(&symbols)));
+    let symbols = acceleration_symbols(model);
+    let found =
+        symbolic::force_derivatives(model, &rnea::inverse_dynamics(model, joints, &v, Some(&symbols)));
     if a == symbols {
         return found;
     }
@@ -96,16 +97,16 @@ pub fn forward_dynamics<'g>(
     method: DerivationMethod,
 ) -> Linearized<'g> {
     let factor = Factor::new(mass, joints);
-    let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
+    let bias = rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None);
     let r = tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect();
-    let accelerations = factor.solve(r);
+    let accelerations = factor.solve_factored(r);
     let forces = inverse_dynamics(model, joints, &accelerations, method);
     Linearized { forces, by_u: Vec::new(), inverse: factor.inverse(), accelerations }
 }
 
 /// Linearises the equations of motion about the motion under the inputs, whose forces `tau` may depend on the
 /// state.
-pub fn linearized<'g>(
+pub fn linearize_equations<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     mass: &Matrix<'g>,
@@ -113,15 +114,15 @@ pub fn linearized<'g>(
     method: DerivationMethod,
 ) -> Linearized<'g> {
     let mut found = forward_dynamics(model, joints, mass, tau, method);
-    let by_state = symbolic::derivatives(model, tau);
-    subtract(&mut found.forces.by_q, &by_state.by_q);
-    subtract(&mut found.forces.by_v, &by_state.by_v);
+    let by_state = symbolic::force_derivatives(model, tau);
+    subtract_matrix(&mut found.forces.by_q, &by_state.by_q);
+    subtract_matrix(&mut found.forces.by_v, &by_state.by_v);
     found.by_u = symbolic::by_input(model, tau);
     found
 }
 
 /// Subtracts `other` from `m`, entry by entry.
-pub fn subtract<'g>(m: &mut Matrix<'g>, other: &Matrix<'g>) {
+pub fn subtract_matrix<'g>(m: &mut Matrix<'g>, other: &Matrix<'g>) {
     for (entry, other) in m.iter_mut().flatten().zip(other.iter().flatten()) {
         *entry -= *other;
     }

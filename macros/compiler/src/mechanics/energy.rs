@@ -1,9 +1,9 @@
 //! Kinetic and potential energy, total mass and centre of mass.
 
-use super::crba::{composites, momentum};
+use super::crba::{composite_inertias, momentum};
 use super::inertances;
 use crate::expr::{Expr, Vec3};
-use crate::kinematics::{Joint, position, twists};
+use crate::kinematics::{Joint, coordinate_position, twists};
 use crate::mechanism::Model;
 
 /// Returns the kinetic energy: half of twist times momentum, summed over the links, plus that of inerters.
@@ -20,9 +20,9 @@ pub fn kinetic_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>
 /// Returns the total mass of the moving bodies, and their first moment about the ground's origin in ground
 /// axes.
 pub fn mass_and_moment<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> (Expr<'g>, Vec3<'g>) {
-    let composites = composites(model, joints);
+    let composites = composite_inertias(model, joints);
     let roots = joints.iter().zip(&composites).filter(|(joint, _)| joint.parent.is_none());
-    let sum = roots.fold(model.still, |sum, (joint, c)| joint.composite(&sum, c));
+    let sum = roots.fold(model.still, |sum, (joint, c)| joint.composite_inertia(&sum, c));
     (sum.mass, sum.moment)
 }
 
@@ -41,7 +41,7 @@ pub fn potential_energy<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g>
     let (_, moment) = mass_and_moment(model, joints);
     let mut energy = -model.gravity.dot(moment);
     for spring in &model.springs {
-        let stretch = position(model, &spring.on) - spring.free;
+        let stretch = coordinate_position(model, &spring.on) - spring.free;
         energy += spring.stiffness * 0.5 * stretch.square();
     }
     model.potentials.iter().fold(energy, |sum, e| sum + *e)

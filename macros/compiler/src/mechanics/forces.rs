@@ -1,9 +1,9 @@
 //! Generalized forces of the inputs by virtual work, `τ = Σ Sᵀ W`, summed over the link on which the wrench
 //! acts and all ancestors of this link.
 
-use crate::expr::replace::replace;
+use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr, Vec3};
-use crate::kinematics::{Joint, Spatial, change_axes, known_gradient};
+use crate::kinematics::{Joint, Spatial, change_axes, known_gradient, symbols_in};
 use crate::mechanism::{Direction, Input, LinkId, Model, Quantity};
 
 /// Returns the contribution of the inputs `u` to `τ`.
@@ -32,11 +32,11 @@ pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Ex
             }
         }
     }
-    for load in &model.loads {
+    let is_input = |s| matches!(Quantity::from_symbol(s), Quantity::Input(_));
+    // The difference below may be a nonzero expression even for a force that contains no input.
+    for load in model.loads.iter().filter(|load| symbols_in(&[load.force]).into_iter().any(is_input)) {
         // The force at zero inputs belongs to the bias.
-        let alone = replace(load.force, &|s| {
-            matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero())
-        });
+        let alone = substitute_symbols(load.force, &|s| is_input(s).then(|| g.zero()));
         let by_inputs = load.force - alone;
         if !by_inputs.is_zero() {
             for (k, d) in known_gradient(model, load.rate) {

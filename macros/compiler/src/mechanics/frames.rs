@@ -19,17 +19,17 @@ pub struct Placement<'g> {
 
 impl<'g> Placement<'g> {
     /// Returns twelve numbers: the rotation by rows, then the position.
-    pub fn flat(&self) -> Vec<Expr<'g>> {
+    pub fn rotation_and_position(&self) -> Vec<Expr<'g>> {
         self.rotation.0.iter().flatten().chain(&self.position.0).copied().collect()
     }
 
     /// Returns the placement of the ground.
-    pub fn ground(graph: &'g Graph) -> Placement<'g> {
+    pub fn ground_placement(graph: &'g Graph) -> Placement<'g> {
         Placement { rotation: Mat3::identity(graph), position: Vec3::zero(graph) }
     }
 
     /// Returns the placement of a frame that has the pose `pose` in this frame.
-    pub fn then(&self, pose: &Pose<'g>) -> Placement<'g> {
+    pub fn compose_with(&self, pose: &Pose<'g>) -> Placement<'g> {
         // R_parent R: rows are rotated, so that the steps of the child's rotation apply to them one by one.
         let rows: [Vec3<'g>; 3] = std::array::from_fn(|i| pose.rotation.to_child(self.rotation.row(i)));
         Placement {
@@ -57,25 +57,30 @@ fn given_spatial<'g>(model: &Model<'g>, first: usize) -> Spatial<'g> {
 }
 
 /// Returns the six components of a spatial vector.
-pub fn flat<'g>(s: &Spatial<'g>) -> Vec<Expr<'g>> {
+pub fn spatial_components<'g>(s: &Spatial<'g>) -> Vec<Expr<'g>> {
     s.linear.0.iter().chain(&s.angular.0).copied().collect()
 }
 
 /// Returns the placement of a link from its parent's (12 arguments, none for a root).
 pub fn link_placement<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Placement<'g> {
-    let parent = if joint.parent.is_some() { given_placement(model) } else { Placement::ground(model.graph) };
-    parent.then(&Pose { rotation: joint.rotation.clone(), translation: joint.translation })
+    let parent = if joint.parent.is_some() {
+        given_placement(model)
+    } else {
+        Placement::ground_placement(model.graph)
+    };
+    parent.compose_with(&Pose { rotation: joint.rotation.clone(), translation: joint.translation })
 }
 
 /// Returns the placement of a named frame from its link's (12 arguments, none if it is fixed to the ground).
 pub fn frame_placement<'g>(model: &Model<'g>, frame: &NamedFrame<'g>) -> Placement<'g> {
-    let link = if frame.link.is_some() { given_placement(model) } else { Placement::ground(model.graph) };
-    link.then(&frame.pose)
+    let link =
+        if frame.link.is_some() { given_placement(model) } else { Placement::ground_placement(model.graph) };
+    link.compose_with(&frame.pose)
 }
 
 /// Returns the twist of a link from its parent's (6 arguments, none for a root).
 pub fn link_twist<'g>(model: &Model<'g>, joint: &Joint<'g>, v: &[Expr<'g>]) -> Spatial<'g> {
-    let own = joint.twist(model, v);
+    let own = joint.total_relative_twist(model, v);
     match joint.parent {
         None => own,
         Some(_) => joint.twist_to_child(&given_spatial(model, 0)).plus(&own),
@@ -91,7 +96,7 @@ pub fn link_acceleration<'g>(
     a: &[Expr<'g>],
 ) -> Spatial<'g> {
     let (twist, parent) = (given_spatial(model, 0), given_spatial(model, 6));
-    joint.acceleration(model, joint.parent.map(|_| (&twist, &parent)), v, a)
+    joint.link_acceleration(model, joint.parent.map(|_| (&twist, &parent)), v, a)
 }
 
 /// Returns the twist of a named frame in ground axes, from its link's placement and twist (18 arguments).
@@ -129,7 +134,7 @@ pub fn jacobian_columns<'g>(model: &Model<'g>, joint: &Joint<'g>) -> Vec<Spatial
         .dofs
         .iter()
         .map(|dof| {
-            let s = dof.subspace.times(model.graph.num(dof.ratio));
+            let s = dof.subspace.times_scalar(model.graph.num(dof.ratio));
             let angular = placement.rotation * s.angular;
             Spatial { linear: placement.rotation * s.linear + angular.cross(arm), angular }
         })

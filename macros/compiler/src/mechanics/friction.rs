@@ -18,7 +18,7 @@
 //! pivots keep their sign. If a pivot changes sign, friction jams (Painlevé's paradox: Génot and Brogliato,
 //! *New results on Painlevé paradoxes*, Eur. J. Mech. A 18, 1999).
 
-use super::constraints::{elimination_order, jacobian, right_side, system};
+use super::constraints::{constrained_system_matrix, elimination_order, jacobian, right_side};
 use super::crba::Matrix;
 use super::ldl::Solution;
 use crate::expr::{Expr, Function};
@@ -26,7 +26,7 @@ use crate::kinematics::velocity_gradients;
 use crate::mechanism::{Model, Quantity, Supplied};
 
 /// Returns the constraints whose multipliers are normal forces of sliding contacts with friction.
-pub fn slipping(model: &Model<'_>) -> Vec<usize> {
+pub fn sliding_contact_constraints(model: &Model<'_>) -> Vec<usize> {
     let all = model.constraints.iter().enumerate();
     all.filter(|(_, c)| !c.friction.is_empty()).map(|(k, _)| k).collect()
 }
@@ -45,8 +45,8 @@ pub fn jacobian_of_friction<'g>(model: &Model<'g>) -> Matrix<'g> {
 }
 
 /// Returns accelerations and multipliers for forces `τ − h` and biases, then measures of their reliability,
-/// as [`super::constraints::solve`] does. The signs `σ` are arguments.
-pub fn solve<'g>(
+/// as [`super::constraints::solve_constrained`] does. The signs `σ` are arguments.
+pub fn solve_with_friction<'g>(
     model: &Model<'g>,
     mass: &Matrix<'g>,
     force: Vec<Expr<'g>>,
@@ -54,8 +54,8 @@ pub fn solve<'g>(
 ) -> Vec<Expr<'g>> {
     let nv = mass.len();
     let rows = jacobian(model);
-    let (friction, last) = (jacobian_of_friction(model), slipping(model));
-    let mut k = system(mass, &rows);
+    let (friction, last) = (jacobian_of_friction(model), sliding_contact_constraints(model));
+    let mut k = constrained_system_matrix(mass, &rows);
     for (n, row) in last.iter().enumerate() {
         let side = Quantity::Given(Supplied::Side, n).expr(model.graph);
         for (equation, drag) in k.iter_mut().zip(&friction[*row]) {
@@ -63,12 +63,17 @@ pub fn solve<'g>(
         }
     }
     let (order, _) = elimination_order(&k, nv, &last);
-    eliminate(k, right_side(force, bias), &order, nv).with_reliability(nv)
+    eliminate_in_order(k, right_side(force, bias), &order, nv).with_reliability(nv)
 }
 
 /// Solves `m x = r` by elimination in a given order. Also returns the magnitudes that the elimination of the
 /// first `first` indices has subtracted from each diagonal entry.
-fn eliminate<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], first: usize) -> Solution<'g> {
+fn eliminate_in_order<'g>(
+    mut m: Matrix<'g>,
+    mut r: Vec<Expr<'g>>,
+    order: &[usize],
+    first: usize,
+) -> Solution<'g> {
     let zero_vector = || r.first().map_or(Vec::new(), |e| vec![e.zero(); r.len()]);
     let (mut inverse, mut x, mut pivots, mut taken) =
         (zero_vector(), zero_vector(), zero_vector(), zero_vector());
@@ -80,7 +85,7 @@ fn eliminate<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], first
         for &i in left.iter().filter(|&&i| !m[i][k].is_zero()).collect::<Vec<_>>() {
             let factor = m[i][k] * inverse[k];
             if k < first {
-                taken[i] += (factor * m[k][i]).call(Function::Abs);
+                taken[i] += (factor * m[k][i]).apply_function(Function::Abs);
             }
             for &j in &columns {
                 let part = factor * m[k][j];

@@ -27,7 +27,7 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>], mass: &Matrix<'g>) ->
     let p: Vec<Expr<'g>> = (0..model.nv()).map(|k| Quantity::Momentum(k).expr(g)).collect();
     let driven = with_velocities(&momentum::generalized_momentum(model, joints, &zero), &zero);
     let relative = p.iter().zip(&driven).map(|(p, driven)| *p - *driven).collect();
-    let velocity = ldl::solve(mass.clone(), relative, joints);
+    let velocity = ldl::solve_symmetric(mass.clone(), relative, joints);
     let power = p.iter().zip(&velocity).fold(g.zero(), |sum, (p, v)| sum + *p * *v);
     let potential = energy::potential_energy(model, joints);
     let hamiltonian = if !model.time {

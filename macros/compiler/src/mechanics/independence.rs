@@ -2,7 +2,7 @@
 //! random states, and a column that is in the span of its predecessors is a combination of them.
 
 use crate::expr::eval::eval;
-use crate::expr::sample::sample;
+use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Symbol};
 use crate::kinematics::random_configuration;
 use crate::mechanism::{Model, Quantity};
@@ -23,27 +23,27 @@ pub enum Part {
 }
 
 /// Classifies columns of equal length. A column whose factors depend on the parameters counts as independent.
-pub fn independent(model: &Model<'_>, columns: &[Vec<Expr<'_>>]) -> Vec<Part> {
-    let one = parts(&values(model, columns, 0));
+pub fn classify_columns(model: &Model<'_>, columns: &[Vec<Expr<'_>>]) -> Vec<Part> {
+    let one = orthogonalise_columns(&column_values(model, columns, 0));
     if model.parameters.is_empty() {
         return one;
     }
-    let other = parts(&values(model, columns, 1));
+    let other = orthogonalise_columns(&column_values(model, columns, 1));
     let part_if_agreed = |(one, other): (Part, Part)| match (&one, &other) {
-        (Part::Combined(a), Part::Combined(b)) if !agree(a, b) => Part::Own,
+        (Part::Combined(a), Part::Combined(b)) if !has_same_combination(a, b) => Part::Own,
         _ => one,
     };
     one.into_iter().zip(other).map(part_if_agreed).collect()
 }
 
-fn agree(a: &[(usize, f64)], b: &[(usize, f64)]) -> bool {
+fn has_same_combination(a: &[(usize, f64)], b: &[(usize, f64)]) -> bool {
     let is_nearly_equal = |x: f64, y: f64| (x - y).abs() <= 1e-6 * (1.0 + x.abs());
     a.len() == b.len() && a.iter().zip(b).all(|((i, x), (j, y))| i == j && is_nearly_equal(*x, *y))
 }
 
 /// Returns the values of each column at random states, for one choice of parameters. The number of values per
 /// column exceeds the number of columns.
-fn values(model: &Model<'_>, columns: &[Vec<Expr<'_>>], seed: u64) -> Vec<Vec<f64>> {
+fn column_values(model: &Model<'_>, columns: &[Vec<Expr<'_>>], seed: u64) -> Vec<Vec<f64>> {
     let all: Vec<Expr<'_>> = columns.concat();
     let height = columns.first().map_or(1, Vec::len).max(1);
     let states = columns.len().div_ceil(height) + 4;
@@ -53,8 +53,8 @@ fn values(model: &Model<'_>, columns: &[Vec<Expr<'_>>], seed: u64) -> Vec<Vec<f6
         let q = random_configuration(model, at);
         let found = eval(&all, &|s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => q[k],
-            Quantity::Parameter(_) => sample(s, seed),
-            _ => 4.0 * (sample(s, at) - 1.0),
+            Quantity::Parameter(_) => sample_of_symbol(s, seed),
+            _ => 4.0 * (sample_of_symbol(s, at) - 1.0),
         });
         for (row, found) in rows.iter_mut().zip(found.chunks(height)) {
             row.extend_from_slice(found);
@@ -69,7 +69,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Orthogonalises the columns one after another (Gram–Schmidt, applied twice against rounding errors), and
 /// returns which columns are independent.
-fn parts(columns: &[Vec<f64>]) -> Vec<Part> {
+fn orthogonalise_columns(columns: &[Vec<f64>]) -> Vec<Part> {
     let largest = columns.iter().map(|c| dot(c, c).sqrt()).fold(0.0, f64::max);
     // Orthonormal vectors, each with its combination of independent columns.
     let mut base: Vec<(Vec<f64>, Combination)> = Vec::new();
@@ -114,7 +114,7 @@ fn parts(columns: &[Vec<f64>]) -> Vec<Part> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Part, parts};
+    use super::{Part, orthogonalise_columns};
 
     #[test]
     fn combinations_are_found() {
@@ -122,7 +122,7 @@ mod tests {
         let zero = vec![0.0; 4];
         let c: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 2.0 * a - 0.5 * b).collect();
         let d = vec![1.0, 0.0, 0.0, 0.0];
-        let found = parts(&[a, zero, b, c, d]);
+        let found = orthogonalise_columns(&[a, zero, b, c, d]);
         assert_eq!((&found[0], &found[2], &found[4]), (&Part::Own, &Part::Own, &Part::Own));
         assert_eq!(found[1], Part::Combined(Vec::new()));
         let Part::Combined(list) = &found[3] else { panic!("{found:?}") };

@@ -23,7 +23,7 @@ pub fn add_to_mass_matrix<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
 pub fn add_to_forces<'g>(model: &Model<'g>, a: Option<&[Expr<'g>]>, tau: &mut [Expr<'g>]) {
     for element in &model.inertances {
         let gradient = velocity_gradient(element.rate);
-        let mut acceleration = time_derivative(model.space(), element.rate);
+        let mut acceleration = time_derivative(model.configuration_space(), element.rate);
         for (k, d) in &gradient {
             if let Some(a) = a {
                 acceleration += *d * a[*k];
@@ -54,7 +54,7 @@ pub fn add_to_momentum<'g>(model: &Model<'g>, p: &mut [Expr<'g>]) {
 pub fn add_to_momentum_rate<'g>(model: &Model<'g>, rate: &mut [Expr<'g>]) {
     for element in &model.inertances {
         for (k, d) in velocity_gradient(element.rate) {
-            rate[k] += element.inertance * element.rate * time_derivative(model.space(), d);
+            rate[k] += element.inertance * element.rate * time_derivative(model.configuration_space(), d);
         }
     }
 }

@@ -9,10 +9,10 @@
 //! `w × P` and `w × L + v × P`.
 
 use super::crba::Matrix;
-use super::velocities;
+use super::velocity_symbols;
 use crate::expr::diff::Derivative;
 use crate::expr::{Expr, Mat3, Vec3};
-use crate::kinematics::{Joint, configuration_rate, position};
+use crate::kinematics::{Joint, configuration_rate, coordinate_position};
 use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Chart, InV, Model, Quantity};
 
@@ -30,20 +30,20 @@ pub struct Lagrange<'g> {
 
 /// Returns the time derivative of every entry of `q`, as an expression of `q` and `v`.
 pub fn configuration_rates<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
-    (0..model.nq()).map(|k| configuration_rate(model.space(), k)).collect()
+    (0..model.nq()).map(|k| configuration_rate(model.configuration_space(), k)).collect()
 }
 
 /// Derives Lagrange's equations in closed form.
 pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Lagrange<'g> {
     let g = model.graph;
-    let v = velocities(model);
+    let v = velocity_symbols(model);
     let rates = configuration_rates(model);
     let mut by_q: Vec<Derivative<'g>> = (0..model.nq())
         .map(|k| Derivative::with_respect_to(Quantity::Configuration(k).symbol(), g))
         .collect();
     let mut by_v: Vec<Derivative<'g>> =
         (0..model.nv()).map(|k| Derivative::with_respect_to(Quantity::Velocity(k).symbol(), g)).collect();
-    let (kinetic, potential) = energies(model, joints, &rates, &mut by_q);
+    let (kinetic, potential) = kinetic_and_potential_energy(model, joints, &rates, &mut by_q);
     let momenta: Vec<Expr<'g>> = by_v.iter_mut().map(|d| d.differentiate(kinetic)).collect();
     let mass_matrix: Matrix<'g> =
         momenta.iter().map(|p| by_v.iter_mut().map(|d| d.differentiate(*p)).collect()).collect();
@@ -53,7 +53,7 @@ pub fn derive<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Lagrange<'g> {
     let mut bias: Vec<Expr<'g>> = momenta.iter().map(|p| time_derivative(&rates, &mut by_q, *p)).collect();
     subtract_tangent_gradient(&rates, &dl_dq, &mut by_v, &mut bias);
     add_commutators(model, &momenta, &v, &mut bias);
-    for (bias, passive) in bias.iter_mut().zip(dissipation(model)) {
+    for (bias, passive) in bias.iter_mut().zip(dissipative_forces(model)) {
         *bias += passive;
     }
     Lagrange { kinetic, potential, mass_matrix, bias }
@@ -104,14 +104,14 @@ fn add_commutators<'g>(model: &Model<'g>, p: &[Expr<'g>], v: &[Expr<'g>], bias: 
 }
 
 /// Returns the forces of dashpots and friction. Springs are included in the potential energy.
-fn dissipation<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+fn dissipative_forces<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     let all = passive_forces(model, true);
     let springs = passive_forces(model, false);
     all.into_iter().zip(springs).map(|(all, springs)| all - springs).collect()
 }
 
 /// Returns the kinetic and potential energy from positions and orientations in the ground frame.
-fn energies<'g>(
+fn kinetic_and_potential_energy<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     rates: &[Expr<'g>],
@@ -122,7 +122,7 @@ fn energies<'g>(
     let (mut kinetic, mut potential) = (g.zero(), g.zero());
     for (joint, link) in joints.iter().zip(&model.links) {
         let (r_parent, p_parent) = joint.parent.map_or((Mat3::identity(g), Vec3::zero(g)), |p| frames[p.0]);
-        let r = r_parent * joint.rotation.matrix();
+        let r = r_parent * joint.rotation.rotation_matrix();
         let p = p_parent + r_parent * joint.translation;
         frames.push((r, p));
         let inertia = &link.inertia;
@@ -141,7 +141,7 @@ fn energies<'g>(
         potential -= model.gravity.dot(p * inertia.mass + r * inertia.moment);
     }
     for spring in &model.springs {
-        let stretch = position(model, &spring.on) - spring.free;
+        let stretch = coordinate_position(model, &spring.on) - spring.free;
         potential += spring.stiffness * 0.5 * stretch.square();
     }
     for energy in &model.potentials {

@@ -6,7 +6,7 @@ use crate::expr::Expr;
 use crate::kinematics::Joint;
 
 /// Returns the solution of `m x = r`.
-pub fn solve<'g>(m: Matrix<'g>, r: Vec<Expr<'g>>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
+pub fn solve_symmetric<'g>(m: Matrix<'g>, r: Vec<Expr<'g>>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let order = elimination_order(joints, r.len());
     solve_in(m, r, &order, 0).x
 }
@@ -49,7 +49,7 @@ pub fn solve_in<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], fi
             // If pivots are an output, they are computed in any case, so the inverse is one division.
             None if first > 0 => m[k][k].num(1.0) / m[k][k],
             None => {
-                known = inverses(&m, &order[step..]).into_iter();
+                known = pivot_inverses(&m, &order[step..]).into_iter();
                 known.next().unwrap_or(m[k][k])
             }
         };
@@ -79,7 +79,7 @@ pub fn solve_in<'g>(mut m: Matrix<'g>, mut r: Vec<Expr<'g>>, order: &[usize], fi
 /// leading minors would be a ratio of determinants, whose rounding error grows with the square of the
 /// condition number if two pivots are small compared with the first (light links that carry a heavy load,
 /// velocities that follow from others by large factors).
-pub fn inverses<'g>(m: &Matrix<'g>, order: &[usize]) -> Vec<Expr<'g>> {
+pub fn pivot_inverses<'g>(m: &Matrix<'g>, order: &[usize]) -> Vec<Expr<'g>> {
     let permuted_entry = |i: usize, j: usize| m[order[i]][order[j]];
     let Some(a) = order.first().map(|_| permuted_entry(0, 0)) else { return Vec::new() };
     let second =

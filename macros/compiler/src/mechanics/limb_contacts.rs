@@ -31,10 +31,10 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
 
     /// Merges values, one for each contact velocity, into SIMD lanes. Returns `None` if the expressions of
     /// the limbs differ in structure.
-    pub fn values(&mut self, values: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
+    pub fn merge_values(&mut self, values: &[Expr<'g>]) -> Option<Vec<Expr<'g>>> {
         let mut out = values.to_vec();
         for row in self.groups.iter().flat_map(|group| &group.rows) {
-            let all = self.merge.lanes(&row.iter().map(|i| values[*i]).collect::<Vec<_>>())?;
+            let all = self.merge.merge_lanes(&row.iter().map(|i| values[*i]).collect::<Vec<_>>())?;
             row.iter().enumerate().for_each(|(lane, i)| out[*i] = all.lane(lane));
         }
         Some(out)
@@ -42,7 +42,7 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
 
     /// Merges matrix rows into SIMD lanes, one row for each contact velocity with a column for each velocity.
     /// Each row depends only on the limb of its contact velocity.
-    pub fn rows(&mut self, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
+    pub fn merge_rows(&mut self, rows: &Matrix<'g>) -> Option<Matrix<'g>> {
         let mut out = vec![Vec::new(); self.count];
         for numbers in self.groups.iter().flat_map(|group| &group.rows) {
             let lanes: Vec<&[Expr<'g>]> = numbers.iter().map(|i| rows[*i].as_slice()).collect();
@@ -52,7 +52,7 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
                     Some(of) if of != lane => all[index].zero(),
                     _ => all[index].lane(lane),
                 };
-                out[*i] = self.limbs.places().map(entry_in_lane).collect();
+                out[*i] = self.limbs.velocity_indices_and_lanes().map(entry_in_lane).collect();
             }
         }
         Some(out)
@@ -60,8 +60,8 @@ impl<'a, 'g> LimbContacts<'a, 'g> {
 
     /// Returns the sum of square matrices over the velocities, one matrix for each limb, in the groups of
     /// [`of_limbs`](Self::of_limbs).
-    pub fn sum(&mut self, groups: &[Vec<Matrix<'g>>]) -> Option<Matrix<'g>> {
-        let places: Vec<(usize, Option<usize>)> = self.limbs.places().collect();
+    pub fn sum_limb_matrices(&mut self, groups: &[Vec<Matrix<'g>>]) -> Option<Matrix<'g>> {
+        let places: Vec<(usize, Option<usize>)> = self.limbs.velocity_indices_and_lanes().collect();
         let mut sum: Option<Matrix<'g>> = None;
         for lanes in groups {
             let all = self.limbs.merged_squares(lanes, &mut self.merge)?;

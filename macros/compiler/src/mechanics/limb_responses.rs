@@ -3,7 +3,7 @@
 use super::crba::{Matrix, mass_matrix};
 use super::ldl::elimination_order;
 use crate::expr::Expr;
-use crate::vectorise::{LimbRows, Limbs, joined};
+use crate::vectorise::{LimbRows, Limbs, join_lanes};
 use std::collections::BTreeMap;
 
 /// Contact velocities of the limbs of one group of identical limbs.
@@ -46,9 +46,9 @@ struct Factor<'g> {
 /// Returns `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of the contact Jacobian `G`. Returns
 /// `None` unless each row depends on one limb of a group of identical limbs, and all limbs of a group have
 /// the same number of rows.
-pub fn responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Expr<'g>>> {
+pub fn limb_contact_responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Expr<'g>>> {
     let groups = limbs.limb_rows(rows)?;
-    let factor = Factor::new(limbs, limbs.groups());
+    let factor = Factor::new(limbs, limbs.group_of_each_velocity());
     let (mut families, mut places) = (Vec::new(), BTreeMap::new());
     for LimbRows { group, width, rows: numbers } in groups {
         for (row, lanes) in numbers.iter().enumerate() {
@@ -58,17 +58,21 @@ pub fn responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Ex
         }
         let all = numbers.iter().map(|lanes| {
             let lane_rows: Vec<&[Expr<'g>]> = lanes.iter().map(|i| rows[*i].as_slice()).collect();
-            factor.row(limbs.side_by_side(&lane_rows), group)
+            factor.solve_contact_row(limbs.side_by_side(&lane_rows), group)
         });
         families.push(Family { group, width, rows: all.collect() });
     }
     let places: Vec<Place> = places.into_values().collect();
     let mut out = Vec::new();
     for place in &places {
-        out.extend(limbs.scattered_from(|index, lane| factor.velocity(&families, *place, index, lane)));
+        out.extend(
+            limbs.scattered_from(|index, lane| factor.velocity_response(&families, *place, index, lane)),
+        );
     }
     for i in 0..places.len() {
-        out.extend((0..places.len()).map(|j| factor.weight(&families, places[i.min(j)], places[i.max(j)])));
+        out.extend(
+            (0..places.len()).map(|j| factor.delassus_entry(&families, places[i.min(j)], places[i.max(j)])),
+        );
     }
     Some(out)
 }
@@ -76,7 +80,7 @@ pub fn responses<'g>(limbs: &Limbs<'g>, rows: &[Vec<Expr<'g>>]) -> Option<Vec<Ex
 /// Rotates `n` lanes: lane `k` of the result is lane `k + by` modulo `n`.
 fn rotated_lanes(e: Expr<'_>, n: usize, by: usize) -> Expr<'_> {
     let lanes: Vec<Expr<'_>> = (0..n).map(|k| e.lane((k + by) % n)).collect();
-    joined(&lanes)
+    join_lanes(&lanes)
 }
 
 impl<'g> Factor<'g> {
@@ -94,7 +98,7 @@ impl<'g> Factor<'g> {
                 for &j in rest.iter().filter(|&&j| j <= i) {
                     let taken = factor * m[k][j];
                     let hangs = groups[k].is_some() && groups[i].is_none() && groups[j].is_none();
-                    let taken = if hangs { taken.lane_sum(limbs.width(k)) } else { taken };
+                    let taken = if hangs { taken.lane_sum(limbs.lane_count_of_velocity(k)) } else { taken };
                     m[i][j] -= taken;
                     m[j][i] = m[i][j];
                 }
@@ -105,7 +109,7 @@ impl<'g> Factor<'g> {
     }
 
     /// Solves for one contact velocity of each limb of a group, whose Jacobian entries `g` are in SIMD lanes.
-    fn row(&self, g: Vec<Expr<'g>>, group: usize) -> Row<'g> {
+    fn solve_contact_row(&self, g: Vec<Expr<'g>>, group: usize) -> Row<'g> {
         let mut reduced = g;
         for &k in &self.order {
             for (i, factor) in &self.rows[k] {
@@ -121,29 +125,30 @@ impl<'g> Factor<'g> {
     }
 
     /// Returns the change of a velocity, in its own lane, per unit impulse along a contact velocity.
-    fn velocity(&self, families: &[Family<'g>], at: Place, index: usize, lane: usize) -> Expr<'g> {
+    fn velocity_response(&self, families: &[Family<'g>], at: Place, index: usize, lane: usize) -> Expr<'g> {
         let Family { group, width, rows } = &families[at.family];
         let own = &rows[at.row].own;
         match self.groups[index] {
             None => own[index].lane(at.lane),
             Some(of) if of == *group && lane == at.lane => own[index],
             Some(of) if of == *group => {
-                self.carried(index, &|k| rotated_lanes(own[k], *width, width + at.lane - lane))
+                self.velocity_from_trunk(index, &|k| rotated_lanes(own[k], *width, width + at.lane - lane))
             }
-            Some(_) => self.carried(index, &|k| own[k].lane(at.lane)),
+            Some(_) => self.velocity_from_trunk(index, &|k| own[k].lane(at.lane)),
         }
     }
 
     /// Returns the change of a limb's velocity that results from the velocity changes `trunk` of the trunk.
-    fn carried(&self, index: usize, trunk: &dyn Fn(usize) -> Expr<'g>) -> Expr<'g> {
+    fn velocity_from_trunk(&self, index: usize, trunk: &dyn Fn(usize) -> Expr<'g>) -> Expr<'g> {
         self.rows[index].iter().fold(self.inverse[index].zero(), |x, (i, factor)| {
-            let value = if self.groups[*i].is_none() { trunk(*i) } else { self.carried(*i, trunk) };
+            let value =
+                if self.groups[*i].is_none() { trunk(*i) } else { self.velocity_from_trunk(*i, trunk) };
             x - *factor * value
         })
     }
 
     /// Returns the change of one contact velocity per unit impulse along another.
-    fn weight(&self, families: &[Family<'g>], a: Place, b: Place) -> Expr<'g> {
+    fn delassus_entry(&self, families: &[Family<'g>], a: Place, b: Place) -> Expr<'g> {
         let (first, second) = (&families[a.family], &families[b.family]);
         let (x, y) = (&first.rows[a.row].reduced, &second.rows[b.row].reduced);
         let sum_over_velocities = |is_in: &dyn Fn(usize) -> bool, of: &dyn Fn(usize) -> [Expr<'g>; 2]| {
@@ -160,7 +165,7 @@ impl<'g> Factor<'g> {
         let n = first.width;
         let by = (n + b.lane - a.lane) % n;
         if 2 * by > n || (2 * by == n && a.row > b.row) || (by == 0 && a.row > b.row) {
-            return self.weight(families, b, a);
+            return self.delassus_entry(families, b, a);
         }
         match by {
             0 => sum_over_velocities(&|k| is_in_trunk(k) || self.groups[k] == Some(first.group), &|k| {

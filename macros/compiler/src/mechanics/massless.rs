@@ -16,29 +16,32 @@ use crate::kinematics::Joint;
 use crate::mechanism::Model;
 
 /// Returns the constraints that determine coordinates without inertia.
-pub fn rows(model: &Model<'_>) -> Vec<usize> {
+pub fn massless_constraints(model: &Model<'_>) -> Vec<usize> {
     (0..model.constraints.len()).filter(|row| model.constraints[*row].determines).collect()
 }
 
 /// Returns `w Jᵀ` for these rows, where `w` is the mass of all moving bodies, so that the added terms have
 /// the magnitude of the mass matrix.
-fn weighted<'g>(
+fn weighted_jacobian_rows<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     jacobian: &Matrix<'g>,
 ) -> Vec<(usize, Vec<Expr<'g>>)> {
     let (mass, _) = energy::mass_and_moment(model, joints);
     let w = if mass.is_zero() { model.graph.one() } else { mass };
-    rows(model).into_iter().map(|row| (row, jacobian[row].iter().map(|e| *e * w).collect())).collect()
+    massless_constraints(model)
+        .into_iter()
+        .map(|row| (row, jacobian[row].iter().map(|e| *e * w).collect()))
+        .collect()
 }
 
 /// Returns the mass matrix with weighted constraints, `M + w Jᵀ J`.
 pub fn loaded_mass<'g>(model: &Model<'g>, joints: &[Joint<'g>], mut mass: Matrix<'g>) -> Matrix<'g> {
-    if rows(model).is_empty() {
+    if massless_constraints(model).is_empty() {
         return mass;
     }
     let jacobian = constraints::jacobian(model);
-    for (row, heavy) in weighted(model, joints, &jacobian) {
+    for (row, heavy) in weighted_jacobian_rows(model, joints, &jacobian) {
         for (entries, heavy) in mass.iter_mut().zip(heavy).filter(|(_, heavy)| !heavy.is_zero()) {
             entries.iter_mut().zip(&jacobian[row]).for_each(|(entry, e)| *entry += heavy * *e);
         }
@@ -54,10 +57,10 @@ pub fn loaded_force<'g>(
     bias: &[Expr<'g>],
 ) -> Vec<Expr<'g>> {
     let mut force = force.to_vec();
-    if rows(model).is_empty() {
+    if massless_constraints(model).is_empty() {
         return force;
     }
-    for (row, heavy) in weighted(model, joints, &constraints::jacobian(model)) {
+    for (row, heavy) in weighted_jacobian_rows(model, joints, &constraints::jacobian(model)) {
         force.iter_mut().zip(heavy).for_each(|(f, heavy)| *f -= heavy * bias[row]);
     }
     force

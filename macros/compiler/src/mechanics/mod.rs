@@ -36,17 +36,17 @@ mod shared_motions;
 pub mod speeds;
 
 /// Returns all velocities as symbols.
-pub fn velocities<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+pub fn velocity_symbols<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.nv()).map(|k| Quantity::Velocity(k).expr(model.graph)).collect()
 }
 
 /// Returns all accelerations as symbols.
-pub fn accelerations<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+pub fn acceleration_symbols<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.nv()).map(|k| Quantity::Acceleration(k).expr(model.graph)).collect()
 }
 
 /// Returns all generalized forces as symbols.
-pub fn efforts<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+pub fn generalized_force_symbols<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.nv()).map(|k| Quantity::Force(k).expr(model.graph)).collect()
 }
 
@@ -58,6 +58,6 @@ pub fn is_plain_tree(model: &Model<'_>) -> bool {
         && model.acceleration_forces.is_empty()
         && model.links.iter().all(|link| {
             let mut own = |c: &Coordinate| c.ratio == 1.0 && !std::mem::replace(&mut seen[c.v.0], true);
-            link.motion.has_constant_subspace() && link.motion.coordinate().is_none_or(&mut own)
+            link.motion.has_constant_subspace() && link.motion.plain_coordinate().is_none_or(&mut own)
         })
 }

@@ -1,9 +1,9 @@
 //! Generalized momentum and its rate (Hamilton's and the Euler–Poincaré equations), and the total momentum of
 //! the mechanism.
 
-use super::crba::{composites, momentum};
+use super::crba::{composite_inertias, momentum};
 use super::energy::center_of_mass;
-use super::frames::{Placement, flat};
+use super::frames::{Placement, spatial_components};
 use super::inertances;
 use super::rnea::wrenches;
 use super::shared_motions::SharedMotions;
@@ -19,11 +19,11 @@ fn composite_momenta<'g>(
     twists: &[Spatial<'g>],
 ) -> Vec<Spatial<'g>> {
     let own = model.links.iter().zip(twists).map(|(link, twist)| momentum(&link.inertia, twist)).collect();
-    accumulate(joints, own)
+    accumulate_wrenches(joints, own)
 }
 
 /// Sums wrenches from the leaves to the roots.
-fn accumulate<'g>(joints: &[Joint<'g>], mut wrenches: Vec<Spatial<'g>>) -> Vec<Spatial<'g>> {
+fn accumulate_wrenches<'g>(joints: &[Joint<'g>], mut wrenches: Vec<Spatial<'g>>) -> Vec<Spatial<'g>> {
     for (k, joint) in joints.iter().enumerate().rev() {
         if let Some(parent) = joint.parent {
             wrenches[parent.0] = wrenches[parent.0].plus(&joint.wrench_to_parent(&wrenches[k]));
@@ -35,7 +35,8 @@ fn accumulate<'g>(joints: &[Joint<'g>], mut wrenches: Vec<Spatial<'g>>) -> Vec<S
 fn project<'g>(model: &Model<'g>, joints: &[Joint<'g>], wrenches: &[Spatial<'g>]) -> Vec<Expr<'g>> {
     let mut out = vec![model.graph.zero(); model.nv()];
     let shared = SharedMotions::new(model, joints);
-    for (_, (joint, wrench)) in joints.iter().zip(wrenches).enumerate().filter(|(k, _)| !shared.has(*k)) {
+    for (_, (joint, wrench)) in joints.iter().zip(wrenches).enumerate().filter(|(k, _)| !shared.has_link(*k))
+    {
         for dof in &joint.dofs {
             out[dof.index] += dof.subspace.dot(wrench) * model.graph.num(dof.ratio);
         }
@@ -58,7 +59,7 @@ pub fn generalized_momentum<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Ex
 pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let twists = twists(model, joints, v);
     let momenta = composite_momenta(model, joints, &twists);
-    let weights = accumulate(joints, weights(model, joints));
+    let weights = accumulate_wrenches(joints, link_weights(model, joints));
     let wrenches: Vec<Spatial<'g>> = (0..joints.len())
         .map(|k| {
             let (t, f) = (&twists[k], &momenta[k]);
@@ -72,7 +73,9 @@ pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]
     // Contribution of a subspace that is not constant: Ṡᵀ F.
     let shared = SharedMotions::by_rates(model, joints);
     shared.add_forces(&momenta, &mut rate);
-    for (_, (joint, momentum)) in joints.iter().zip(&momenta).enumerate().filter(|(k, _)| !shared.has(*k)) {
+    for (_, (joint, momentum)) in
+        joints.iter().zip(&momenta).enumerate().filter(|(k, _)| !shared.has_link(*k))
+    {
         for (dof, change) in joint.dofs.iter().zip(joint.drift.iter().flat_map(|d| &d.subspace_rates)) {
             rate[dof.index] += change.dot(momentum) * model.graph.num(dof.ratio);
         }
@@ -85,7 +88,7 @@ pub fn momentum_rate<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]
 }
 
 /// Returns the weight of each link as a wrench about the link's origin in its axes.
-fn weights<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Spatial<'g>> {
+fn link_weights<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Spatial<'g>> {
     let mut gravity: Vec<Vec3<'g>> = Vec::new();
     for joint in joints {
         let parent = joint.parent.map_or(model.gravity, |p| gravity[p.0]);
@@ -119,27 +122,28 @@ fn about_center<'g>(model: &Model<'g>, joints: &[Joint<'g>], sums: &[Spatial<'g>
 /// 2013).
 pub fn centroidal_momentum_matrix<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Expr<'g>> {
     let g = model.graph;
-    let composites = composites(model, joints);
+    let composites = composite_inertias(model, joints);
     let center = center_of_mass(model, joints);
     let mut places: Vec<Placement<'g>> = Vec::with_capacity(joints.len());
     let mut columns = vec![Spatial::zero(model); model.nv()];
     for (joint, composite) in joints.iter().zip(&composites) {
-        let parent = joint.parent.map_or(Placement::ground(g), |p| places[p.0]);
-        let place = parent.then(&Pose { rotation: joint.rotation.clone(), translation: joint.translation });
+        let parent = joint.parent.map_or(Placement::ground_placement(g), |p| places[p.0]);
+        let place =
+            parent.compose_with(&Pose { rotation: joint.rotation.clone(), translation: joint.translation });
         for dof in &joint.dofs {
-            let own = momentum(composite, &dof.subspace.times(g.num(dof.ratio)));
+            let own = momentum(composite, &dof.subspace.times_scalar(g.num(dof.ratio)));
             let linear = place.rotation * own.linear;
             let angular = place.rotation * own.angular + (place.position - center).cross(linear);
             columns[dof.index] = columns[dof.index].plus(&Spatial { linear, angular });
         }
         places.push(place);
     }
-    columns.iter().flat_map(flat).collect()
+    columns.iter().flat_map(spatial_components).collect()
 }
 
 /// Returns the rate of the total momentum at zero accelerations, without gravity.
 pub fn centroidal_bias<'g>(model: &Model<'g>, joints: &[Joint<'g>], v: &[Expr<'g>]) -> Spatial<'g> {
     let weightless = Model { gravity: Vec3::zero(model.graph), ..model.clone() };
     let wrenches = wrenches(&weightless, joints, v, None);
-    about_center(model, joints, &accumulate(joints, wrenches))
+    about_center(model, joints, &accumulate_wrenches(joints, wrenches))
 }

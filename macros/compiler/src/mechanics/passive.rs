@@ -1,8 +1,8 @@
 //! Passive forces: forces of springs, dashpots, friction and other elements that act without inputs.
 
-use crate::expr::replace::replace;
+use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr, Function};
-use crate::kinematics::{energy_gradient, known_gradient, position, rate};
+use crate::kinematics::{coordinate_position, coordinate_velocity, energy_gradient, known_gradient};
 use crate::mechanism::{Model, Quantity};
 
 /// Returns the generalized forces of springs, dashpots, friction, potentials and loads, with the sign of `h`:
@@ -15,7 +15,7 @@ pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g
     let g = model.graph;
     let mut h = vec![g.zero(); model.nv()];
     for spring in &model.springs {
-        let stretch = position(model, &spring.on) - spring.free;
+        let stretch = coordinate_position(model, &spring.on) - spring.free;
         h[spring.on.v.0] += spring.stiffness * stretch * g.num(spring.on.ratio);
     }
     for energy in &model.potentials {
@@ -26,10 +26,12 @@ pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g
     }
     if with_velocity {
         for dashpot in &model.dashpots {
-            h[dashpot.on.v.0] += dashpot.damping * rate(model, &dashpot.on) * g.num(dashpot.on.ratio);
+            h[dashpot.on.v.0] +=
+                dashpot.damping * coordinate_velocity(model, &dashpot.on) * g.num(dashpot.on.ratio);
         }
         for dry in &model.frictions {
-            let slip = (rate(model, &dry.on) / model.friction_speed).call(Function::Tanh);
+            let slip =
+                (coordinate_velocity(model, &dry.on) / model.friction_speed).apply_function(Function::Tanh);
             h[dry.on.v.0] += dry.friction * slip * g.num(dry.on.ratio);
         }
         for function in &model.dissipations {
@@ -39,7 +41,7 @@ pub fn passive_forces<'g>(model: &Model<'g>, with_velocity: bool) -> Vec<Expr<'g
         }
         for load in &model.loads {
             let no_input = |s| matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero());
-            let force = replace(load.force, &no_input);
+            let force = substitute_symbols(load.force, &no_input);
             for (k, d) in known_gradient(model, load.rate) {
                 h[k] -= force * d;
             }

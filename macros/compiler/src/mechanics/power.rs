@@ -2,22 +2,22 @@
 //! prescribed in time. Force elements are conservative (in `U`), dissipative, control (inputs) or disturbance
 //! (other applied forces), as in Table 1.4 of Bernstein, Goel and Ansari.
 
-use super::{forces, velocities};
-use crate::expr::replace::replace;
+use super::{forces, velocity_symbols};
+use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr, Function};
-use crate::kinematics::{Joint, rate, velocity_gradient};
+use crate::kinematics::{Joint, coordinate_velocity, velocity_gradient};
 use crate::mechanism::{Load, Model, Quantity};
 
 /// Returns the power dissipated by dashpots, friction, dissipation functions and dissipative loads.
-pub fn dissipated<'g>(model: &Model<'g>) -> Expr<'g> {
+pub fn dissipated_power<'g>(model: &Model<'g>) -> Expr<'g> {
     let g = model.graph;
     let mut power = g.zero();
     for dashpot in &model.dashpots {
-        power += dashpot.damping * rate(model, &dashpot.on).square();
+        power += dashpot.damping * coordinate_velocity(model, &dashpot.on).square();
     }
     for dry in &model.frictions {
-        let speed = rate(model, &dry.on);
-        power += dry.friction * (speed / model.friction_speed).call(Function::Tanh) * speed;
+        let speed = coordinate_velocity(model, &dry.on);
+        power += dry.friction * (speed / model.friction_speed).apply_function(Function::Tanh) * speed;
     }
     for function in &model.dissipations {
         for (k, d) in velocity_gradient(*function) {
@@ -29,16 +29,18 @@ pub fn dissipated<'g>(model: &Model<'g>) -> Expr<'g> {
 }
 
 /// Returns the power of the inputs: `v · τ(u)`.
-pub fn control<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g> {
+pub fn control_power<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Expr<'g> {
     let tau = forces::generalized_forces(model, joints);
-    tau.iter().zip(velocities(model)).fold(model.graph.zero(), |sum, (tau, v)| sum + *tau * v)
+    tau.iter().zip(velocity_symbols(model)).fold(model.graph.zero(), |sum, (tau, v)| sum + *tau * v)
 }
 
 /// Returns the power of the other applied forces.
-pub fn disturbance<'g>(model: &Model<'g>) -> Expr<'g> {
+pub fn disturbance_power<'g>(model: &Model<'g>) -> Expr<'g> {
     let g = model.graph;
     let without_inputs = |load: &Load<'g>| {
-        replace(load.force, &|s| matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero()))
+        substitute_symbols(load.force, &|s| {
+            matches!(Quantity::from_symbol(s), Quantity::Input(_)).then(|| g.zero())
+        })
     };
     let applied = model.loads.iter().filter(|l| !l.dissipative);
     applied.fold(g.zero(), |sum, load| sum + without_inputs(load) * load.rate)

@@ -7,7 +7,7 @@ use super::crba::Matrix;
 use super::{constraints, forces, rnea};
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Symbol};
-use crate::kinematics::{joints, symbols_in};
+use crate::kinematics::{joints_of_model, symbols_in};
 use crate::mechanism::{Model, Quantity, Released, SolvedSide};
 
 /// Number of components of a joint's reaction: force, torque.
@@ -20,13 +20,13 @@ pub fn names_one(e: &[Expr<'_>]) -> bool {
 
 /// Returns the expressions with reactions replaced by expressions of `q`, `v`, `a` and the inputs;
 /// multipliers are arguments. With `touched`, contact forces are included; otherwise they are zero.
-pub fn resolved<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -> Vec<Expr<'g>> {
+pub fn replace_reactions<'g>(model: &Model<'g>, e: &[Expr<'g>], touched: bool) -> Vec<Expr<'g>> {
     let multiplier_of_symbol = |s: Symbol, all: &[Expr<'g>]| match Quantity::from_symbol(s) {
         Quantity::Reaction(k) => all.get(k.checked_sub(Quantity::MULTIPLIERS)?).copied(),
         _ => None,
     };
     let Some(released) = &model.released else {
-        let all = constraints::multipliers(model);
+        let all = constraints::multiplier_symbols(model);
         return replace_all(e, &|s| multiplier_of_symbol(s, &all));
     };
     let (held, multipliers) = on_released_coordinates(model, released, touched);
@@ -80,7 +80,7 @@ fn on_released_coordinates<'g>(
     touched: bool,
 ) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
     let (g, open) = (model.graph, &released.model);
-    let joints = joints(open);
+    let joints = joints_of_model(open);
     let value_with_closed_joints = |k: usize, q: Quantity| if k < model.nv() { q.expr(g) } else { g.zero() };
     let v: Vec<Expr<'g>> =
         (0..open.nv()).map(|k| value_with_closed_joints(k, Quantity::Velocity(k))).collect();
@@ -88,9 +88,9 @@ fn on_released_coordinates<'g>(
         (0..open.nv()).map(|k| value_with_closed_joints(k, Quantity::Acceleration(k))).collect();
     let mut forces_needed = rnea::inverse_dynamics(open, &joints, &v, Some(&a));
     let inputs = forces::generalized_forces(open, &joints);
-    let mut multipliers = constraints::multipliers(open);
+    let mut multipliers = constraints::multiplier_symbols(open);
     multipliers.truncate(model.constraints.len());
-    let held = constraints::forces(open, &multipliers);
+    let held = constraints::constraint_forces(open, &multipliers);
     for (k, force) in forces_needed.iter_mut().enumerate() {
         *force -= inputs[k] + held[k];
     }

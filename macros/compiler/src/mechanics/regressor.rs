@@ -2,7 +2,7 @@
 //! frame in which mass properties are declared (Atkeson, An and Hollerbach 1986). Springs, friction and other
 //! elements are excluded.
 
-use super::rnea::{motion, newton_euler};
+use super::rnea::{link_motions, newton_euler};
 use crate::expr::{Expr, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial};
 use crate::mechanism::{Inertia, LinkId, Model, Pose};
@@ -27,7 +27,7 @@ pub struct Site<'g> {
 }
 
 /// Returns the ten inertial parameters of mass properties.
-pub fn parameters<'g>(inertia: &Inertia<'g>) -> [Expr<'g>; COUNT] {
+pub fn inertial_parameters<'g>(inertia: &Inertia<'g>) -> [Expr<'g>; COUNT] {
     std::array::from_fn(|k| match k {
         0 => inertia.mass,
         1..4 => inertia.moment[k - 1],
@@ -36,7 +36,7 @@ pub fn parameters<'g>(inertia: &Inertia<'g>) -> [Expr<'g>; COUNT] {
 }
 
 /// Returns the mass properties with the given ten parameters.
-pub fn inertia<'g>(parameters: [Expr<'g>; COUNT]) -> Inertia<'g> {
+pub fn inertia_from_parameters<'g>(parameters: [Expr<'g>; COUNT]) -> Inertia<'g> {
     let [mass, x, y, z, xx, xy, yy, xz, yz, zz] = parameters;
     let tensor = Sym3 { diagonal: [xx, yy, zz], off: [xy, xz, yz] };
     Inertia { mass, moment: Vec3([x, y, z]), tensor }
@@ -44,7 +44,7 @@ pub fn inertia<'g>(parameters: [Expr<'g>; COUNT]) -> Inertia<'g> {
 
 /// Returns the columns of `Y` for the inertial parameters of frames: the generalized forces per unit of each
 /// parameter. `wanted` are pairs of a frame's index and a parameter's index.
-pub fn columns<'g>(
+pub fn regressor_columns<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     v: &[Expr<'g>],
@@ -53,8 +53,8 @@ pub fn columns<'g>(
     wanted: &[(usize, usize)],
 ) -> Vec<Vec<Expr<'g>>> {
     let g = model.graph;
-    let states = motion(model, joints, v, Some(a));
-    let subspaces = subspaces(model, joints);
+    let states = link_motions(model, joints, v, Some(a));
+    let subspaces = partial_twists(model, joints);
     let mut columns = Vec::with_capacity(wanted.len());
     let mut at: Option<(usize, Vec<(usize, Spatial<'g>)>)> = None;
     for &(index, parameter) in wanted {
@@ -62,7 +62,7 @@ pub fn columns<'g>(
         let state = states[site.link.0].seen_from(&site.pose);
         let mut unit = [g.zero(); COUNT];
         unit[parameter] = g.one();
-        let wrench = newton_euler(&inertia(unit), &state);
+        let wrench = newton_euler(&inertia_from_parameters(unit), &state);
         let seen = match at.take().filter(|(known, _)| *known == index) {
             Some((_, seen)) => seen,
             None => subspaces[site.link.0].iter().map(|(k, s)| (*k, seen_from(&site.pose, s))).collect(),
@@ -78,12 +78,12 @@ pub fn columns<'g>(
 }
 
 /// Returns for each link its twist per unit of each velocity, in the link's axes.
-fn subspaces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Vec<(usize, Spatial<'g>)>> {
+fn partial_twists<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<Vec<(usize, Spatial<'g>)>> {
     let mut all: Vec<Vec<(usize, Spatial<'g>)>> = Vec::with_capacity(joints.len());
     for joint in joints {
         let carried = joint.parent.map_or(&[][..], |p| &all[p.0]);
         let mut own: Vec<_> = carried.iter().map(|(k, s)| (*k, joint.twist_to_child(s))).collect();
-        own.extend(joint.dofs.iter().map(|d| (d.index, d.subspace.times(model.graph.num(d.ratio)))));
+        own.extend(joint.dofs.iter().map(|d| (d.index, d.subspace.times_scalar(model.graph.num(d.ratio)))));
         all.push(own);
     }
     all

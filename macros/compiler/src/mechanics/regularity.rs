@@ -33,9 +33,9 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
     let q = random_configuration(model, seed);
     let entries: Vec<_> = mass.iter().flatten().copied().collect();
     let whole: Vec<Vec<Rounded>> = Tape::new(&entries)
-        .rounded(&|s: Symbol| match Quantity::from_symbol(s) {
+        .evaluate_with_rounding(&|s: Symbol| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => q[k],
-            _ => crate::expr::sample::sample(s, seed),
+            _ => crate::expr::sample::sample_of_symbol(s, seed),
         })
         .chunks(n.max(1))
         .map(<[Rounded]>::to_vec)
@@ -55,7 +55,7 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
     for (step, &k) in order.iter().enumerate() {
         // Random parameters may give an inertia that no body has. A pivot may then be negative, but it is
         // still different from zero.
-        let pivot = Rounded { value: m[k][k], error: rounding(&whole, &m, &eliminated, k) };
+        let pivot = Rounded { value: m[k][k], error: rounding_error_of_motion(&whole, &m, &eliminated, k) };
         if pivot.may_be_zero() {
             failing.push(k);
             continue;
@@ -73,7 +73,12 @@ fn failing_pivots(model: &Model<'_>, joints: &[Joint<'_>], mass: &Matrix<'_>, se
 
 /// Returns `|z|ᵀ E |z|` of the motion `z` whose velocity `k` is 1, where `left` is the matrix `M` reduced by
 /// elimination.
-fn rounding(whole: &[Vec<Rounded>], left: &[Vec<f64>], eliminated: &[usize], k: usize) -> f64 {
+fn rounding_error_of_motion(
+    whole: &[Vec<Rounded>],
+    left: &[Vec<f64>],
+    eliminated: &[usize],
+    k: usize,
+) -> f64 {
     let mut z = vec![(k, 1.0)];
     for &i in eliminated.iter().rev() {
         let others: f64 = z.iter().map(|(j, value)| left[i][*j] * value).sum();

@@ -25,7 +25,7 @@ pub fn inverse_dynamics<'g>(
     let shared = SharedMotions::new(model, joints);
     for (k, joint) in joints.iter().enumerate().rev() {
         let wrench = wrenches[k];
-        for dof in joint.dofs.iter().filter(|_| !shared.has(k)) {
+        for dof in joint.dofs.iter().filter(|_| !shared.has_link(k)) {
             tau[dof.index] += dof.subspace.dot(&wrench) * model.graph.num(dof.ratio);
         }
         if let Some(parent) = joint.parent {
@@ -44,7 +44,7 @@ pub fn wrenches<'g>(
     v: &[Expr<'g>],
     a: Option<&[Expr<'g>]>,
 ) -> Vec<Spatial<'g>> {
-    let states = motion(model, joints, v, a);
+    let states = link_motions(model, joints, v, a);
     model.links.iter().zip(&states).map(|(link, state)| newton_euler(&link.inertia, state)).collect()
 }
 
@@ -84,7 +84,7 @@ impl<'g> State<'g> {
 
 /// Returns the motions of all links by the outward recursion. Gravity is included as an upward acceleration
 /// of the ground.
-pub(super) fn motion<'g>(
+pub(super) fn link_motions<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     v: &[Expr<'g>],
@@ -95,7 +95,7 @@ pub(super) fn motion<'g>(
     let mut states: Vec<State<'g>> = Vec::with_capacity(joints.len());
     for joint in joints {
         let parent = joint.parent.map_or(ground, |p| states[p.0]);
-        let rate = joint.twist(model, v);
+        let rate = joint.total_relative_twist(model, v);
         let w_parent = joint.rotation.to_child(parent.w);
         let mut dw = joint.rotation.to_child(parent.dw) + w_parent.cross(rate.angular);
         // Translation in the joint: Coriolis acceleration, and the rotation of a velocity given in link axes.
@@ -106,7 +106,7 @@ pub(super) fn motion<'g>(
             origin += drift.acceleration.linear;
         }
         if let Some(a) = a {
-            let own = joint.relative(model, a);
+            let own = joint.relative_twist(model, a);
             dw += own.angular;
             origin += own.linear;
         }
@@ -135,7 +135,7 @@ fn diagonal_terms<'g>(i: &Sym3<'g>, s: &State<'g>, k: usize) -> Expr<'g> {
     let (l, m) = ((k + 1) % 3, (k + 2) % 3);
     let [own, next, last] = [k, l, m].map(|k| i.diagonal[k]);
     if own.is_constant() && next.is_constant() && last.is_constant() {
-        let size = [own, next, last].map(|x| x.call(Function::Abs));
+        let size = [own, next, last].map(|x| x.apply_function(Function::Abs));
         let rounding = (size[0] + size[1] + size[2]) * (4.0 * f64::EPSILON);
         let second = [(own + last - next) * 0.5, (own + next - last) * 0.5];
         let [p, q] = second.map(|x| if x.is_within(rounding) { x.zero() } else { x });

@@ -4,11 +4,11 @@
 //! are the velocities of cyclic coordinates. It satisfies Lagrange's equations in the other coordinates.
 
 use super::crba::Matrix;
-use super::{energy, ldl, momentum, rnea, velocities};
+use super::{energy, ldl, momentum, rnea, velocity_symbols};
 use crate::expr::Expr;
 use crate::expr::eval::Tape;
 use crate::expr::replace::replace_all;
-use crate::expr::sample::sample;
+use crate::expr::sample::sample_of_symbol;
 use crate::kinematics::{Joint, random_configuration};
 use crate::mechanism::{Chart, Model, Quantity};
 
@@ -32,8 +32,8 @@ pub struct Routh<'g> {
 
 /// Returns the cyclic coordinates: plain coordinates whose momenta are constant without inputs. A coordinate
 /// that is cyclic for special parameters only is not found.
-pub fn cyclic<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<usize> {
-    let rates = Tape::new(&momentum::momentum_rate(model, joints, &velocities(model)));
+pub fn cyclic_coordinates<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<usize> {
+    let rates = Tape::new(&momentum::momentum_rate(model, joints, &velocity_symbols(model)));
     let mut plain: Vec<usize> = model
         .charts
         .iter()
@@ -44,11 +44,11 @@ pub fn cyclic<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Vec<usize> {
         .collect();
     for seed in 0..STATES {
         let q = random_configuration(model, seed);
-        let values = rates.values(&|s| match Quantity::from_symbol(s) {
+        let values = rates.evaluate_at(&|s| match Quantity::from_symbol(s) {
             Quantity::Configuration(k) => q[k],
-            Quantity::Velocity(_) => 3.0 * sample(s, seed) - 3.0,
+            Quantity::Velocity(_) => 3.0 * sample_of_symbol(s, seed) - 3.0,
             Quantity::Input(_) => 0.0,
-            _ => sample(s, seed),
+            _ => sample_of_symbol(s, seed),
         });
         let size = values.iter().map(|rate| rate.abs()).fold(1.0, f64::max);
         plain.retain(|v| values[*v].abs() <= ROUNDING * size);
@@ -66,7 +66,7 @@ pub struct Solved<'g> {
 
 /// Solves `p = M_cc w + π` for the velocities `w` of cyclic coordinates, where `π` is the contribution of the
 /// other velocities and of motion prescribed in time to their momenta. Returns `None` if `solve` does.
-pub fn solved<'g>(
+pub fn solve_cyclic_velocities<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     cyclic: &[usize],
@@ -78,7 +78,7 @@ pub fn solved<'g>(
     let p = cyclic.iter().enumerate().map(|(c, k)| Quantity::Momentum(c).expr(g) - given[*k]);
     let p: Vec<Expr<'g>> = p.collect();
     let velocity = solve(p.clone())?;
-    let kinetic = energy::kinetic_energy(model, joints, &velocities(model));
+    let kinetic = energy::kinetic_energy(model, joints, &velocity_symbols(model));
     let lagrangian = with_velocities(&[kinetic - energy::potential_energy(model, joints)], &others)[0];
     let twice = p.iter().zip(&velocity).fold(g.zero(), |sum, (p, w)| sum + *p * *w);
     Some(Solved { routhian: lagrangian - twice * 0.5, velocity })
@@ -92,23 +92,23 @@ pub fn derive<'g>(
     cyclic: Vec<usize>,
 ) -> Routh<'g> {
     let g = model.graph;
-    let own = part(mass, &cyclic, &cyclic);
+    let own = matrix_block(mass, &cyclic, &cyclic);
     let mut solve = |r: Vec<Expr<'g>>| Some(solved_by(&own, r));
-    let found = solved(model, joints, &cyclic, &mut solve);
+    let found = solve_cyclic_velocities(model, joints, &cyclic, &mut solve);
     let Solved { routhian, velocity } =
         found.unwrap_or_else(|| Solved { routhian: g.zero(), velocity: Vec::new() });
     let all = with_cyclic_velocities(model, &cyclic, &velocity);
     // M_rr a + M_rc b = f_r and M_cr a + M_cc b = f_c, with b eliminated.
     let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
-    let bias = with_velocities(&rnea::inverse_dynamics(model, joints, &velocities(model), None), &all);
+    let bias = with_velocities(&rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None), &all);
     let force: Vec<Expr<'g>> =
         bias.iter().enumerate().map(|(k, bias)| Quantity::Force(k).expr(g) - *bias).collect();
     let selected_forces = |list: &[usize]| -> Vec<Expr<'g>> { list.iter().map(|k| force[*k]).collect() };
-    let across = part(mass, &others, &cyclic);
+    let across = matrix_block(mass, &others, &cyclic);
     let taken: Matrix<'g> = across.iter().map(|row| solved_by(&own, row.clone())).collect();
     let dot_product =
         |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(g.zero(), |sum, (a, b)| sum + *a * *b);
-    let mut reduced = part(mass, &others, &others);
+    let mut reduced = matrix_block(mass, &others, &others);
     for (row, across) in reduced.iter_mut().zip(&across) {
         row.iter_mut().zip(&taken).for_each(|(entry, taken)| *entry -= dot_product(across, taken));
     }
@@ -126,7 +126,7 @@ pub fn with_cyclic_velocities<'g>(
     cyclic: &[usize],
     velocity: &[Expr<'g>],
 ) -> Vec<Expr<'g>> {
-    let mut all = velocities(model);
+    let mut all = velocity_symbols(model);
     cyclic.iter().zip(velocity).for_each(|(k, w)| all[*k] = *w);
     all
 }
@@ -140,7 +140,7 @@ pub fn with_velocities<'g>(e: &[Expr<'g>], v: &[Expr<'g>]) -> Vec<Expr<'g>> {
 }
 
 /// Returns the block of the given rows and columns of a matrix.
-pub fn part<'g>(m: &Matrix<'g>, rows: &[usize], columns: &[usize]) -> Matrix<'g> {
+pub fn matrix_block<'g>(m: &Matrix<'g>, rows: &[usize], columns: &[usize]) -> Matrix<'g> {
     rows.iter().map(|i| columns.iter().map(|j| m[*i][*j]).collect()).collect()
 }
 

@@ -31,17 +31,17 @@ struct SharedMotion<'g> {
 impl<'g> SharedMotions<'g> {
     /// Collects the motion subspaces that several links share.
     pub fn new(model: &Model<'g>, joints: &[Joint<'g>]) -> SharedMotions<'g> {
-        SharedMotions::collect(model, joints, |joint, dof| Some(joint.dofs[dof].subspace))
+        SharedMotions::collect_motions(model, joints, |joint, dof| Some(joint.dofs[dof].subspace))
     }
 
     /// Collects the time derivatives of motion subspaces that several links share.
     pub fn by_rates(model: &Model<'g>, joints: &[Joint<'g>]) -> SharedMotions<'g> {
-        SharedMotions::collect(model, joints, |joint, dof| {
+        SharedMotions::collect_motions(model, joints, |joint, dof| {
             joint.drift.as_ref()?.subspace_rates.get(dof).copied()
         })
     }
 
-    fn collect(
+    fn collect_motions(
         model: &Model<'g>,
         joints: &[Joint<'g>],
         along: impl Fn(&Joint<'g>, usize) -> Option<Spatial<'g>>,
@@ -80,7 +80,7 @@ impl<'g> SharedMotions<'g> {
     }
 
     /// Returns true for a link whose partial velocities are stored in this collection.
-    pub fn has(&self, link: usize) -> bool {
+    pub fn has_link(&self, link: usize) -> bool {
         self.concerned[link]
     }
 
@@ -101,10 +101,10 @@ impl<'g> SharedMotions<'g> {
         let mut sums: BTreeMap<Vec<usize>, Inertia<'g>> = BTreeMap::new();
         for (k, one) in self.motions.iter().enumerate() {
             for other in &self.motions[..=k] {
-                let common = common(&one.links, &other.links);
+                let common = common_elements(&one.links, &other.links);
                 let Some((first, rest)) = common.split_first() else { continue };
                 let sum = sums.entry(common.clone()).or_insert_with(|| {
-                    rest.iter().fold(inertias[*first], |sum, k| plus(&sum, &inertias[*k]))
+                    rest.iter().fold(inertias[*first], |sum, k| sum_of_inertias(&sum, &inertias[*k]))
                 });
                 let entry = other.along.dot(&momentum(sum, &one.along));
                 let entry = entry * entry.num(one.ratio * other.ratio);
@@ -118,7 +118,7 @@ impl<'g> SharedMotions<'g> {
 }
 
 /// Returns the common elements of two descending lists.
-fn common(a: &[usize], b: &[usize]) -> Vec<usize> {
+fn common_elements(a: &[usize], b: &[usize]) -> Vec<usize> {
     let mut b = b.iter().copied().peekable();
     let is_in_second_list = |k: &usize| {
         while b.next_if(|other| other > k).is_some() {}
@@ -128,7 +128,7 @@ fn common(a: &[usize], b: &[usize]) -> Vec<usize> {
 }
 
 /// Returns the component-wise sum; both inertias refer to the same point and axes.
-fn plus<'g>(a: &Inertia<'g>, b: &Inertia<'g>) -> Inertia<'g> {
+fn sum_of_inertias<'g>(a: &Inertia<'g>, b: &Inertia<'g>) -> Inertia<'g> {
     let add_vectors = |a: [Expr<'g>; 3], b: [Expr<'g>; 3]| std::array::from_fn(|k| a[k] + b[k]);
     Inertia {
         mass: a.mass + b.mass,

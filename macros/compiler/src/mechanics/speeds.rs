@@ -10,7 +10,7 @@
 
 use super::crba::Matrix;
 use super::derivatives::symbolic;
-use super::{accelerations, constraints, efforts, velocities};
+use super::{acceleration_symbols, constraints, generalized_force_symbols, velocity_symbols};
 use crate::expr::replace::replace_all;
 use crate::expr::{Expr, Mat3, Vec3};
 use crate::kinematics::time_derivative;
@@ -70,17 +70,19 @@ impl<'g> InSpeeds<'g> {
         let g = model.graph;
         let native = Model { speeds: None, velocities: speeds.velocities.clone(), ..model.clone() };
         let n = model.nv();
-        let rates: Vec<Expr<'g>> = (0..n).map(|k| speeds.rate(g, InV(k))).collect();
-        let change: Vec<Expr<'g>> = rates.iter().map(|rate| time_derivative(model.space(), *rate)).collect();
-        let a = accelerations(model);
-        let accelerations = times(&speeds.rates, &a).iter().zip(&change).map(|(a, c)| *a + *c).collect();
-        let efforts = transposed_times(&speeds.of_rates, &efforts(model));
+        let rates: Vec<Expr<'g>> = (0..n).map(|k| speeds.joint_velocity(g, InV(k))).collect();
+        let change: Vec<Expr<'g>> =
+            rates.iter().map(|rate| time_derivative(model.configuration_space(), *rate)).collect();
+        let a = acceleration_symbols(model);
+        let accelerations =
+            matrix_times_vector(&speeds.rates, &a).iter().zip(&change).map(|(a, c)| *a + *c).collect();
+        let efforts = transposed_times(&speeds.of_rates, &generalized_force_symbols(model));
         let model = Model { gradients: Gradients::default(), passive: None, ..model.clone() };
         let mut found = InSpeeds { native, model, speeds, rates, accelerations, change, efforts };
         found.exchange_constraints();
         found.exchange_contacts();
         for k in 0..found.model.outputs.len() {
-            found.model.outputs[k].values = found.written(&found.native.outputs[k].values);
+            found.model.outputs[k].values = found.express_in_speeds(&found.native.outputs[k].values);
         }
         Some(found)
     }
@@ -90,8 +92,8 @@ impl<'g> InSpeeds<'g> {
         let native = &self.native.constraints;
         let rates: Vec<Expr<'g>> = native.iter().map(|c| c.rate).collect();
         let biases: Vec<Expr<'g>> = native.iter().map(|c| c.bias).collect();
-        let (rates, biases) = (self.written(&rates), self.written(&biases));
-        let turned = times(&rows, &self.change);
+        let (rates, biases) = (self.express_in_speeds(&rates), self.express_in_speeds(&biases));
+        let turned = matrix_times_vector(&rows, &self.change);
         for (k, constraint) in self.model.constraints.iter_mut().enumerate() {
             constraint.rate = rates[k];
             constraint.bias = biases[k] + turned[k];
@@ -100,13 +102,13 @@ impl<'g> InSpeeds<'g> {
 
     fn exchange_contacts(&mut self) {
         for k in 0..self.model.contacts.len() {
-            self.model.contacts[k].rates = self.written(&self.native.contacts[k].rates);
+            self.model.contacts[k].rates = self.express_in_speeds(&self.native.contacts[k].rates);
         }
     }
 
     /// Expresses joint velocities, accelerations and forces in generalized speeds: replaces the symbols in
     /// `e` by their values in terms of `u`, `u̇` and the forces of the speeds.
-    pub fn written(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn express_in_speeds(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         replace_all(e, &|s| match Quantity::from_symbol(s) {
             Quantity::Velocity(k) => self.rates.get(k).copied(),
             Quantity::Acceleration(k) => self.accelerations.get(k).copied(),
@@ -116,19 +118,19 @@ impl<'g> InSpeeds<'g> {
     }
 
     /// Transforms generalized forces or momenta of the joints to those of the speeds: multiplies by `Zᵀ`.
-    pub fn forces(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        transposed_times(&self.speeds.rates, &self.written(e))
+    pub fn transform_forces(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        transposed_times(&self.speeds.rates, &self.express_in_speeds(e))
     }
 
     /// Transforms joint velocities, already expressed in speeds, to the speeds: `Y v`.
     pub fn speeds_of(&self, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        times(&self.speeds.of_rates, v)
+        matrix_times_vector(&self.speeds.of_rates, v)
     }
 
     /// Transforms joint accelerations to the rates of the speeds: `Y (v̇ − Ż u)`.
     pub fn rates_of_speeds(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let relative: Vec<Expr<'g>> =
-            self.written(e).iter().zip(&self.change).map(|(a, change)| *a - *change).collect();
+            self.express_in_speeds(e).iter().zip(&self.change).map(|(a, change)| *a - *change).collect();
         self.speeds_of(&relative)
     }
 
@@ -149,7 +151,7 @@ impl<'g> InSpeeds<'g> {
         let symbols: Vec<_> = (0..self.model.nv()).map(|k| argument(k).symbol()).collect();
         let own: Vec<Expr<'g>> = symbols.iter().map(|s| g.symbol(*s)).collect();
         let native = transposed_times(&self.speeds.of_rates, &own);
-        replace_all(&self.written(e), &|s| {
+        replace_all(&self.express_in_speeds(e), &|s| {
             symbols.iter().position(|known| *known == s).and_then(|k| native.get(k)).copied()
         })
     }
@@ -161,18 +163,18 @@ impl<'g> InSpeeds<'g> {
     }
 
     /// Transforms the results of a function in joint velocities to generalized speeds.
-    pub fn results(&self, role: Role, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn transform_results(&self, role: Role, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let n = self.model.nv();
         match role {
-            Role::Scalars => self.written(e),
-            Role::Forces => self.forces(e),
+            Role::Scalars => self.express_in_speeds(e),
+            Role::Forces => self.transform_forces(e),
             Role::MomentumRate => {
                 let (rate, momentum) = e.split_at(n.min(e.len()));
                 self.momentum_rate(rate, momentum)
             }
             Role::Bias(rows) => {
                 let (bias, matrix) = e.split_at(rows.min(e.len()));
-                self.bias(bias, matrix)
+                self.bias_in_speeds(bias, matrix)
             }
             Role::Accelerations(answers) | Role::Answers(answers) => {
                 let (solution, added) = e.split_at(e.len().saturating_sub(n * answers));
@@ -183,47 +185,54 @@ impl<'g> InSpeeds<'g> {
                 };
                 out.extend(match role {
                     Role::Answers(_) => self.with_given_forces(rest),
-                    _ => self.written(rest),
+                    _ => self.express_in_speeds(rest),
                 });
-                self.written(added).chunks(n.max(1)).for_each(|part| out.extend(self.speeds_of(part)));
+                self.express_in_speeds(added)
+                    .chunks(n.max(1))
+                    .for_each(|part| out.extend(self.speeds_of(part)));
                 out
             }
-            Role::Metric => columns(&self.metric(&square(e, n))),
-            Role::InverseMetric => columns(&self.inverse_metric(&square(e, n))),
+            Role::Metric => entries_by_column(&self.transform_mass_matrix(&square_from_columns(e, n))),
+            Role::InverseMetric => entries_by_column(&self.inverse_metric(&square_from_columns(e, n))),
             Role::Columns(rows) => self.columns_by_speed(e, rows),
             Role::Responses(impulses) => {
                 let (added, rest) = e.split_at((n * impulses).min(e.len()));
-                let added = self.written(added);
+                let added = self.express_in_speeds(added);
                 let mut out: Vec<Expr<'g>> =
                     added.chunks(n.max(1)).flat_map(|part| self.speeds_of(part)).collect();
-                out.extend(self.written(rest));
+                out.extend(self.express_in_speeds(rest));
                 out
             }
         }
     }
 
     /// Returns the mass matrix of the speeds, `Zᵀ M Z`.
-    pub fn metric(&self, mass: &Matrix<'g>) -> Matrix<'g> {
+    pub fn transform_mass_matrix(&self, mass: &Matrix<'g>) -> Matrix<'g> {
         let rows: Matrix<'g> = mass.iter().map(|row| transposed_times(&self.speeds.rates, row)).collect();
-        let by_column = transposed(&rows);
-        transposed(&by_column.iter().map(|c| transposed_times(&self.speeds.rates, c)).collect())
+        let by_column = transposed_matrix(&rows);
+        transposed_matrix(&by_column.iter().map(|c| transposed_times(&self.speeds.rates, c)).collect())
     }
 
     /// Returns `Zᵀ X` for a matrix `X` whose rows correspond to displacements.
     pub fn project(&self, m: &Matrix<'g>) -> Matrix<'g> {
-        transposed(&transposed(m).iter().map(|column| transposed_times(&self.speeds.rates, column)).collect())
+        transposed_matrix(
+            &transposed_matrix(m).iter().map(|column| transposed_times(&self.speeds.rates, column)).collect(),
+        )
     }
 
     /// Returns the inverse mass matrix of the speeds, `Y M⁻¹ Yᵀ`.
     pub fn inverse_metric(&self, inverse: &Matrix<'g>) -> Matrix<'g> {
-        let rows: Matrix<'g> = inverse.iter().map(|row| times(&self.speeds.of_rates, row)).collect();
-        transposed(&transposed(&rows).iter().map(|c| times(&self.speeds.of_rates, c)).collect())
+        let rows: Matrix<'g> =
+            inverse.iter().map(|row| matrix_times_vector(&self.speeds.of_rates, row)).collect();
+        transposed_matrix(
+            &transposed_matrix(&rows).iter().map(|c| matrix_times_vector(&self.speeds.of_rates, c)).collect(),
+        )
     }
 
     /// Multiplies a matrix, given column by column with a column for each joint velocity, by `Z` from the
     /// right; returns it column by column.
     fn columns_by_speed(&self, e: &[Expr<'g>], rows: usize) -> Vec<Expr<'g>> {
-        let written = self.written(e);
+        let written = self.express_in_speeds(e);
         let columns: Vec<&[Expr<'g>]> = written.chunks(rows.max(1)).collect();
         let by_row: Matrix<'g> = (0..rows)
             .map(|i| {
@@ -231,12 +240,12 @@ impl<'g> InSpeeds<'g> {
                 transposed_times(&self.speeds.rates, &row)
             })
             .collect();
-        self::columns(&by_row)
+        self::entries_by_column(&by_row)
     }
 
     /// Returns the time derivative `Ż` of the velocity transformation.
     fn turning_rates(&self) -> Matrix<'g> {
-        let space = self.model.space();
+        let space = self.model.configuration_space();
         let rates_of_row = |row: &Vec<Expr<'g>>| row.iter().map(|e| time_derivative(space, *e)).collect();
         self.speeds.rates.iter().map(rates_of_row).collect()
     }
@@ -246,17 +255,17 @@ impl<'g> InSpeeds<'g> {
     pub fn coriolis_matrix(&self, coriolis: &Matrix<'g>, mass: &Matrix<'g>) -> Matrix<'g> {
         let (z, rates) = (&self.speeds.rates, self.turning_rates());
         let row_in_speeds = |(c, m): (&Vec<Expr<'g>>, &Vec<Expr<'g>>)| -> Vec<Expr<'g>> {
-            let own = transposed_times(z, &self.written(c));
+            let own = transposed_times(z, &self.express_in_speeds(c));
             own.into_iter().zip(transposed_times(&rates, m)).map(|(own, carried)| own + carried).collect()
         };
         let sum: Matrix<'g> = coriolis.iter().zip(mass).map(row_in_speeds).collect();
-        transposed(&transposed(&sum).iter().map(|c| transposed_times(z, c)).collect())
+        transposed_matrix(&transposed_matrix(&sum).iter().map(|c| transposed_times(z, c)).collect())
     }
 
     /// Returns the rate of generalized momenta from the rate and the momenta in joint velocities:
     /// `ṗ_u = Zᵀ ṗ + Żᵀ p`.
     pub fn momentum_rate(&self, rate: &[Expr<'g>], momentum: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        self.momentum_rate_of_written(&self.written(rate), &self.written(momentum))
+        self.momentum_rate_of_written(&self.express_in_speeds(rate), &self.express_in_speeds(momentum))
     }
 
     /// Returns the rate of generalized momenta from the rate and the momenta of the joints that are already
@@ -269,8 +278,8 @@ impl<'g> InSpeeds<'g> {
 
     /// Returns `b + A Ż u`, the bias of a quantity `A v̇ + b` in generalized speeds, for the matrix `A`
     /// column by column.
-    pub fn bias(&self, bias: &[Expr<'g>], matrix: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let (rows, mut sum) = (bias.len(), self.written(bias));
+    pub fn bias_in_speeds(&self, bias: &[Expr<'g>], matrix: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let (rows, mut sum) = (bias.len(), self.express_in_speeds(bias));
         for (column, change) in matrix.chunks(rows.max(1)).zip(&self.change) {
             sum.iter_mut().zip(column).for_each(|(sum, entry)| *sum += *entry * *change);
         }
@@ -278,7 +287,7 @@ impl<'g> InSpeeds<'g> {
     }
 
     /// Returns the indices of the joint velocities that speeds replace.
-    pub fn replaced(&self) -> Vec<usize> {
+    pub fn replaced_velocities(&self) -> Vec<usize> {
         self.speeds.replaced.iter().map(|v| v.0).collect()
     }
 
@@ -301,24 +310,24 @@ impl<'g> InSpeeds<'g> {
     /// Returns the matrix `T` of the variational equation `ξ̇ = δu + T ξ` for the displacement `ξ` between
     /// two neighbouring motions. With `δ = Z ξ` and `δ̇ = δv + K δ` in joint velocities,
     /// `T = Y (K Z + ∂(Z u)/∂q − Ż)`.
-    pub fn turning(&self) -> Matrix<'g> {
+    pub fn variational_matrix(&self) -> Matrix<'g> {
         let (changes, rates) = (self.rate_changes(), self.turning_rates());
-        let native: Matrix<'g> = commutators(&self.native)
+        let native: Matrix<'g> = displacement_commutators(&self.native)
             .iter()
-            .map(|row| transposed_times(&self.speeds.rates, &self.written(row)))
+            .map(|row| transposed_times(&self.speeds.rates, &self.express_in_speeds(row)))
             .collect();
         let entry_of_sum = |i: usize, j: usize| native[i][j] + changes[i][j] - rates[i][j];
         let n = self.model.nv();
         let by_column: Matrix<'g> = (0..n).map(|j| (0..n).map(|i| entry_of_sum(i, j)).collect()).collect();
-        transposed(&by_column.iter().map(|column| self.speeds_of(column)).collect())
+        transposed_matrix(&by_column.iter().map(|column| self.speeds_of(column)).collect())
     }
 }
 
 /// Returns the matrix of `φ ↦ φ × v`. It gives the rate of the displacement `φ` between two neighbouring
 /// motions, `φ̇ = δv + φ × v`, which is measured in rotating axes (ball and free joints).
-pub fn commutators<'g>(model: &Model<'g>) -> Matrix<'g> {
+pub fn displacement_commutators<'g>(model: &Model<'g>) -> Matrix<'g> {
     let mut m = vec![vec![model.graph.zero(); model.nv()]; model.nv()];
-    let v = velocities(model);
+    let v = velocity_symbols(model);
     let mut block = |row: usize, column: usize, first: usize| {
         let minus = Mat3::skew(-Vec3([v[first], v[first + 1], v[first + 2]]));
         for i in 0..3 {
@@ -344,25 +353,25 @@ fn dot<'g>(row: &[Expr<'g>], v: &[Expr<'g>]) -> Option<Expr<'g>> {
     terms.map(|(a, b)| *a * *b).reduce(|a, b| a + b)
 }
 
-fn times<'g>(m: &Matrix<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
+fn matrix_times_vector<'g>(m: &Matrix<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
     m.iter().map(|row| dot(row, v).unwrap_or_else(|| row[0].zero())).collect()
 }
 
 fn transposed_times<'g>(m: &Matrix<'g>, v: &[Expr<'g>]) -> Vec<Expr<'g>> {
-    times(&transposed(m), v)
+    matrix_times_vector(&transposed_matrix(m), v)
 }
 
-fn transposed<'g>(m: &Matrix<'g>) -> Matrix<'g> {
+fn transposed_matrix<'g>(m: &Matrix<'g>) -> Matrix<'g> {
     let width = m.first().map_or(0, Vec::len);
     (0..width).map(|j| m.iter().map(|row| row[j]).collect()).collect()
 }
 
 /// Returns the entries of a matrix column by column.
-fn columns<'g>(m: &Matrix<'g>) -> Vec<Expr<'g>> {
-    transposed(m).concat()
+fn entries_by_column<'g>(m: &Matrix<'g>) -> Vec<Expr<'g>> {
+    transposed_matrix(m).concat()
 }
 
 /// Returns a square matrix from its entries column by column.
-fn square<'g>(e: &[Expr<'g>], n: usize) -> Matrix<'g> {
-    transposed(&e.chunks(n.max(1)).map(<[Expr<'g>]>::to_vec).collect())
+fn square_from_columns<'g>(e: &[Expr<'g>], n: usize) -> Matrix<'g> {
+    transposed_matrix(&e.chunks(n.max(1)).map(<[Expr<'g>]>::to_vec).collect())
 }

@@ -105,11 +105,11 @@ pub enum PieceKind {
 }
 
 /// Returns the entries of several vectors, concatenated.
-pub fn entries<'g>(vectors: &[Vec3<'g>]) -> Vec<Expr<'g>> {
+pub fn entries_of_vectors<'g>(vectors: &[Vec3<'g>]) -> Vec<Expr<'g>> {
     vectors.iter().flat_map(|v| v.0).collect()
 }
 
 /// Returns the entries of a matrix row by row.
-pub fn rows<'g>(m: &Mat3<'g>) -> Vec<Expr<'g>> {
+pub fn entries_by_row<'g>(m: &Mat3<'g>) -> Vec<Expr<'g>> {
     m.0.iter().flatten().copied().collect()
 }

@@ -22,7 +22,7 @@ impl<'g> Inertia<'g> {
     /// Returns the mass properties of a body with its centre of mass at `c` and the inertia `central` about
     /// it.
     pub fn of_body(mass: Expr<'g>, c: Vec3<'g>, central: Sym3<'g>) -> Inertia<'g> {
-        Inertia { mass, moment: c * mass, tensor: central + Sym3::point(mass, c) }
+        Inertia { mass, moment: c * mass, tensor: central + Sym3::point_mass_inertia(mass, c) }
     }
 
     /// Returns the sum of mass properties about the same origin in the same axes.

@@ -175,7 +175,7 @@ pub struct Uses {
 
 impl<'g> Model<'g> {
     /// Returns the configuration space of the mechanism.
-    pub fn space(&self) -> Space<'_, 'g> {
+    pub fn configuration_space(&self) -> Space<'_, 'g> {
         Space { graph: self.graph, charts: &self.charts, speeds: self.speeds.as_deref() }
     }
 
@@ -215,12 +215,12 @@ impl<'g> Model<'g> {
     }
 
     /// Returns the values of all requirements, in their order.
-    pub fn figures(&self) -> Vec<Expr<'g>> {
+    pub fn requirement_values(&self) -> Vec<Expr<'g>> {
         self.requirements.iter().flat_map(|requirement| &requirement.values).copied().collect()
     }
 
     /// Returns the number of holonomic constraints.
-    pub fn holonomic(&self) -> usize {
+    pub fn holonomic_count(&self) -> usize {
         self.constraints.iter().filter(|c| c.residual.is_some()).count()
     }
 

@@ -64,7 +64,7 @@ pub enum Motion<'g> {
 
 impl Motion<'_> {
     /// Returns the coordinate of a motion with one plain coordinate.
-    pub fn coordinate(&self) -> Option<&Coordinate> {
+    pub fn plain_coordinate(&self) -> Option<&Coordinate> {
         match self {
             Motion::Turn { coordinate, .. }
             | Motion::Slide { coordinate, .. }
@@ -74,7 +74,7 @@ impl Motion<'_> {
     }
 
     /// Returns the entries of `q` that the motion depends on.
-    pub fn configuration(&self) -> Range<usize> {
+    pub fn configuration_range(&self) -> Range<usize> {
         match self {
             Motion::Turn { coordinate, .. }
             | Motion::Slide { coordinate, .. }
@@ -86,7 +86,7 @@ impl Motion<'_> {
     }
 
     /// Returns the first of the entries of `q` that are a unit quaternion, if the motion has one.
-    pub fn quaternion(&self) -> Option<InQ> {
+    pub fn first_quaternion_index(&self) -> Option<InQ> {
         match self {
             Motion::Ball { q, .. } => Some(*q),
             Motion::Free { q, .. } => Some(*q + 3),
@@ -143,7 +143,7 @@ pub enum Chart {
 
 impl Chart {
     /// Returns the first of the entries of `q` that are a unit quaternion, if the chart has one.
-    pub fn quaternion(&self) -> Option<InQ> {
+    pub fn first_quaternion_index(&self) -> Option<InQ> {
         match self {
             Chart::Plain(..) => None,
             Chart::Ball(q, _) => Some(*q),

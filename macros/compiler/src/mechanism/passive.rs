@@ -21,7 +21,7 @@ impl<'g> PassiveForces<'g> {
     /// for each force, or no rows to leave out derivatives.
     pub fn new(forces: Vec<Expr<'g>>, by_q: &[Vec<Expr<'g>>], by_v: &[Vec<Expr<'g>>]) -> PassiveForces<'g> {
         let mut derivatives = Vec::new();
-        let mut name = |e: Expr<'g>| match e.value() {
+        let mut name = |e: Expr<'g>| match e.constant_value() {
             Some(_) => e,
             None => {
                 derivatives.push(e);
@@ -38,7 +38,7 @@ impl<'g> PassiveForces<'g> {
 
     /// Returns the forces as symbols for the other functions; constant forces as constants.
     pub fn given_forces(&self) -> Vec<Expr<'g>> {
-        let constant_or_passive_force = |(k, e): (usize, &Expr<'g>)| match e.value() {
+        let constant_or_passive_force = |(k, e): (usize, &Expr<'g>)| match e.constant_value() {
             Some(_) => *e,
             None => Quantity::PassiveForce(k).expr(e.graph()),
         };
@@ -48,15 +48,19 @@ impl<'g> PassiveForces<'g> {
     /// Returns the derivatives of the force symbols with respect to the configuration along the direction of
     /// a velocity.
     pub fn changes_by_configuration(&self, velocity: usize) -> impl Iterator<Item = (Symbol, Expr<'g>)> {
-        self.changes(0, velocity)
+        self.passive_force_derivatives(0, velocity)
     }
 
     /// Returns the derivatives of the force symbols with respect to a velocity.
     pub fn changes_by_velocity(&self, velocity: usize) -> impl Iterator<Item = (Symbol, Expr<'g>)> {
-        self.changes(1, velocity)
+        self.passive_force_derivatives(1, velocity)
     }
 
-    fn changes(&self, by: usize, velocity: usize) -> impl Iterator<Item = (Symbol, Expr<'g>)> {
+    fn passive_force_derivatives(
+        &self,
+        by: usize,
+        velocity: usize,
+    ) -> impl Iterator<Item = (Symbol, Expr<'g>)> {
         let column = self.given[by].get(velocity).into_iter().flatten().enumerate();
         column.filter(|(_, e)| !e.is_zero()).map(|(k, e)| (Quantity::PassiveForce(k).symbol(), *e))
     }

@@ -18,10 +18,10 @@ impl<'g> Pose<'g> {
     }
 
     /// Returns the composition of this pose with the pose `next` relative to the child frame.
-    pub fn then(&self, next: &Pose<'g>) -> Pose<'g> {
+    pub fn compose_with(&self, next: &Pose<'g>) -> Pose<'g> {
         Pose {
-            rotation: self.rotation.clone().then(&next.rotation),
-            translation: self.point(next.translation),
+            rotation: self.rotation.clone().compose_with(&next.rotation),
+            translation: self.transform_point(next.translation),
         }
     }
 
@@ -32,12 +32,12 @@ impl<'g> Pose<'g> {
     }
 
     /// Returns the position of a point of the child frame, from the parent's origin in parent axes.
-    pub fn point(&self, p: Vec3<'g>) -> Vec3<'g> {
+    pub fn transform_point(&self, p: Vec3<'g>) -> Vec3<'g> {
         self.translation + self.rotation.to_parent(p)
     }
 
     /// Returns all expressions that the placement consists of.
-    pub fn entries(&self) -> Vec<Expr<'g>> {
-        self.rotation.matrix().0.iter().flatten().chain(&self.translation.0).copied().collect()
+    pub fn all_expressions(&self) -> Vec<Expr<'g>> {
+        self.rotation.rotation_matrix().0.iter().flatten().chain(&self.translation.0).copied().collect()
     }
 }

@@ -42,7 +42,7 @@ pub enum Rule {
 
 impl Rule {
     /// Returns the name of the rule in the runtime.
-    pub fn name(self) -> &'static str {
+    pub fn rule_name(self) -> &'static str {
         match self {
             Rule::Finite => "Finite",
             Rule::Mass => "Mass",
@@ -58,7 +58,7 @@ impl Rule {
     }
 
     /// Returns true if this rule implies the other, which then need not be checked.
-    pub fn includes(self, other: Rule) -> bool {
+    pub fn implies_rule(self, other: Rule) -> bool {
         self == other
             || match other {
                 Rule::Finite => true,

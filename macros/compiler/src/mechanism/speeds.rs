@@ -22,7 +22,7 @@ pub struct Speeds<'g> {
 
 impl<'g> Speeds<'g> {
     /// Returns a joint velocity as an expression of the speeds, which are then the entries of `v`.
-    pub fn rate(&self, graph: &'g Graph, velocity: InV) -> Expr<'g> {
+    pub fn joint_velocity(&self, graph: &'g Graph, velocity: InV) -> Expr<'g> {
         let terms = self.rates[velocity.0].iter().enumerate().filter(|(_, z)| !z.is_zero());
         terms.fold(graph.zero(), |sum, (j, z)| sum + *z * Quantity::Velocity(j).expr(graph))
     }

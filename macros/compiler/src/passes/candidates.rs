@@ -1,9 +1,9 @@
 //! Candidates for the frame of a link, among which a pass chooses.
 
-use super::motions::{Freedom, freedom};
+use super::motions::{Freedom, frame_freedom};
 use super::number::{
-    Frame, IDENTITY, Mass, Vector, axis, axis_rotation, clean, column, cross, dot, norm, times, transpose,
-    transposed_times,
+    Frame, IDENTITY, Mass, Vector, axis_rotation, column, cross, dot, matrix_times_vector, norm,
+    round_noise_to_zero, transpose, transposed_times, unit_axis,
 };
 use crate::mechanism::{Link, Motion};
 use std::f64::consts::FRAC_PI_2;
@@ -29,7 +29,7 @@ impl Site {
     /// numeric.
     pub fn from_link(link: &Link<'_>, size: f64, free_parameters: bool) -> Site {
         let (place, mass) = (Frame::from_pose(&link.placement), Mass::from_inertia(&link.inertia));
-        let free = freedom(&link.motion);
+        let free = frame_freedom(&link.motion);
         let numeric = place.is_some() && (mass.is_some() || free_parameters);
         let place = place.filter(|_| !matches!(link.motion, Motion::Placed));
         Site {
@@ -42,11 +42,11 @@ impl Site {
     }
 
     /// Returns the joint's axis in the parent's frame.
-    fn direction(&self) -> Option<Vector> {
+    fn joint_axis(&self) -> Option<Vector> {
         let place = self.place.as_ref()?;
         match self.freedom {
             Freedom::Turn { k, .. } => Some(column(&place.rotation, k)),
-            Freedom::Slide { along } => Some(times(&place.rotation, along)),
+            Freedom::Slide { along } => Some(matrix_times_vector(&place.rotation, along)),
             Freedom::None => None,
         }
     }
@@ -66,25 +66,25 @@ const NEARLY_PARALLEL: f64 = 1e-3;
 
 /// Returns candidate frames of link `k`, relative to its present frame, which comes first. `chosen` holds the
 /// candidates of later links.
-pub fn candidates(sites: &[Site], k: usize, chosen: &[Vec<Frame>]) -> Vec<Frame> {
+pub fn candidate_frames(sites: &[Site], k: usize, chosen: &[Vec<Frame>]) -> Vec<Frame> {
     match sites[k].freedom {
         Freedom::None => vec![Frame::IDENTITY],
         Freedom::Turn { k: a, .. } => {
-            let list = turning(sites, k, a, chosen);
+            let list = choices_of_revolute(sites, k, a, chosen);
             let mut places = Vec::new();
             for angle in &list.angles {
                 let rotation = axis_rotation(a, *angle);
                 places.extend(
-                    list.shifts.iter().map(|s| Frame { rotation, translation: axis(a).map(|c| c * s) }),
+                    list.shifts.iter().map(|s| Frame { rotation, translation: unit_axis(a).map(|c| c * s) }),
                 );
             }
             places
         }
-        Freedom::Slide { along } => sliding(sites, k, along),
+        Freedom::Slide { along } => candidates_of_sliding_link(sites, k, along),
     }
 }
 
-fn children(sites: &[Site], k: usize) -> impl Iterator<Item = usize> {
+fn child_sites(sites: &[Site], k: usize) -> impl Iterator<Item = usize> {
     (k + 1..sites.len()).filter(move |c| sites[*c].parent == Some(k))
 }
 
@@ -101,108 +101,111 @@ struct Choices {
 impl Choices {
     /// Adds the angle, reduced by right angles to within 45°, that aligns an axis of the frame with the
     /// component of a vector normal to the joint's axis. Right angles cost nothing.
-    fn head(&mut self, v: Vector) {
+    fn add_heading(&mut self, v: Vector) {
         let (x, y) = (v[(self.a + 1) % 3], v[(self.a + 2) % 3]);
-        if clean(x.hypot(y), norm(v)) == 0.0 {
+        if round_noise_to_zero(libm::hypot(x, y), norm(v)) == 0.0 {
             return;
         }
-        let angle = y.atan2(x);
+        let angle = libm::atan2(y, x);
         let rest = angle - (angle / FRAC_PI_2).round() * FRAC_PI_2;
-        push(&mut self.angles, clean(rest, 2.0 * angle.abs()), 1.0);
+        push_distinct(&mut self.angles, round_noise_to_zero(rest, 2.0 * angle.abs()), 1.0);
     }
 
     /// Adds a shift of the origin, computed from lengths of magnitude `scale`, if it is within reach.
-    fn shift(&mut self, s: f64, scale: f64) {
+    fn add_shift(&mut self, s: f64, scale: f64) {
         if s.abs() <= self.reach {
-            push(&mut self.shifts, clean(s, scale), scale);
+            push_distinct(&mut self.shifts, round_noise_to_zero(s, scale), scale);
         }
     }
 }
 
 /// Adds a number, computed from numbers of magnitude `scale`, unless it is in the list.
-fn push(list: &mut Vec<f64>, x: f64, scale: f64) {
-    if list.len() < MAX_CANDIDATES && !list.iter().any(|y| clean(x - y, 4.0 * (scale + x.abs())) == 0.0) {
+fn push_distinct(list: &mut Vec<f64>, x: f64, scale: f64) {
+    if list.len() < MAX_CANDIDATES
+        && !list.iter().any(|y| round_noise_to_zero(x - y, 4.0 * (scale + x.abs())) == 0.0)
+    {
         list.push(x);
     }
 }
 
-fn turning(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Frame>]) -> Choices {
+fn choices_of_revolute(sites: &[Site], k: usize, a: usize, chosen: &[Vec<Frame>]) -> Choices {
     let mut list = Choices { a, angles: vec![0.0], shifts: vec![0.0], reach: sites[k].reach };
-    for c in children(sites, k) {
+    for c in child_sites(sites, k) {
         if let Some(place) = &sites[c].place {
-            towards(&mut list, &sites[c], place, &chosen[c]);
+            align_with_child(&mut list, &sites[c], place, &chosen[c]);
         }
     }
     if let Some(place) = &sites[k].place {
         // The point nearest to the parent's origin, and orientations with an axis normal to one of the
         // parent's.
         let back = transposed_times(&place.rotation, place.translation);
-        list.shift(-back[a], norm(back));
+        list.add_shift(-back[a], norm(back));
         let own = column(&place.rotation, a);
         for r in 0..3 {
-            list.head(transposed_times(&place.rotation, cross(axis(r), own)));
+            list.add_heading(transposed_times(&place.rotation, cross(unit_axis(r), own)));
         }
     }
     if let Some(mass) = &sites[k].mass {
         let component_normal_to_axis = |v: Vector| std::array::from_fn(|i| if i == a { 0.0 } else { v[i] });
         let (moment, products) =
             (component_normal_to_axis(mass.moment), component_normal_to_axis(column(&mass.tensor, a)));
-        list.head(moment);
-        list.head(products);
+        list.add_heading(moment);
+        list.add_heading(products);
         // The shift at which the product of inertia along the first moment vanishes.
         if norm(moment) > 0.0 {
-            list.shift(-dot(products, moment) / dot(moment, moment), 0.0);
+            list.add_shift(-dot(products, moment) / dot(moment, moment), 0.0);
         }
     }
     list
 }
 
 /// Adds the shift to the common normal with a child's axis, and the angle that points along it.
-fn towards(list: &mut Choices, child: &Site, place: &Frame, chosen: &[Frame]) {
+fn align_with_child(list: &mut Choices, child: &Site, place: &Frame, chosen: &[Frame]) {
     let (a, p) = (list.a, place.translation);
     let scale = norm(p);
-    let direction = child.direction();
+    let direction = child.joint_axis();
     if let Some(u) = direction {
         // The foot of the common normal, computed from the components of both vectors across the axis,
         // without cancellation. For axes that are parallel up to rounding it is arbitrary, and mostly out of
         // reach.
         let component_normal_to_axis = |v: Vector| std::array::from_fn(|i| if i == a { 0.0 } else { v[i] });
         let (side, away) = (component_normal_to_axis(u), component_normal_to_axis(p));
-        if clean(norm(side), 1.0) != 0.0 {
-            list.shift(p[a] - u[a] * dot(away, side) / dot(side, side), scale);
-            list.head(cross(axis(a), u));
+        if round_noise_to_zero(norm(side), 1.0) != 0.0 {
+            list.add_shift(p[a] - u[a] * dot(away, side) / dot(side, side), scale);
+            list.add_heading(cross(unit_axis(a), u));
         }
     }
     match direction {
         Some(u) if norm([u[(a + 1) % 3], u[(a + 2) % 3], 0.0]) > NEARLY_PARALLEL => {}
         Some(_) => {
             // Parallel axes have all normals in common, so the child's candidates are candidates here.
-            list.shift(p[a], scale);
+            list.add_shift(p[a], scale);
             for choice in chosen {
-                let ahead = times(&place.rotation, choice.translation);
-                list.shift(p[a] + ahead[a], scale + norm(ahead));
+                let ahead = matrix_times_vector(&place.rotation, choice.translation);
+                list.add_shift(p[a] + ahead[a], scale + norm(ahead));
             }
         }
-        None => list.shift(p[a], scale),
+        None => list.add_shift(p[a], scale),
     }
-    list.head(p);
+    list.add_heading(p);
 }
 
 /// Returns candidate frames of a sliding link: oriented like itself, its parent or a child, and at their
 /// positions.
-fn sliding(sites: &[Site], k: usize, slide: Vector) -> Vec<Frame> {
+fn candidates_of_sliding_link(sites: &[Site], k: usize, slide: Vector) -> Vec<Frame> {
     let mut rotations = vec![IDENTITY];
     let mut points = vec![[0.0; 3]];
     if let Some(place) = &sites[k].place {
         rotations.push(transpose(&place.rotation));
         points.push(transposed_times(&place.rotation, place.translation).map(|c| -c));
     }
-    for place in children(sites, k).filter_map(|c| sites[c].place.as_ref()) {
+    for place in child_sites(sites, k).filter_map(|c| sites[c].place.as_ref()) {
         rotations.push(place.rotation);
         points.push(place.translation);
     }
     // Sliding along a coordinate axis is cheap and is preserved.
-    let count_nonzero_components = |v: Vector| v.iter().filter(|c| clean(**c, 1.0) != 0.0).count();
+    let count_nonzero_components =
+        |v: Vector| v.iter().filter(|c| round_noise_to_zero(**c, 1.0) != 0.0).count();
     rotations.retain(|rotation| {
         count_nonzero_components(transposed_times(rotation, slide)) <= count_nonzero_components(slide)
     });

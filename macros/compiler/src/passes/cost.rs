@@ -4,7 +4,8 @@
 use super::candidates::Site;
 use super::motions::Freedom;
 use super::number::{
-    Frame, Matrix, Vector, axis, clean, clean_rotation, column, cross, dot, norm, times, transposed_times,
+    Frame, Matrix, Vector, clean_rotation, column, cross, dot, matrix_times_vector, norm,
+    round_noise_to_zero, transposed_times, unit_axis,
 };
 use std::f64::consts::FRAC_PI_2;
 
@@ -23,14 +24,14 @@ const GROUND: f64 = 0.02;
 
 /// Returns the cheapest placement of a link's new frame `frame` in its parent's frame `parent`: cost,
 /// placement, and the angle to be added to the joint. Returns `None` if the placement is not numeric.
-pub fn joint(site: &Site, parent: &Frame, frame: &Frame) -> Option<(f64, Frame, f64)> {
+pub fn cheapest_joint_placement(site: &Site, parent: &Frame, frame: &Frame) -> Option<(f64, Frame, f64)> {
     let plain = site.place.as_ref()?.transform_between(parent, frame);
-    let mut best = (placement(site, &plain, frame), plain, 0.0);
+    let mut best = (placement_cost(site, &plain, frame), plain, 0.0);
     if let Freedom::Turn { k, offset: true } = site.freedom {
-        for (rotation, angle) in alignments(&plain.rotation, k) {
+        for (rotation, angle) in sparse_alignments(&plain.rotation, k) {
             let place = Frame { rotation, ..plain };
-            let angle = clean(angle, 1.0);
-            let cost = placement(site, &place, frame) + if angle == 0.0 { 0.0 } else { OFFSET };
+            let angle = round_noise_to_zero(angle, 1.0);
+            let cost = placement_cost(site, &place, frame) + if angle == 0.0 { 0.0 } else { OFFSET };
             if cost < best.0 - 1e-9 {
                 best = (cost, place, -angle);
             }
@@ -39,24 +40,24 @@ pub fn joint(site: &Site, parent: &Frame, frame: &Frame) -> Option<(f64, Frame, 
     Some(best)
 }
 
-fn placement(site: &Site, place: &Frame, frame: &Frame) -> f64 {
+fn placement_cost(site: &Site, place: &Frame, frame: &Frame) -> f64 {
     let mut lengths = place.translation;
     if let Freedom::Slide { along } = site.freedom {
         // The displacement has all components of the sliding axis.
         let turned = transposed_times(&frame.rotation, along);
-        let way = times(&place.rotation, turned);
+        let way = matrix_times_vector(&place.rotation, turned);
         lengths = std::array::from_fn(|k| lengths[k].abs() + way[k].abs());
     }
-    let cost = TURN * turns(&place.rotation) + LENGTH * nonzero(lengths);
+    let cost = TURN * rotation_count(&place.rotation) + LENGTH * nonzero_count(lengths);
     if site.parent.is_none() { GROUND * cost } else { cost }
 }
 
-fn nonzero(v: Vector) -> f64 {
+fn nonzero_count(v: Vector) -> f64 {
     v.iter().filter(|c| **c != 0.0).count() as f64
 }
 
 /// Returns the number of rotations about coordinate axes in a rotation; right angles do not count.
-fn turns(m: &Matrix) -> f64 {
+fn rotation_count(m: &Matrix) -> f64 {
     match m.iter().flatten().filter(|e| **e == 0.0).count() {
         6 => 0.0,
         4 => 1.0,
@@ -67,18 +68,18 @@ fn turns(m: &Matrix) -> f64 {
 
 /// Returns sparse rotations `m R` with their angles, where `R` rotates by the angle about coordinate axis
 /// `k`.
-fn alignments(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
+fn sparse_alignments(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     let u = column(m, k);
     let mut found = Vec::new();
     for r in 0..3 {
-        let across = if u[r] == 0.0 { axis(r) } else { cross(axis(r), u) };
+        let across = if u[r] == 0.0 { unit_axis(r) } else { cross(unit_axis(r), u) };
         let length = norm(across);
         if length == 0.0 {
             continue;
         }
         let n = across.map(|c| c / length);
-        let mut angle = dot(n, column(m, j)).atan2(dot(n, column(m, i)));
+        let mut angle = libm::atan2(dot(n, column(m, j)), dot(n, column(m, i)));
         let mut x = n;
         // Right angles cost nothing: the angle is reduced to within 45°.
         while angle.abs() > 0.5 * FRAC_PI_2 + 1e-6 {
@@ -96,7 +97,7 @@ fn alignments(m: &Matrix, k: usize) -> Vec<(Matrix, f64)> {
 }
 
 /// Returns the cost of the mass properties resolved in a frame.
-pub fn masses(site: &Site, frame: &Frame) -> f64 {
+pub fn mass_cost(site: &Site, frame: &Frame) -> f64 {
     let Some(mass) = &site.mass else { return 0.0 };
     let seen = mass.seen_from(frame);
     let along = match site.freedom {

@@ -6,7 +6,7 @@
 //! The cost of a placement depends on the frames of both links, so the candidates of all links are compared
 //! together by dynamic programming from the leaves to the root (Bellman 1957).
 
-use super::candidates::{Site, candidates};
+use super::candidates::{Site, candidate_frames};
 use super::cost;
 use super::motions::{Freedom, seen_from};
 use super::number::{Frame, Mass, norm};
@@ -25,35 +25,35 @@ struct Step {
 
 /// Chooses and applies the frames of links with these sizes.
 pub fn place_frames(model: &mut Model<'_>, sizes: &[f64], free_parameters: bool) {
-    let sites = sites(model, sizes, free_parameters);
-    let Some(frames) = choose(&sites) else { return };
+    let sites = sites_of_links(model, sizes, free_parameters);
+    let Some(frames) = choose_frames(&sites) else { return };
     let steps: Vec<Option<Step>> = (0..sites.len())
         .map(|k| {
             let parent = sites[k].parent.map_or(Frame::IDENTITY, |p| frames[p]);
-            let (_, placement, offset) = cost::joint(&sites[k], &parent, &frames[k])?;
+            let (_, placement, offset) = cost::cheapest_joint_placement(&sites[k], &parent, &frames[k])?;
             Some(Step { frame: frames[k], placement, offset })
         })
         .collect();
-    apply(model, &sites, &steps);
+    apply_frame_choice(model, &sites, &steps);
 }
 
 /// Returns the size of every link: the maximum of the distances of its joint from the parent's origin plus
 /// its radius of gyration, and of its children's joints, as far as these are numeric.
-pub fn sizes(model: &Model<'_>) -> Vec<f64> {
+pub fn link_sizes(model: &Model<'_>) -> Vec<f64> {
     let places: Vec<Option<Frame>> =
         model.links.iter().map(|link| Frame::from_pose(&link.placement)).collect();
     let distance_to_link = |k: usize| places[k].as_ref().map_or(0.0, |place| norm(place.translation));
     let size_of_link = |(k, link): (usize, &Link<'_>)| {
         let children =
             (k + 1..model.links.len()).filter(|c| model.links[*c].parent.is_some_and(|p| p.0 == k));
-        let masses = Mass::from_inertia(&link.inertia).map_or(0.0, |mass| mass.radius());
+        let masses = Mass::from_inertia(&link.inertia).map_or(0.0, |mass| mass.root_mean_square_radius());
         children.map(distance_to_link).fold(distance_to_link(k) + masses, f64::max)
     };
     model.links.iter().enumerate().map(size_of_link).collect()
 }
 
 /// Returns the data that the choice of frames depends on.
-fn sites(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
+fn sites_of_links(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
     let site_of_link = |(link, size): (&Link<'_>, &f64)| Site::from_link(link, *size, free_parameters);
     let mut sites: Vec<Site> = model.links.iter().zip(sizes).map(site_of_link).collect();
     for k in 0..sites.len() {
@@ -67,35 +67,35 @@ fn sites(model: &Model<'_>, sizes: &[f64], free_parameters: bool) -> Vec<Site> {
 
 /// Returns the cheapest frame of every link relative to its present frame, or `None` if no frame can be
 /// chosen.
-fn choose(sites: &[Site]) -> Option<Vec<Frame>> {
+fn choose_frames(sites: &[Site]) -> Option<Vec<Frame>> {
     if sites.iter().all(|site| matches!(site.freedom, Freedom::None)) {
         return None;
     }
     let mut choices: Vec<Vec<Frame>> = vec![Vec::new(); sites.len()];
     let mut costs: Vec<Vec<f64>> = vec![Vec::new(); sites.len()];
     for k in (0..sites.len()).rev() {
-        choices[k] = candidates(sites, k, &choices);
-        costs[k] = choices[k].iter().map(|frame| cost::masses(&sites[k], frame)).collect();
+        choices[k] = candidate_frames(sites, k, &choices);
+        costs[k] = choices[k].iter().map(|frame| cost::mass_cost(&sites[k], frame)).collect();
         for child in (k + 1..sites.len()).filter(|c| sites[*c].parent == Some(k)) {
             for (c, frame) in choices[k].iter().enumerate() {
-                costs[k][c] += best(&sites[child], frame, &choices[child], &costs[child]).1;
+                costs[k][c] += best_candidate(&sites[child], frame, &choices[child], &costs[child]).1;
             }
         }
     }
     let mut frames: Vec<Frame> = Vec::with_capacity(sites.len());
     for k in 0..sites.len() {
         let parent = sites[k].parent.map_or(Frame::IDENTITY, |p| frames[p]);
-        frames.push(choices[k][best(&sites[k], &parent, &choices[k], &costs[k]).0]);
+        frames.push(choices[k][best_candidate(&sites[k], &parent, &choices[k], &costs[k]).0]);
     }
     Some(frames)
 }
 
 /// Returns the index of the best candidate of a link for a parent's frame, and its cost including all
 /// descendants.
-fn best(site: &Site, parent: &Frame, choices: &[Frame], costs: &[f64]) -> (usize, f64) {
+fn best_candidate(site: &Site, parent: &Frame, choices: &[Frame], costs: &[f64]) -> (usize, f64) {
     let mut best = (0, f64::INFINITY);
     for (c, frame) in choices.iter().enumerate() {
-        let own = cost::joint(site, parent, frame).map_or(0.0, |(cost, ..)| cost);
+        let own = cost::cheapest_joint_placement(site, parent, frame).map_or(0.0, |(cost, ..)| cost);
         // The first of equal candidates wins: it is the present frame, if that is among them.
         if own + costs[c] < best.1 - 1e-9 {
             best = (c, own + costs[c]);
@@ -104,24 +104,25 @@ fn best(site: &Site, parent: &Frame, choices: &[Frame], costs: &[f64]) -> (usize
     best
 }
 
-fn apply<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option<Step>]) {
+fn apply_frame_choice<'g>(model: &mut Model<'g>, sites: &[Site], steps: &[Option<Step>]) {
     let g = model.graph;
     for (link, (site, step)) in model.links.iter_mut().zip(sites.iter().zip(steps)) {
         let Some(step) = step else { continue };
-        link.placement = step.placement.pose(g);
+        link.placement = step.placement.frame_to_pose(g);
         if matches!(site.freedom, Freedom::None) {
             continue;
         }
         link.inertia = match &site.mass {
-            Some(mass) => mass.seen_from(&step.frame).inertia(g),
+            Some(mass) => mass.seen_from(&step.frame).inertia_expressions(g),
             None => {
-                let back = step.frame.pose(g).inverse();
+                let back = step.frame.frame_to_pose(g).inverse();
                 Inertia::zero(g).plus_placed(&link.inertia, &back.rotation, back.translation)
             }
         };
-        seen_from(&mut link.motion, &step.frame.pose(g), step.offset);
+        seen_from(&mut link.motion, &step.frame.frame_to_pose(g), step.offset);
     }
-    let back = steps.iter().map(|s| s.as_ref().map_or(Pose::identity(g), |s| s.frame.pose(g).inverse()));
+    let back =
+        steps.iter().map(|s| s.as_ref().map_or(Pose::identity(g), |s| s.frame.frame_to_pose(g).inverse()));
     move_contents(model, &back.collect::<Vec<_>>());
 }
 
@@ -175,22 +176,22 @@ pub fn move_contents<'g>(model: &mut Model<'g>, back: &[Pose<'g>]) {
     } = model;
     for frame in frames {
         if let Some(link) = frame.link {
-            frame.pose = back[link.0].then(&frame.pose);
+            frame.pose = back[link.0].compose_with(&frame.pose);
         }
     }
     for (_, input) in inputs {
         match input {
             Input::Named | Input::Coordinate(_) | Input::Sum(..) => {}
             Input::Force { link, point, along } => {
-                *point = back[link.0].point(*point);
-                turn(along, back);
+                *point = back[link.0].transform_point(*point);
+                rotate_direction(along, back);
             }
-            Input::Torque { about, .. } => turn(about, back),
+            Input::Torque { about, .. } => rotate_direction(about, back),
         }
     }
 }
 
-fn turn<'g>(direction: &mut Direction<'g>, back: &[Pose<'g>]) {
+fn rotate_direction<'g>(direction: &mut Direction<'g>, back: &[Pose<'g>]) {
     for (link, v) in direction {
         if let Some(link) = link {
             *v = back[link.0].rotation.to_parent(*v);

@@ -1,7 +1,7 @@
 //! Passes from `Model` to `Model` that choose link frames and redistribute mass properties so that the
 //! equations cost less. Every pass is exact up to rounding and can be switched off.
 
-use crate::kinematics::{Joint, joints};
+use crate::kinematics::{Joint, joints_of_model};
 use crate::mechanism::Model;
 
 mod candidates;
@@ -13,10 +13,10 @@ mod parallel;
 mod regroup;
 mod slide;
 
-pub use frames::{place_frames, sizes};
+pub use frames::{link_sizes, place_frames};
 pub use motions::Gauge;
 pub use parallel::in_common_axes;
-pub use regroup::{Regroup, regroup};
+pub use regroup::{Regroup, regroup_inertias};
 
 /// Passes over the model that are to run.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +43,7 @@ impl Passes {
     /// Returns the numbers of SIMD lanes that are tried for joints of one path. Code without lanes is tried
     /// in
     /// every case.
-    pub fn wide(&self, nv: usize) -> &'static [usize] {
+    pub fn tried_lane_counts(&self, nv: usize) -> &'static [usize] {
         match nv {
             _ if !self.lanes => &[],
             0..4 => &[],
@@ -65,17 +65,17 @@ pub struct Variant<'g> {
 }
 
 /// Runs the passes; returns variants with the same frames and different distributions of mass properties.
-pub fn variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>> {
+pub fn model_variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>> {
     let mut start = model.clone();
     if passes.regroup {
         // Frames are chosen by the mass properties that remain.
-        regroup(&mut start, Regroup::default());
+        regroup_inertias(&mut start, Regroup::default());
     }
     if passes.frames {
         slide::slide_frames(&mut start);
-        place_frames(&mut start, &sizes(model), passes.free_parameters);
+        place_frames(&mut start, &link_sizes(model), passes.free_parameters);
     }
-    let joints = joints(&start);
+    let joints = joints_of_model(&start);
     if !passes.regroup {
         return vec![Variant { model: start, joints, for_inverse_dynamics: false }];
     }
@@ -86,7 +86,7 @@ pub fn variants<'g>(model: &Model<'g>, passes: Passes) -> Vec<Variant<'g>> {
             continue;
         }
         let mut model = start.clone();
-        regroup(&mut model, Regroup { gauge, to_children, symbolic });
+        regroup_inertias(&mut model, Regroup { gauge, to_children, symbolic });
         add(&mut variants, Variant { model, joints: joints.clone(), for_inverse_dynamics: to_children });
     }
     if !passes.frames {

@@ -1,7 +1,7 @@
 //! Properties of elementary motions that the passes use: the freedom to choose a link's frame, the motion
 //! relative to the new frame, and the mass properties that may be moved to the parent.
 
-use super::number::{Vector, clean};
+use super::number::{Vector, round_noise_to_zero};
 use crate::expr::{Sym3, Vec3};
 use crate::mechanism::{Coordinate, Inertia, Link, Motion, Pose};
 
@@ -25,11 +25,11 @@ pub enum Freedom {
 }
 
 /// Returns the freedom to choose the frame of a link with this motion, or `None` if it is fixed.
-pub fn freedom(motion: &Motion<'_>) -> Option<Freedom> {
+pub fn frame_freedom(motion: &Motion<'_>) -> Option<Freedom> {
     match motion {
         Motion::Turn { axis, .. } => coordinate_axis(*axis).map(|k| Freedom::Turn { k, offset: true }),
         Motion::Helix { axis, .. } => coordinate_axis(*axis).map(|k| Freedom::Turn { k, offset: false }),
-        Motion::Slide { axis, .. } => axis.values().map(|along| Freedom::Slide { along }),
+        Motion::Slide { axis, .. } => axis.constant_components().map(|along| Freedom::Slide { along }),
         Motion::Ball { .. } | Motion::Free { .. } | Motion::Placed => None,
     }
 }
@@ -38,7 +38,7 @@ pub fn freedom(motion: &Motion<'_>) -> Option<Freedom> {
 /// joint's axis by `offset`.
 pub fn seen_from<'g>(motion: &mut Motion<'g>, frame: &Pose<'g>, offset: f64) {
     match motion {
-        Motion::Turn { axis, coordinate } => shift(coordinate, *axis, offset),
+        Motion::Turn { axis, coordinate } => shift_coordinate(coordinate, *axis, offset),
         Motion::Slide { axis, .. } => *axis = frame.rotation.to_child(*axis),
         // The frame is shifted along the axis and rotated about it, without an offset.
         Motion::Helix { .. } => {}
@@ -48,11 +48,11 @@ pub fn seen_from<'g>(motion: &mut Motion<'g>, frame: &Pose<'g>, offset: f64) {
 }
 
 /// Adds an angle about the coordinate axis to the coordinate of a joint about `axis`.
-fn shift(coordinate: &mut Coordinate, axis: Vec3<'_>, offset: f64) {
-    let negative = axis.values().is_some_and(|n| n.iter().sum::<f64>() < 0.0);
+fn shift_coordinate(coordinate: &mut Coordinate, axis: Vec3<'_>, offset: f64) {
+    let negative = axis.constant_components().is_some_and(|n| n.iter().sum::<f64>() < 0.0);
     let angle = if negative { -offset } else { offset };
     let scale = coordinate.offset.abs() + angle.abs();
-    coordinate.offset = clean(coordinate.offset + angle, scale);
+    coordinate.offset = round_noise_to_zero(coordinate.offset + angle, scale);
 }
 
 /// Convention that makes a moment of inertia of a revolute link vanish. The joint's axis is `k`; the others
@@ -69,7 +69,7 @@ pub enum Gauge {
 }
 
 /// Returns the part of a link's mass properties that can be moved to the parent.
-pub fn movable<'g>(link: &Link<'g>, gauge: Gauge) -> Option<Inertia<'g>> {
+pub fn movable_inertia<'g>(link: &Link<'g>, gauge: Gauge) -> Option<Inertia<'g>> {
     let Inertia { mass, moment, tensor } = link.inertia;
     let nothing = Inertia::zero(mass.graph());
     match &link.motion {
@@ -77,12 +77,12 @@ pub fn movable<'g>(link: &Link<'g>, gauge: Gauge) -> Option<Inertia<'g>> {
             let k = coordinate_axis(*axis)?;
             let mut along = nothing.moment;
             along.0[k] = moment[k];
-            Some(Inertia { mass, moment: along, tensor: transverse(&tensor, k, gauge) })
+            Some(Inertia { mass, moment: along, tensor: transverse_inertia(&tensor, k, gauge) })
         }
         Motion::Slide { .. } => Some(Inertia { tensor, ..nothing }),
         Motion::Helix { axis, .. } => {
             let k = coordinate_axis(*axis)?;
-            Some(Inertia { tensor: transverse(&tensor, k, gauge), ..nothing })
+            Some(Inertia { tensor: transverse_inertia(&tensor, k, gauge), ..nothing })
         }
         Motion::Ball { .. } => Some(Inertia { mass, ..nothing }),
         Motion::Free { .. } | Motion::Placed => None,
@@ -91,7 +91,7 @@ pub fn movable<'g>(link: &Link<'g>, gauge: Gauge) -> Option<Inertia<'g>> {
 
 /// Returns the inertia with equal moments about the two axes normal to `k` that makes the moment of the gauge
 /// vanish.
-fn transverse<'g>(tensor: &Sym3<'g>, k: usize, gauge: Gauge) -> Sym3<'g> {
+fn transverse_inertia<'g>(tensor: &Sym3<'g>, k: usize, gauge: Gauge) -> Sym3<'g> {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     let d = &tensor.diagonal;
     let both = match gauge {
@@ -99,7 +99,7 @@ fn transverse<'g>(tensor: &Sym3<'g>, k: usize, gauge: Gauge) -> Sym3<'g> {
         Gauge::Second => d[j],
         Gauge::Flat => (d[i] + d[j] - d[k]) * 0.5,
     };
-    let mut out = Sym3::scalar(both);
+    let mut out = Sym3::multiple_of_identity(both);
     out.diagonal[k] = both.zero();
     out
 }

@@ -12,13 +12,13 @@ pub type Matrix = [[f64; 3]; 3];
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Returns a number, or zero if it is the rounding error of terms of magnitude `scale`.
-pub fn clean(x: f64, scale: f64) -> f64 {
+pub fn round_noise_to_zero(x: f64, scale: f64) -> f64 {
     if x.abs() <= ROUNDING * scale { 0.0 } else { x }
 }
 
 /// Returns an entry of a rotation matrix, rounded to 0 or ±1 if it is next to it.
 fn clean_entry(x: f64) -> f64 {
-    if (x.abs() - 1.0).abs() <= ROUNDING { x.signum() } else { clean(x, 1.0) }
+    if (x.abs() - 1.0).abs() <= ROUNDING { x.signum() } else { round_noise_to_zero(x, 1.0) }
 }
 
 /// Returns the scalar product of two vectors.
@@ -33,7 +33,7 @@ pub fn cross(a: Vector, b: Vector) -> Vector {
 
 /// Returns the length of a vector.
 pub fn norm(a: Vector) -> f64 {
-    a[0].hypot(a[1]).hypot(a[2])
+    libm::hypot(libm::hypot(a[0], a[1]), a[2])
 }
 
 /// Returns the vector `s a + b`.
@@ -42,7 +42,7 @@ pub fn scaled_sum(s: f64, a: Vector, b: Vector) -> Vector {
 }
 
 /// Returns the unit vector scaled_sum coordinate axis `k`.
-pub fn axis(k: usize) -> Vector {
+pub fn unit_axis(k: usize) -> Vector {
     std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 })
 }
 
@@ -52,7 +52,7 @@ pub fn column(m: &Matrix, j: usize) -> Vector {
 }
 
 /// Returns the product of a matrix and a vector.
-pub fn times(m: &Matrix, v: Vector) -> Vector {
+pub fn matrix_times_vector(m: &Matrix, v: Vector) -> Vector {
     m.map(|row| dot(row, v))
 }
 
@@ -62,7 +62,7 @@ pub fn transposed_times(m: &Matrix, v: Vector) -> Vector {
 }
 
 /// Returns the product of two matrices.
-pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
+pub fn matrix_product(a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| dot(a[i], column(b, j))))
 }
 
@@ -77,7 +77,7 @@ pub const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 /// Returns the matrix of the rotation by an angle about coordinate axis `k`.
 pub fn axis_rotation(k: usize, angle: f64) -> Matrix {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = libm::sincos(angle);
     let (sin, cos) = (clean_entry(sin), clean_entry(cos));
     let mut m = IDENTITY;
     (m[i][i], m[i][j], m[j][i], m[j][j]) = (cos, -sin, sin, cos);
@@ -104,29 +104,31 @@ impl Frame {
 
     /// Returns a numeric pose whose rotation is orthogonal up to rounding, or `None`.
     pub fn from_pose(pose: &Pose<'_>) -> Option<Frame> {
-        let rotation = clean_rotation(&pose.rotation.matrix().values()?);
-        let square = product(&transpose(&rotation), &rotation);
+        let rotation = clean_rotation(&pose.rotation.rotation_matrix().constant_entries()?);
+        let square = matrix_product(&transpose(&rotation), &rotation);
         let orthogonality_error = |i: usize, j: usize| (square[i][j] - IDENTITY[i][j]).abs();
         if (0..9).any(|k| orthogonality_error(k / 3, k % 3) > 4.0 * ROUNDING) {
             return None;
         }
-        Some(Frame { rotation, translation: clean_vector(pose.translation.values()?) })
+        Some(Frame { rotation, translation: clean_vector(pose.translation.constant_components()?) })
     }
 
     /// Converts the frame to a pose.
-    pub fn pose<'g>(&self, g: &'g Graph) -> Pose<'g> {
+    pub fn frame_to_pose<'g>(&self, g: &'g Graph) -> Pose<'g> {
         let matrix = Mat3::from_fn(|i, j| g.num(self.rotation[i][j]));
-        Pose { rotation: Rotation::from_matrix(matrix), translation: Vec3::numbers(g, self.translation) }
+        Pose { rotation: Rotation::from_matrix(matrix), translation: Vec3::from_numbers(g, self.translation) }
     }
 
     /// Returns the transformation `other⁻¹ self next`.
     pub fn transform_between(&self, other: &Frame, next: &Frame) -> Frame {
-        let rotation = product(&transpose(&other.rotation), &product(&self.rotation, &next.rotation));
-        let ahead = times(&self.rotation, next.translation);
+        let rotation =
+            matrix_product(&transpose(&other.rotation), &matrix_product(&self.rotation, &next.rotation));
+        let ahead = matrix_times_vector(&self.rotation, next.translation);
         let scale = norm(self.translation) + norm(ahead) + norm(other.translation);
-        let from =
-            std::array::from_fn(|k| clean(self.translation[k] + ahead[k] - other.translation[k], scale));
-        let translation = transposed_times(&other.rotation, from).map(|c| clean(c, scale));
+        let from = std::array::from_fn(|k| {
+            round_noise_to_zero(self.translation[k] + ahead[k] - other.translation[k], scale)
+        });
+        let translation = transposed_times(&other.rotation, from).map(|c| round_noise_to_zero(c, scale));
         Frame { rotation: clean_rotation(&rotation), translation }
     }
 }
@@ -134,7 +136,7 @@ impl Frame {
 /// Replaces components of a vector that are rounding errors by zero.
 fn clean_vector(v: Vector) -> Vector {
     let scale = norm(v);
-    v.map(|c| clean(c, scale))
+    v.map(|c| round_noise_to_zero(c, scale))
 }
 
 /// Mass properties of a link as numbers.
@@ -152,23 +154,23 @@ impl Mass {
     /// Returns the mass properties as numbers, if all of them are numeric.
     pub fn from_inertia(inertia: &Inertia<'_>) -> Option<Mass> {
         Some(Mass {
-            mass: inertia.mass.value()?,
-            moment: inertia.moment.values()?,
-            tensor: inertia.tensor.full().values()?,
+            mass: inertia.mass.constant_value()?,
+            moment: inertia.moment.constant_components()?,
+            tensor: inertia.tensor.full_matrix().constant_entries()?,
         })
     }
 
     /// Returns the root mean square distance of the mass from the origin; zero without mass.
-    pub fn radius(&self) -> f64 {
+    pub fn root_mean_square_radius(&self) -> f64 {
         let polar = 0.5 * (self.tensor[0][0] + self.tensor[1][1] + self.tensor[2][2]);
         if self.mass > 0.0 { (polar.max(0.0) / self.mass).sqrt() } else { 0.0 }
     }
 
     /// Converts the mass properties to expressions.
-    pub fn inertia<'g>(&self, g: &'g Graph) -> Inertia<'g> {
+    pub fn inertia_expressions<'g>(&self, g: &'g Graph) -> Inertia<'g> {
         Inertia {
             mass: g.num(self.mass),
-            moment: Vec3::numbers(g, self.moment),
+            moment: Vec3::from_numbers(g, self.moment),
             tensor: Sym3::from_upper(&Mat3::from_fn(|i, j| g.num(self.tensor[i][j]))),
         }
     }
@@ -184,9 +186,9 @@ impl Mass {
                 self.tensor[i][j] + unit + p[i] * h[j] + h[i] * p[j] - self.mass * p[i] * p[j]
             })
         });
-        let tensor = product(&transpose(r), &product(&tensor, r));
+        let tensor = matrix_product(&transpose(r), &matrix_product(&tensor, r));
         let moment = transposed_times(r, scaled_sum(-self.mass, p, h));
-        Mass { mass: self.mass, moment, tensor }.cleaned()
+        Mass { mass: self.mass, moment, tensor }.clean_small_moments()
     }
 
     /// Returns the sum with a point mass at `p`.
@@ -201,11 +203,11 @@ impl Mass {
     }
 
     /// Replaces first moments and products of inertia at rounding level by zero.
-    fn cleaned(&self) -> Mass {
+    fn clean_small_moments(&self) -> Mass {
         let size = self.tensor.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
         let cleaned_tensor_entry = |i: usize, j: usize| match i == j {
             true => self.tensor[i][j],
-            false => clean(self.tensor[i][j], size),
+            false => round_noise_to_zero(self.tensor[i][j], size),
         };
         Mass {
             mass: self.mass,

@@ -36,7 +36,7 @@ struct Member {
 }
 
 fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
-    let members = members(&variant.model);
+    let members = parallel_chain_members(&variant.model);
     if members.iter().all(Option::is_none) {
         return None;
     }
@@ -51,7 +51,7 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
             joint.translation = above.to_parent(joint.translation);
         }
         let Some(Member { axis, along, .. }) = member else {
-            joint.rotation = composed(above, &joint.rotation);
+            joint.rotation = compose_rotations(above, &joint.rotation);
             angles.push(None);
             turned.push(None);
             continue;
@@ -59,7 +59,7 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
         let carried = along.zip(joint.parent.and_then(|p| angles[p.0])).map(|(cosine, angle)| angle * cosine);
         // A constant rotation about the same axis commutes with the joint's rotation.
         let above = if along.is_some() { None } else { above };
-        joint.rotation = composed(above, &link.placement.rotation);
+        joint.rotation = compose_rotations(above, &link.placement.rotation);
         let own = own_angle(link, axis);
         let angle = own.map_or(carried, |own| Some(carried.map_or(own, |carried| carried + own)));
         let turn = angle.map(|angle| Rotation::about_axis(axis, angle));
@@ -75,14 +75,15 @@ fn with_common_axes<'g>(variant: &Variant<'g>) -> Option<Variant<'g>> {
 
 /// Returns for each link its membership in a chain of parallel joints, at least two of which are revolute;
 /// `None` for other links.
-fn members(model: &Model<'_>) -> Vec<Option<Member>> {
+fn parallel_chain_members(model: &Model<'_>) -> Vec<Option<Member>> {
     let mut members: Vec<Option<Member>> = Vec::with_capacity(model.links.len());
     let mut turns = vec![0; model.links.len()];
     for (k, link) in model.links.iter().enumerate() {
-        let member = axis(link).map(|axis| {
+        let member = axis_of_motion(link).map(|axis| {
             let above = link.parent.and_then(|p| members[p.0]);
             let along = above.and_then(|above| {
-                let direction = link.placement.rotation.matrix().column(axis).values()?;
+                let direction =
+                    link.placement.rotation.rotation_matrix().column(axis).constant_components()?;
                 let cosine = direction[above.axis];
                 // The sine decides, because the cosine of a small angle rounds to one.
                 let across = [(above.axis + 1) % 3, (above.axis + 2) % 3];
@@ -100,22 +101,22 @@ fn members(model: &Model<'_>) -> Vec<Option<Member>> {
 }
 
 /// Returns the coordinate axis about or along which a link moves.
-fn axis(link: &Link<'_>) -> Option<usize> {
+fn axis_of_motion(link: &Link<'_>) -> Option<usize> {
     let (Motion::Turn { axis, .. } | Motion::Slide { axis, .. }) = link.motion else { return None };
-    coordinate_axis(axis).filter(|k| axis[*k].value().is_some_and(|c| c.abs() == 1.0))
+    coordinate_axis(axis).filter(|k| axis[*k].constant_value().is_some_and(|c| c.abs() == 1.0))
 }
 
 /// Returns the angle by which a link rotates about a coordinate axis.
 fn own_angle<'g>(link: &Link<'g>, axis: usize) -> Option<Expr<'g>> {
     let Motion::Turn { axis: direction, coordinate } = &link.motion else { return None };
     let angle = position_in(direction[axis].graph(), coordinate);
-    let backwards = direction[axis].value().is_some_and(|c| c < 0.0);
+    let backwards = direction[axis].constant_value().is_some_and(|c| c < 0.0);
     Some(if backwards { -angle } else { angle })
 }
 
-fn composed<'g>(above: Option<Rotation<'g>>, rotation: &Rotation<'g>) -> Rotation<'g> {
+fn compose_rotations<'g>(above: Option<Rotation<'g>>, rotation: &Rotation<'g>) -> Rotation<'g> {
     match above {
-        Some(above) => above.then(rotation),
+        Some(above) => above.compose_with(rotation),
         None => rotation.clone(),
     }
 }

@@ -7,7 +7,7 @@
 //! `z`, and equal moments of inertia about `x` and `y`. For a prismatic joint they are all moments of
 //! inertia, for a screw equal moments about `x` and `y`, for a ball joint a mass at its centre.
 
-use super::motions::{Gauge, coordinate_axis, movable};
+use super::motions::{Gauge, coordinate_axis, movable_inertia};
 use super::number::{Frame, Mass};
 
 use crate::mechanism::{Inertia, Link, LinkId, Model, Motion};
@@ -24,17 +24,17 @@ pub struct Regroup {
 }
 
 /// Moves all mass properties that can be moved.
-pub fn regroup(model: &mut Model<'_>, Regroup { gauge, to_children, symbolic }: Regroup) {
+pub fn regroup_inertias(model: &mut Model<'_>, Regroup { gauge, to_children, symbolic }: Regroup) {
     for k in (0..model.links.len()).rev() {
         if to_children {
-            anchor(model, k);
+            move_mass_to_child(model, k);
         }
         let link = &model.links[k];
         let target = link.parent.map_or(&model.still, |p| &model.links[p.0].inertia);
         if !(symbolic || is_numeric(&link.inertia) && is_numeric(target) && has_numeric_place(link)) {
             continue;
         }
-        let Some(part) = movable(link, gauge) else { continue };
+        let Some(part) = movable_inertia(link, gauge) else { continue };
         let placement = link.placement.clone();
         let parent = link.parent;
         model.links[k].inertia = remaining_inertia(&model.links[k], &part);
@@ -49,19 +49,19 @@ pub fn regroup(model: &mut Model<'_>, Regroup { gauge, to_children, symbolic }: 
 /// Moves a mass from link `k` to the origin of a revolute or ball joint of a child, so that a component of
 /// the link's first moment vanishes. The force on the mass is its product with an acceleration that is
 /// computed anyway.
-fn anchor(model: &mut Model<'_>, k: usize) {
+fn move_mass_to_child(model: &mut Model<'_>, k: usize) {
     let Motion::Turn { axis, .. } = &model.links[k].motion else { return };
     let (Some(own), Some(mut inertia)) =
         (coordinate_axis(*axis), Mass::from_inertia(&model.links[k].inertia))
     else {
         return;
     };
-    if !pushes(model, k) {
+    if !force_has_effect(model, k) {
         return;
     }
     let g = model.graph;
     let masses = model.links.iter().map(|l| l.inertia.mass).chain([model.still.mass]);
-    let total: f64 = masses.filter_map(|m| m.value()).sum();
+    let total: f64 = masses.filter_map(|m| m.constant_value()).sum();
     for c in k + 1..model.links.len() {
         let child = &model.links[c];
         let turns = matches!(child.motion, Motion::Turn { .. } | Motion::Ball { .. });
@@ -89,14 +89,14 @@ fn anchor(model: &mut Model<'_>, k: usize) {
         inertia = inertia.plus_point(-mass, p);
         inertia.moment[i] = 0.0;
         other.mass = mass;
-        model.links[c].inertia = other.inertia(g);
-        model.links[k].inertia = inertia.inertia(g);
+        model.links[c].inertia = other.inertia_expressions(g);
+        model.links[k].inertia = inertia.inertia_expressions(g);
     }
 }
 
 /// Returns true if the force on a link has an effect in addition to its moment: a revolute joint with a lever
 /// arm, or a prismatic joint, lies between the link and the root.
-fn pushes(model: &Model<'_>, mut k: usize) -> bool {
+fn force_has_effect(model: &Model<'_>, mut k: usize) -> bool {
     loop {
         let link = &model.links[k];
         match (&link.motion, link.parent) {
@@ -113,13 +113,14 @@ fn pushes(model: &Model<'_>, mut k: usize) -> bool {
 }
 
 fn is_numeric(inertia: &Inertia<'_>) -> bool {
-    inertia.mass.value().is_some()
-        && inertia.moment.values().is_some()
-        && inertia.tensor.full().values().is_some()
+    inertia.mass.constant_value().is_some()
+        && inertia.moment.constant_components().is_some()
+        && inertia.tensor.full_matrix().constant_entries().is_some()
 }
 
 fn has_numeric_place(link: &Link<'_>) -> bool {
-    link.placement.translation.values().is_some() && link.placement.rotation.matrix().values().is_some()
+    link.placement.translation.constant_components().is_some()
+        && link.placement.rotation.rotation_matrix().constant_entries().is_some()
 }
 
 fn remaining_inertia<'g>(link: &Link<'g>, part: &Inertia<'g>) -> Inertia<'g> {

@@ -2,7 +2,7 @@
 //! that are linear in the accelerations.
 
 use super::builder::Builder;
-use super::quantities::{in_links, vector};
+use super::quantities::{in_links, vector_value};
 use super::resolved::ResolvedMatrix;
 use super::scope::{Allowed, Scope, Value};
 use crate::diag::{Diagnostics, Place};
@@ -19,16 +19,16 @@ impl<'g> Scope<'_, 'g> {
         argument: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<Expr<'g>> {
-        match self.value(argument, cx)? {
-            Value::Scalar(value) => Some(self.rates(function, &argument.place, &[value], cx)?[0]),
+        match self.resolve_value(argument, cx)? {
+            Value::Scalar(value) => Some(self.time_derivatives(function, &argument.place, &[value], cx)?[0]),
             Value::Matrix(_) => {
-                cx.error(argument.place.clone(), "the rate of a matrix is relative to a frame")
-                    .help("write `rate(matrix / frame)`");
+                cx.report_error(argument.place.clone(), "the rate of a matrix is relative to a frame")
+                    .add_help("write `rate(matrix / frame)`");
                 None
             }
             Value::Vector(_) => {
-                cx.error(argument.place.clone(), "the rate of a vector is relative to a frame")
-                    .help("write `rate(vector / frame)`; the rate of its length is `rate(norm(vector))`");
+                cx.report_error(argument.place.clone(), "the rate of a vector is relative to a frame")
+                    .add_help("write `rate(vector / frame)`; the rate of its length is `rate(norm(vector))`");
                 None
             }
         }
@@ -43,32 +43,32 @@ impl<'g> Scope<'_, 'g> {
         frame: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
-        let terms = match self.value(argument, cx)? {
+        let terms = match self.resolve_value(argument, cx)? {
             Value::Vector(terms) => terms,
             Value::Matrix(m) => {
-                let link = self.frame(frame, cx)?;
+                let link = self.resolve_frame_link(frame, cx)?;
                 let entries = self.kinematics.matrix_in(m, link).entries;
                 let all: Vec<Expr<'g>> = entries.0.iter().flatten().copied().collect();
-                let rates = self.rates(function, &argument.place, &all, cx)?;
+                let rates = self.time_derivatives(function, &argument.place, &all, cx)?;
                 return Some(Value::Matrix(ResolvedMatrix {
                     link,
                     entries: Mat3::from_fn(|i, j| rates[3 * i + j]),
                 }));
             }
             Value::Scalar(_) => {
-                cx.error(argument.place.clone(), "expected a vector, found a scalar")
-                    .help("the rate of a scalar needs no frame: `rate(scalar)`");
+                cx.report_error(argument.place.clone(), "expected a vector, found a scalar")
+                    .add_help("the rate of a scalar needs no frame: `rate(scalar)`");
                 return None;
             }
         };
-        let link = self.frame(frame, cx)?;
+        let link = self.resolve_frame_link(frame, cx)?;
         let components = self.kinematics.resolve(&in_links(terms), link, Vec3::zero(self.graph));
-        let rates = self.rates(function, &argument.place, &components.0, cx)?;
-        Some(vector(vec![(link, Vec3([rates[0], rates[1], rates[2]]))]))
+        let rates = self.time_derivatives(function, &argument.place, &components.0, cx)?;
+        Some(vector_value(vec![(link, Vec3([rates[0], rates[1], rates[2]]))]))
     }
 
     /// Returns the time derivatives of several expressions along the motion.
-    fn rates(
+    fn time_derivatives(
         &self,
         function: &Place,
         place: &Place,
@@ -83,22 +83,25 @@ impl<'g> Scope<'_, 'g> {
         let state =
             quantities.iter().find_map(|q| if let Quantity::Parameter(k) = q { is_state(k) } else { None });
         if let Some(state) = state {
-            cx.error(place.clone(), format!("this depends on the state `{}`", state.text)).help(
+            cx.report_error(place.clone(), format!("this depends on the state `{}`", state.text)).add_help(
                 "`rate` applies to expressions of coordinates, velocities and time: write the rate of the \
                  state itself",
             );
             return None;
         }
         if depends_on_quantity(|q| matches!(q, Quantity::Input(_))) {
-            cx.error(place.clone(), "this depends on inputs, whose rates are not known")
-                .help("a `State` that follows an input with a lag has a rate");
+            cx.report_error(place.clone(), "this depends on inputs, whose rates are not known")
+                .add_help("a `State` that follows an input with a lag has a rate");
             return None;
         }
         if depends_on_quantity(|q| {
             matches!(q, Quantity::Acceleration(_) | Quantity::Reaction(_) | Quantity::ContactForce(_))
         }) {
-            cx.error(place.clone(), "this depends on accelerations or forces, whose rates are not known")
-                .help("`rate` applies to expressions of coordinates, velocities and time");
+            cx.report_error(
+                place.clone(),
+                "this depends on accelerations or forces, whose rates are not known",
+            )
+            .add_help("`rate` applies to expressions of coordinates, velocities and time");
             return None;
         }
         let gradients = velocity_gradients(values);
@@ -142,11 +145,11 @@ impl<'g> Builder<'_, 'g> {
             (true, false) => "contacts that open and close",
         };
         if self.releasing.is_none() {
-            cx.error(
+            cx.report_error(
                 force.place.clone(),
                 format!("a force cannot depend on accelerations in a mechanism with {found}"),
             )
-            .help("connect the bodies by joints that form a tree, or remove these terms");
+            .add_help("connect the bodies by joints that form a tree, or remove these terms");
         }
     }
 }

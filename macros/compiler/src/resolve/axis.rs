@@ -2,48 +2,49 @@
 
 use super::scope::Scope;
 use crate::diag::Diagnostics;
-use crate::expr::sample::always;
+use crate::expr::sample::always_equals;
 use crate::expr::{Graph, Mat3, Rotation, Vec3};
 use crate::syntax;
 
 impl<'g> Scope<'_, 'g> {
     /// Returns a direction: a vector of unit length. If `normalise` is set, a constant vector is normalised.
     pub fn unit_vector(&self, e: &syntax::Expr, normalise: bool, cx: &mut Diagnostics) -> Option<Vec3<'g>> {
-        if let Some(n) = e.literal().filter(|n| *n != 0.0) {
+        if let Some(n) = e.literal_number().filter(|n| *n != 0.0) {
             let sign = if n < 0.0 { "-" } else { "" };
-            cx.error(e.place.clone(), "expected a direction, found a number")
-                .help(format!("an axis is `{sign}x`, `{sign}y` or `{sign}z`, or a vector of unit length"));
+            cx.report_error(e.place.clone(), "expected a direction, found a number").add_help(format!(
+                "an axis is `{sign}x`, `{sign}y` or `{sign}z`, or a vector of unit length"
+            ));
             return None;
         }
         let v = self.own_vector(e, cx)?;
-        let v = v.values().map_or(v, |n| Vec3::numbers(self.graph, n));
+        let v = v.constant_components().map_or(v, |n| Vec3::from_numbers(self.graph, n));
         let squared = v.dot(v);
-        if v.is_zero() || always(squared, 0.0) {
-            cx.error(e.place.clone(), "this axis has no direction: it is zero")
-                .help("write `x`, `y`, `z` or another vector of unit length");
+        if v.is_zero() || always_equals(squared, 0.0) {
+            cx.report_error(e.place.clone(), "this axis has no direction: it is zero")
+                .add_help("write `x`, `y`, `z` or another vector of unit length");
             return None;
         }
-        if always(squared, 1.0) {
+        if always_equals(squared, 1.0) {
             return Some(v);
         }
-        if normalise && let Some(n) = v.values() {
-            return Some(Vec3::numbers(self.graph, normalised(n)));
+        if normalise && let Some(n) = v.constant_components() {
+            return Some(Vec3::from_numbers(self.graph, normalise_vector(n)));
         }
-        let diagnostic = cx.error(e.place.clone(), "this axis is not of unit length");
-        match v.values() {
-            Some(n) => diagnostic.help(format!("its length is {}; write `unit(…)` around it", length(n))),
-            None => diagnostic.help("write `unit(…)` around it"),
+        let diagnostic = cx.report_error(e.place.clone(), "this axis is not of unit length");
+        match v.constant_components() {
+            Some(n) => diagnostic.add_help(format!("its length is {}; write `unit(…)` around it", length(n))),
+            None => diagnostic.add_help("write `unit(…)` around it"),
         };
         None
     }
 }
 
 fn length(v: [f64; 3]) -> f64 {
-    v[0].hypot(v[1]).hypot(v[2])
+    libm::hypot(libm::hypot(v[0], v[1]), v[2])
 }
 
 /// Divides a vector by its length; components that are exactly ±1 are preserved.
-fn normalised(v: [f64; 3]) -> [f64; 3] {
+fn normalise_vector(v: [f64; 3]) -> [f64; 3] {
     let norm = length(v);
     v.map(|c| c / norm)
 }
@@ -51,9 +52,9 @@ fn normalised(v: [f64; 3]) -> [f64; 3] {
 /// Returns the coordinate axis nearest to a constant axis, and the rotation from that coordinate axis to the
 /// axis. The joint then rotates about the coordinate axis, which is cheap, and the rotation is constant. An
 /// axis that is not constant is returned with the identity.
-pub fn align<'g>(graph: &'g Graph, axis: Vec3<'g>) -> (Vec3<'g>, Rotation<'g>) {
+pub fn nearest_axis_and_rotation<'g>(graph: &'g Graph, axis: Vec3<'g>) -> (Vec3<'g>, Rotation<'g>) {
     let identity = Rotation::identity(graph);
-    let Some(n) = axis.values() else {
+    let Some(n) = axis.constant_components() else {
         return (axis, identity);
     };
     let k = (0..3).max_by(|a, b| n[*a].abs().total_cmp(&n[*b].abs())).unwrap_or(0);
@@ -74,5 +75,5 @@ pub fn align<'g>(graph: &'g Graph, axis: Vec3<'g>) -> (Vec3<'g>, Rotation<'g>) {
         let square: f64 = (0..3).map(|l| skew[i][l] * skew[l][j]).sum();
         graph.num(f64::from(u8::from(i == j)) + skew[i][j] + square / (1.0 + c))
     });
-    (Vec3::numbers(graph, nearest), Rotation::from_matrix(matrix))
+    (Vec3::from_numbers(graph, nearest), Rotation::from_matrix(matrix))
 }

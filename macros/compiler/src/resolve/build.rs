@@ -37,12 +37,12 @@ pub fn build_model<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Model<'g>> {
     if description.bodies.len() + description.particles.len() > MAX_BODIES {
-        cx.error(description.name.place.clone(), format!("more than {MAX_BODIES} bodies"))
-            .help("each body adds code: divide the mechanism, or weld bodies that do not move into one");
+        cx.report_error(description.name.place.clone(), format!("more than {MAX_BODIES} bodies"))
+            .add_help("each body adds code: divide the mechanism, or weld bodies that do not move into one");
         return None;
     }
     if description.bodies.is_empty() && description.particles.is_empty() {
-        cx.error(description.name.place.clone(), "a mechanism without a body").help(
+        cx.report_error(description.name.place.clone(), "a mechanism without a body").add_help(
             "add one, as in `#[body(mass = 1)] cart: Body`, or read a file: `#[mechanism(urdf = \
              \"robot.urdf\")]`",
         );
@@ -73,11 +73,11 @@ fn build<'g>(
     builder.number_coordinates(cx);
     if builder.model.nv() > MAX_VELOCITIES && releasing.is_none() {
         let n = builder.model.nv();
-        cx.error(
+        cx.report_error(
             description.name.place.clone(),
             format!("{n} degrees of freedom, more than {MAX_VELOCITIES}"),
         )
-        .help(DIVIDE_HELP);
+        .add_help(DIVIDE_HELP);
         return None;
     }
     builder.number_released_coordinates(releasing.map_or(&[], |(joints, _)| joints));
@@ -115,10 +115,10 @@ fn build<'g>(
     builder.gather_requirements();
     if cx.is_empty() && releasing.is_none() {
         let coordinates = &builder.scope.kinematics.coordinates;
-        builder.model.units = units::infer(description, &builder.model, coordinates, cx);
+        builder.model.units = units::infer_units(description, &builder.model, coordinates, cx);
     }
     if !description.partial {
-        cx.append(builder.mobility);
+        cx.append_errors(builder.mobility);
     }
     cx.is_empty().then_some(builder.model)
 }
@@ -196,7 +196,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             actions: description.actions.iter().map(|a| a.name.text.clone()).collect(),
             inputs: &description.inputs,
             driven: description.joints.iter().filter(|j| j.driven && j.mimic.is_none()).count()
-                + drive::inputs(description).count(),
+                + drive::input_drives(description).count(),
             states: &description.states,
             definitions: &description.definitions,
             speeds: &description.speeds,
@@ -212,23 +212,24 @@ impl<'a, 'g> Builder<'a, 'g> {
         };
         graph.name_tables(description.tables.iter().map(|table| table.name.text.clone()).collect());
         for name in all.clone().filter(|n| n.text == GROUND) {
-            cx.error(name.place.clone(), "the name `ground` is reserved for the fixed reference").help(
+            let message = "the name `ground` is reserved for the fixed reference";
+            cx.report_error(name.place.clone(), message).add_help(
                 "choose another name, or remove the body: joints can start at `ground` without a declaration",
             );
         }
         check_names(description, cx);
         let gravity = description.gravity.as_ref().and_then(|e| read_gravity(e, &scope, cx));
         let friction_speed = match &description.friction_speed {
-            Some(e) => scope.scalar(e, cx).unwrap_or(graph.one()),
+            Some(e) => scope.resolve_scalar(e, cx).unwrap_or(graph.one()),
             None => graph.num(FRICTION_SPEED),
         };
-        if let (Some(e), Some(s)) = (&description.friction_speed, friction_speed.value())
+        if let (Some(e), Some(s)) = (&description.friction_speed, friction_speed.constant_value())
             && s <= 0.0
         {
-            cx.error(e.place.clone(), format!("this speed must be positive, but it is {s}"))
-                .help("Coulomb's law is smoothed below this speed; 0.01 is usual");
+            cx.report_error(e.place.clone(), format!("this speed must be positive, but it is {s}"))
+                .add_help("Coulomb's law is smoothed below this speed; 0.01 is usual");
         }
-        scope.require(Rule::Positive, || "the speed of friction".to_string(), &[friction_speed]);
+        scope.record_requirement(Rule::Positive, || "the speed of friction".to_string(), &[friction_speed]);
         let model = empty_model(graph, description, gravity.unwrap_or(Vec3::zero(graph)), friction_speed);
         let places = vec![None; jointed.len()];
         let mut placeable: Vec<String> = all.map(|n| n.text.clone()).collect();
@@ -276,13 +277,13 @@ impl<'a, 'g> Builder<'a, 'g> {
             && rest.len() >= MAX_SEPARATE_REPORTS
         {
             let list: Vec<String> = unused.iter().map(|p| format!("`{}`", p.text)).collect();
-            cx.error(first.place.clone(), format!("unused parameters {}", all_of(&list)))
-                .help("remove them, or begin their names with `_` to keep them for your own use");
+            cx.report_error(first.place.clone(), format!("unused parameters {}", all_of(&list)))
+                .add_help("remove them, or begin their names with `_` to keep them for your own use");
             return;
         }
         for parameter in unused {
-            cx.error(parameter.place.clone(), format!("unused parameter `{}`", parameter.text))
-                .help(format!("remove it, or name it `_{}` to keep it for your own use", parameter.text));
+            cx.report_error(parameter.place.clone(), format!("unused parameter `{}`", parameter.text))
+                .add_help(format!("remove it, or name it `_{}` to keep it for your own use", parameter.text));
         }
     }
 }
@@ -293,19 +294,19 @@ fn read_gravity<'g>(
     scope: &Scope<'_, 'g>,
     cx: &mut Diagnostics,
 ) -> Option<Vec3<'g>> {
-    if let Some(Value::Scalar(s)) = scope.value(e, &mut Diagnostics::unread())
+    if let Some(Value::Scalar(s)) = scope.resolve_value(e, &mut Diagnostics::discarded_diagnostics())
         && !s.is_zero()
     {
-        let (sign, size) = match e.literal() {
+        let (sign, size) = match e.literal_number() {
             Some(n) => ("-", n.abs().to_string()),
             None => ("-", e.to_source()),
         };
-        cx.error(e.place.clone(), "expected a vector, found a scalar")
-            .help(format!("gravity has a direction: write `gravity = {sign}{size} * y`"));
+        cx.report_error(e.place.clone(), "expected a vector, found a scalar")
+            .add_help(format!("gravity has a direction: write `gravity = {sign}{size} * y`"));
         return None;
     }
     // The expression is in ground axes.
-    let mut terms = scope.vector(e, cx)?;
+    let mut terms = scope.resolve_vector(e, cx)?;
     for (axes, _) in &mut terms {
         if *axes == Axes::Of(GROUND.to_string()) {
             *axes = Axes::Own;
@@ -321,13 +322,16 @@ fn check_names(description: &Description, cx: &mut Diagnostics) {
     let written = written.chain(description.definitions.iter().map(|d| &d.name));
     let joints = description.joints.iter().map(|joint| &joint.name);
     for table in description.tables.iter().filter(|table| Callable::is_function(&table.name.text)) {
-        cx.error(table.name.place.clone(), format!("the name `{}` is taken by a function", table.name.text))
-            .help(format!("rename the table, for example `{}_table`", table.name.text));
+        cx.report_error(
+            table.name.place.clone(),
+            format!("the name `{}` is taken by a function", table.name.text),
+        )
+        .add_help(format!("rename the table, for example `{}_table`", table.name.text));
     }
     for name in written.chain(joints) {
         if Builtin::of_name(&name.text).is_some() && name.place.file.is_none() {
-            cx.error(name.place.clone(), format!("the name `{}` is taken", name.text))
-                .help("`x`, `y` and `z` are axes, `t` is time and `pi` is a number");
+            cx.report_error(name.place.clone(), format!("the name `{}` is taken", name.text))
+                .add_help("`x`, `y` and `z` are axes, `t` is time and `pi` is a number");
         }
     }
 }

@@ -5,7 +5,7 @@ use super::range::ValueRange;
 use super::scope::{MassProperties, Placed, PlacedKind, Scope, Terms};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{self, Rotation, Vec3};
-use crate::kinematics::{Partials, joint, symbols_in};
+use crate::kinematics::{Partials, joint_of_link, symbols_in};
 use crate::mechanism::{
     Constraint, Coordinate, InQ, InV, Inertia, Link, LinkId, Model, Motion, Pose, Quantity, Rule,
 };
@@ -97,7 +97,7 @@ impl<'g> Builder<'_, 'g> {
     pub fn is_angle(&self, e: &Expr) -> bool {
         let name = match &e.kind {
             ExprKind::Name(name) => name.clone(),
-            ExprKind::Field(joint, member) => full_name(joint.name().unwrap_or_default(), &member.text),
+            ExprKind::Field(joint, member) => full_name(joint.as_name().unwrap_or_default(), &member.text),
             _ => return false,
         };
         let kinematics = &self.scope.kinematics;
@@ -110,26 +110,28 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the frame of a joint on the body of one of its ends.
-    pub fn endpoint(&self, end: &Endpoint, cx: &mut Diagnostics) -> Option<Pose<'g>> {
+    pub fn frame_of_endpoint(&self, end: &Endpoint, cx: &mut Diagnostics) -> Option<Pose<'g>> {
         let translation = match &end.at {
             Some(at) => self.scope.own_vector(at, cx).filter(|v| {
                 let range = ValueRange::of_scalar(&self.description.scalar);
                 let describe_joint_position = || format!("the position of a joint on `{}`", end.body.text);
-                v.0.iter().for_each(|c| self.scope.require(Rule::Length, describe_joint_position, &[*c]));
+                v.0.iter().for_each(|c| {
+                    self.scope.record_requirement(Rule::Length, describe_joint_position, &[*c])
+                });
                 v.0.iter().all(|c| range.check_length(*c, &at.place, cx))
             }),
             None => Some(Vec3::zero(self.scope.graph)),
         };
-        let rotation = self.scope.rotation(&end.rotated, cx);
+        let rotation = self.scope.resolve_rotation(&end.rotated, cx);
         Some(Pose { rotation: rotation?, translation: translation? })
     }
 
     /// Returns a substitute pose for an element with an error. Its generic values avoid follow-up errors.
     pub fn substitute_pose(&self, moves: bool) -> Pose<'g> {
         let g = self.scope.graph;
-        let mut translation = Vec3::numbers(g, [0.731, 0.417, 0.593]);
+        let mut translation = Vec3::from_numbers(g, [0.731, 0.417, 0.593]);
         if moves {
-            translation += Vec3::axis(g, 0) * Quantity::Time.expr(g);
+            translation += Vec3::coordinate_axis(g, 0) * Quantity::Time.expr(g);
         }
         Pose { rotation: Rotation::identity(g), translation }
     }
@@ -137,7 +139,7 @@ impl<'g> Builder<'_, 'g> {
     /// Adds a massless link for a placement that moves, and returns the link. A constant placement is
     /// returned unchanged.
     pub fn link_if_moving(&mut self, link: Option<LinkId>, pose: Pose<'g>) -> (Option<LinkId>, Pose<'g>) {
-        let moves = symbols_in(&pose.entries())
+        let moves = symbols_in(&pose.all_expressions())
             .into_iter()
             .any(|s| matches!(Quantity::from_symbol(s), Quantity::Configuration(_) | Quantity::Time));
         if !moves {
@@ -154,14 +156,14 @@ impl<'g> Builder<'_, 'g> {
 
     /// Adds a link and its kinematics.
     pub fn add_link(&mut self, link: Link<'g>) -> LinkId {
-        let kinematics = joint(self.model.space(), &link, &mut self.partials);
+        let kinematics = joint_of_link(self.model.configuration_space(), &link, &mut self.partials);
         self.scope.kinematics.joints.push(kinematics);
         self.model.links.push(link);
         LinkId(self.model.links.len() - 1)
     }
 
     /// Registers the placement of an element under its name.
-    pub fn register(&mut self, name: &str, link: Option<LinkId>, pose: Pose<'g>, kind: PlacedKind) {
+    pub fn register_placement(&mut self, name: &str, link: Option<LinkId>, pose: Pose<'g>, kind: PlacedKind) {
         self.scope.kinematics.places.insert(name.to_string(), Placed { link, pose, kind });
     }
 
@@ -172,6 +174,6 @@ impl<'g> Builder<'_, 'g> {
         }
         let place: Place = name.place.clone();
         let e = Expr { kind: ExprKind::Name(name.text.clone()), place };
-        self.scope.place(&e, cx).map(|p| (p.link, p.pose))
+        self.scope.resolve_placement(&e, cx).map(|p| (p.link, p.pose))
     }
 }

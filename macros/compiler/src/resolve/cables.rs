@@ -1,6 +1,6 @@
 //! Cables that wrap around spheres and cylinders.
 
-use super::call::{Call, flatten};
+use super::call::{Call, flatten_slashes};
 use super::scope::{Allowed, Context, Placed, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Extreme, Function, Vec3};
@@ -21,9 +21,9 @@ impl<'g> Scope<'_, 'g> {
     /// points have the distances `d_a` and `d_b` from the axis and the angle `θ` between them. The angle of
     /// contact is `φ = θ − acos(R / d_a) − acos(R / d_b)`. If it is positive, the cable consists of tangents
     /// and a helix, which is straight on the unrolled cylinder; otherwise the cable is straight.
-    pub fn cable(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [points, surface] = call.take(cx)?;
-        let Ok(ends) = <[_; 2]>::try_from(flatten(points)) else { return call.reject(cx) };
+    pub fn resolve_cable(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [points, surface] = call.take_arguments(cx)?;
+        let Ok(ends) = <[_; 2]>::try_from(flatten_slashes(points)) else { return call.reject_arguments(cx) };
         if !self.check_allowed(Allowed::Placement, "`cable(…)`", call.place, cx) {
             return None;
         }
@@ -62,7 +62,9 @@ impl<'g> Scope<'_, 'g> {
         let wrapped = tangents[0] + tangents[1] + radius * contact_angle;
         let straight = (a - b).length();
         // One if the cable touches, otherwise zero. The derivative is zero.
-        let touches = contact_angle.call(Function::Signum).extreme(Extreme::Max, self.graph.zero());
+        let touches = contact_angle
+            .apply_function(Function::Signum)
+            .minimum_or_maximum(Extreme::Max, self.graph.zero());
         let flat = straight + touches * (wrapped - straight);
         let length = if rise.is_zero() { flat } else { (flat.square() + rise.square()).sqrt() };
         Some(Value::Scalar(length))
@@ -75,43 +77,44 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<(Placed<'g>, Expr<'g>, Option<Vec3<'g>>)> {
         let ExprKind::Method(base, word, arguments) = &e.kind else {
-            cx.error(e.place.clone(), "expected a sphere or a cylinder")
-                .help("write `drum.cylinder(radius, axis)` or `ball.sphere(radius)`");
+            cx.report_error(e.place.clone(), "expected a sphere or a cylinder")
+                .add_help("write `drum.cylinder(radius, axis)` or `ball.sphere(radius)`");
             return None;
         };
         let (radius, axis) = match (word.id, arguments.as_slice()) {
             (SPHERE, [radius]) => (radius, None),
             (CYLINDER, [radius, axis]) => (radius, Some(axis)),
             (SPHERE, _) => {
-                cx.error(word.place.clone(), "`sphere` takes 1 argument").help("write `sphere(a)`");
+                cx.report_error(word.place.clone(), "`sphere` takes 1 argument")
+                    .add_help("write `sphere(a)`");
                 return None;
             }
             (CYLINDER | DRUM, _) => {
-                cx.error(
+                cx.report_error(
                     word.place.clone(),
                     "a cylinder that a cable wraps around is written `cylinder(radius, axis)`",
                 )
-                .help(
+                .add_help(
                     "the cable wraps about the axis by the right-hand rule, from the first point to the \
                      second",
                 );
                 return None;
             }
             _ => {
-                cx.error(word.place.clone(), format!("a cable cannot wrap around a `{}`", word.text))
-                    .help("it wraps around a `sphere(radius)` or a `cylinder(radius, axis)`");
+                cx.report_error(word.place.clone(), format!("a cable cannot wrap around a `{}`", word.text))
+                    .add_help("it wraps around a `sphere(radius)` or a `cylinder(radius, axis)`");
                 return None;
             }
         };
-        let frame = self.place(base, cx);
+        let frame = self.resolve_placement(base, cx);
         let constant_context = || Context::new(Allowed::Constant, None);
-        let value = self.in_context(constant_context(), |s| s.scalar(radius, cx))?;
-        if let Some(n) = value.value().filter(|n| *n <= 0.0) {
-            cx.error(radius.place.clone(), format!("this length must be positive, but it is {n}"))
-                .help("the direction of the axis selects the side of the cable");
+        let value = self.in_context(constant_context(), |s| s.resolve_scalar(radius, cx))?;
+        if let Some(n) = value.constant_value().filter(|n| *n <= 0.0) {
+            cx.report_error(radius.place.clone(), format!("this length must be positive, but it is {n}"))
+                .add_help("the direction of the axis selects the side of the cable");
             return None;
         }
-        self.require(Rule::Positive, || format!("the radius of a {}", word.text), &[value]);
+        self.record_requirement(Rule::Positive, || format!("the radius of a {}", word.text), &[value]);
         let axis = match axis {
             Some(axis) => Some(self.in_context(constant_context(), |s| s.unit_vector(axis, false, cx))?),
             None => None,
@@ -128,12 +131,14 @@ fn check_outside(
     is_cylinder: bool,
     cx: &mut Diagnostics,
 ) -> Option<()> {
-    let (Some(square), Some(radius)) = (across.dot(across).value(), radius.value()) else { return Some(()) };
+    let (Some(square), Some(radius)) = (across.dot(across).constant_value(), radius.constant_value()) else {
+        return Some(());
+    };
     if square >= radius * radius {
         return Some(());
     }
     let (surface, middle) = if is_cylinder { ("cylinder", "axis") } else { ("sphere", "centre") };
-    cx.error(end.place.clone(), format!("this end of the cable lies inside of the {surface}"))
-        .help(format!("it is {:.4} m from the {middle}, and the radius is {radius} m", square.sqrt()));
+    cx.report_error(end.place.clone(), format!("this end of the cable lies inside of the {surface}"))
+        .add_help(format!("it is {:.4} m from the {middle}, and the radius is {radius} m", square.sqrt()));
     None
 }

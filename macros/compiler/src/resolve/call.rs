@@ -17,31 +17,32 @@ pub struct Call<'a> {
 
 impl<'a> Call<'a> {
     /// Returns the name of the function.
-    pub fn name(&self) -> &'static str {
+    pub fn function_name(&self) -> &'static str {
         self.id.name()
     }
 
     /// Reports that the arguments of the call are wrong.
-    pub fn reject<T>(&self, cx: &mut Diagnostics) -> Option<T> {
+    pub fn reject_arguments<T>(&self, cx: &mut Diagnostics) -> Option<T> {
         let row = self.id.row();
-        cx.error(self.place.clone(), format!("`{}` takes {}", row.name, row.takes)).help(row.usage);
+        cx.report_error(self.place.clone(), format!("`{}` takes {}", row.name, row.takes))
+            .add_help(row.usage);
         None
     }
 
     /// Returns the arguments, or reports a wrong number of them.
-    pub fn take<const N: usize>(&self, cx: &mut Diagnostics) -> Option<&'a [syntax::Expr; N]> {
-        self.arguments.try_into().ok().or_else(|| self.reject(cx))
+    pub fn take_arguments<const N: usize>(&self, cx: &mut Diagnostics) -> Option<&'a [syntax::Expr; N]> {
+        self.arguments.try_into().ok().or_else(|| self.reject_arguments(cx))
     }
 
     /// Returns the operands between the slashes of the only argument, `y / x / A`; empty if there are several
     /// arguments.
-    pub fn parts(&self) -> Vec<&'a syntax::Expr> {
-        if let [one] = self.arguments { flatten(one) } else { Vec::new() }
+    pub fn slash_operands(&self) -> Vec<&'a syntax::Expr> {
+        if let [one] = self.arguments { flatten_slashes(one) } else { Vec::new() }
     }
 }
 
 /// Returns the operands of `a / b / c`.
-pub fn flatten(e: &syntax::Expr) -> Vec<&syntax::Expr> {
+pub fn flatten_slashes(e: &syntax::Expr) -> Vec<&syntax::Expr> {
     let mut parts = Vec::new();
     let mut current = e;
     while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &current.kind {

@@ -1,11 +1,11 @@
 //! Characteristic points of a motion: instantaneous centres, the screw axis, the centre of percussion. Each
 //! is a vector from the origin of the body or a point of it.
 
-use super::call::{Call, flatten};
-use super::quantities::vector;
+use super::call::{Call, flatten_slashes};
+use super::quantities::vector_value;
 use super::scope::{Allowed, Placed, PlacedKind, Scope, Terms, Value};
 use crate::diag::Diagnostics;
-use crate::expr::sample::always;
+use crate::expr::sample::always_equals;
 use crate::expr::{Expr, Vec3};
 use crate::mechanism::{LinkId, Pose};
 use crate::syntax;
@@ -25,33 +25,33 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `instant_center(body / frame)`: the vector from the body's origin to the point at rest,
     /// `ω × v / ω²`, with the velocity `v` of the origin.
     pub fn instant_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let Relative { link, v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
+        let Relative { link, v, w, .. } = self.relative_motion(call, Allowed::Motion, cx)?;
         let square = w.dot(w);
-        if !always(w.dot(v), 0.0) {
-            cx.error(
+        if !always_equals(w.dot(v), 0.0) {
+            cx.report_error(
                 call.place.clone(),
                 "this body can slide along its axis of rotation: it has no point at rest",
             )
-            .help(
+            .add_help(
                 "the nearest point of that axis is `screw_axis(body / frame)`, and `screw_pitch(body / \
                  frame)` is the advance along it",
             );
             return None;
         }
-        Some(vector(vec![(link, w.cross(v).map(|c| c / square))]))
+        Some(vector_value(vec![(link, w.cross(v).map(|c| c / square))]))
     }
 
     /// Resolves `screw_axis(body / frame)`: the vector from the body's origin to the nearest point of the
     /// screw axis (Mozzi, Chasles), `ω × v / ω²`.
     pub fn screw_axis(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let Relative { link, v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
+        let Relative { link, v, w, .. } = self.relative_motion(call, Allowed::Motion, cx)?;
         let square = w.dot(w);
-        Some(vector(vec![(link, w.cross(v).map(|c| c / square))]))
+        Some(vector_value(vec![(link, w.cross(v).map(|c| c / square))]))
     }
 
     /// Resolves `screw_pitch(body / frame)`: the advance along the screw axis per radian, `ω·v / ω²`.
     pub fn screw_pitch(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let Relative { v, w, .. } = self.relative(call, Allowed::Motion, cx)?;
+        let Relative { v, w, .. } = self.relative_motion(call, Allowed::Motion, cx)?;
         let square = w.dot(w);
         Some(Value::Scalar(w.dot(v) / square))
     }
@@ -59,34 +59,41 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `acceleration_center(body / frame)`: the vector from the origin of a body in planar motion to
     /// the point without acceleration, `(ω² a + α × a) / (ω⁴ + α²)`.
     pub fn acceleration_center(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let Relative { link, w, rates, .. } = self.relative(call, Allowed::Acceleration, cx)?;
+        let Relative { link, w, rates, .. } = self.relative_motion(call, Allowed::Acceleration, cx)?;
         let [a, alpha] = rates?;
         let square = w.dot(w);
-        if !(vanishes(w.cross(alpha)) && always(w.dot(a), 0.0)) {
-            cx.error(call.place.clone(), "this body does not move in a plane").help(
+        if !(is_always_zero(w.cross(alpha)) && always_equals(w.dot(a), 0.0)) {
+            cx.report_error(call.place.clone(), "this body does not move in a plane").add_help(
                 "an acceleration centre is that of a motion in a plane; accelerations of points are `a(point \
                  / point / frame)`",
             );
             return None;
         }
         let center = (a * square + alpha.cross(a)).map(|c| c / (square.square() + alpha.dot(alpha)));
-        Some(vector(vec![(link, center)]))
+        Some(vector_value(vec![(link, center)]))
     }
 
     /// Returns the motion of a body that rotates relative to a frame, with accelerations if `allowed`
     /// includes them.
-    fn relative(&self, call: &Call<'_>, allowed: Allowed, cx: &mut Diagnostics) -> Option<Relative<'g>> {
-        let Ok([body, frame]) = <[_; 2]>::try_from(call.parts()) else { return call.reject(cx) };
-        if !self.check_allowed(allowed, &format!("`{}(…)`", call.name()), call.place, cx) {
+    fn relative_motion(
+        &self,
+        call: &Call<'_>,
+        allowed: Allowed,
+        cx: &mut Diagnostics,
+    ) -> Option<Relative<'g>> {
+        let Ok([body, frame]) = <[_; 2]>::try_from(call.slash_operands()) else {
+            return call.reject_arguments(cx);
+        };
+        if !self.check_allowed(allowed, &format!("`{}(…)`", call.function_name()), call.place, cx) {
             return None;
         }
         let motion = self.motion_of(body, frame, allowed == Allowed::Acceleration, cx)?;
         if motion.w.is_zero() {
-            cx.error(
+            cx.report_error(
                 body.place.clone(),
                 format!("`{}` does not rotate with respect to `{}`", body.to_source(), frame.to_source()),
             )
-            .help("a body in pure translation has no centre: all its points have the same velocity");
+            .add_help("a body in pure translation has no centre: all its points have the same velocity");
             return None;
         }
         Some(motion)
@@ -99,8 +106,8 @@ impl<'g> Scope<'_, 'g> {
         accelerates: bool,
         cx: &mut Diagnostics,
     ) -> Option<Relative<'g>> {
-        let (body_link, frame_link) = (self.frame(body, cx), self.frame(frame, cx));
-        let place = self.place(body, cx);
+        let (body_link, frame_link) = (self.resolve_frame_link(body, cx), self.resolve_frame_link(frame, cx));
+        let place = self.resolve_placement(body, cx);
         let (_, frame_link, place) = (body_link?, frame_link?, place?);
         let kinematics = &self.kinematics;
         let (link, zero) = (place.link, Vec3::zero(self.graph));
@@ -129,55 +136,57 @@ impl<'g> Scope<'_, 'g> {
     /// the arm to the centre of mass, leaves the point at rest. With the arm `r` perpendicular to the axis
     /// `n` and the moment of inertia `J` about the axis it is `J r / (m r²)`.
     pub fn center_of_percussion(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [operands, axis] = call.take(cx)?;
-        let Ok([body, about]) = <[_; 2]>::try_from(flatten(operands)) else { return call.reject(cx) };
+        let [operands, axis] = call.take_arguments(cx)?;
+        let Ok([body, about]) = <[_; 2]>::try_from(flatten_slashes(operands)) else {
+            return call.reject_arguments(cx);
+        };
         if !self.check_allowed(Allowed::Placement, "`center_of_percussion(…)`", call.place, cx) {
             return None;
         }
         let body_with_mass = self.body_with_mass(body, cx)?;
         let about = self.current_place(about, cx)?;
-        let n = self.terms(axis, cx)?;
+        let n = self.resolve_terms(axis, cx)?;
         let kinematics = &self.kinematics;
         let (placed, (mass, com, central)) = &body_with_mass;
         if mass.is_zero() {
-            cx.error(body.place.clone(), format!("`{}` has no mass", body.to_source()))
-                .help("name a body with a `mass`");
+            cx.report_error(body.place.clone(), format!("`{}` has no mass", body.to_source()))
+                .add_help("name a body with a `mass`");
             return None;
         }
         let (link, zero) = (placed.link, Vec3::zero(self.graph));
         let length = kinematics.resolve(&n, link, zero).length();
         let n: Terms<'g> = n.into_iter().map(|(link, n)| (link, n.map(|c| c / length))).collect();
-        let pose = Pose { translation: placed.pose.point(*com), ..placed.pose.clone() };
+        let pose = Pose { translation: placed.pose.transform_point(*com), ..placed.pose.clone() };
         let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, &about);
         let [axis_here, arm] = [&n, &offset].map(|terms| kinematics.resolve(terms, link, zero));
         let arm = arm + -(axis_here * axis_here.dot(arm));
-        if vanishes(arm) {
-            cx.error(
+        if is_always_zero(arm) {
+            cx.report_error(
                 call.place.clone(),
                 format!("the centre of mass of `{}` lies on this axis", body.to_source()),
             )
-            .help(
+            .add_help(
                 "there is no centre of percussion then: a pure torque rotates the body without a force at \
                  the axis",
             );
             return None;
         }
         let central = placed.pose.rotation.sym_to_parent(*central);
-        if !vanishes((central * axis_here).cross(axis_here)) {
-            cx.error(
+        if !is_always_zero((central * axis_here).cross(axis_here)) {
+            cx.report_error(
                 axis.place.clone(),
                 format!("this axis is not a principal axis of inertia of `{}`", body.to_source()),
             )
-            .help("every impulse then loads the bearings: there is no centre of percussion");
+            .add_help("every impulse then loads the bearings: there is no centre of percussion");
             return None;
         }
         let moment = self.inertia_about(&body_with_mass, &about, [&n, &n]);
         let share: Expr<'g> = moment / (*mass * arm.dot(arm));
-        Some(vector(vec![(link, arm * share)]))
+        Some(vector_value(vec![(link, arm * share)]))
     }
 }
 
 /// Returns whether a vector is zero for all values of its symbols.
-fn vanishes(v: Vec3<'_>) -> bool {
-    v.0.iter().all(|c| always(*c, 0.0))
+fn is_always_zero(v: Vec3<'_>) -> bool {
+    v.0.iter().all(|c| always_equals(*c, 0.0))
 }

@@ -19,42 +19,43 @@ impl<'g> Builder<'_, 'g> {
 
     /// Resolves the arguments of a joint, only to report their errors.
     pub fn check_joint(&self, joint: &Joint, cx: &mut Diagnostics) {
-        let _ = self.scope.motions(joint, cx);
-        let _ = self.endpoint(&joint.parent, cx);
-        let _ = self.endpoint(&joint.child, cx);
+        let _ = self.scope.motions_of_joint(joint, cx);
+        let _ = self.frame_of_endpoint(&joint.parent, cx);
+        let _ = self.frame_of_endpoint(&joint.child, cx);
     }
 
     /// Places the child body of a joint.
     pub fn place_joint(&mut self, j: usize, child: usize, cx: &mut Diagnostics) {
         let joint = &self.description.joints[j];
-        let motions = self.scope.motions(joint, cx);
-        let (on_parent, on_child) = (self.endpoint(&joint.parent, cx), self.endpoint(&joint.child, cx));
+        let motions = self.scope.motions_of_joint(joint, cx);
+        let (on_parent, on_child) =
+            (self.frame_of_endpoint(&joint.parent, cx), self.frame_of_endpoint(&joint.child, cx));
         let start = self.joint_parent(&joint.parent.body, cx);
         // A joint with an error gets default motions, so that its dependents are checked as well.
         let motions = motions.unwrap_or_else(|| joint::default_motions(self.scope.graph, joint));
         let on_parent = on_parent.unwrap_or_else(|| self.substitute_pose(false));
         let on_child = on_child.unwrap_or_else(|| self.substitute_pose(false));
         if let Some((link, pose)) = start {
-            let frame = pose.then(&on_parent);
+            let frame = pose.compose_with(&on_parent);
             self.record_transmission(j, link, &frame.rotation);
             let placed = Placed { link, pose: frame.clone(), kind: PlacedKind::Body };
             self.joint_frames.insert(j, placed);
             let (joints, _) = self.releasing.unwrap_or_default();
             let (link, frame) = match joints.iter().position(|open| *open == j) {
-                Some(index) => self.release(index, joints.len(), link, frame),
+                Some(index) => self.released_joint_frame(index, joints.len(), link, frame),
                 None => (link, frame),
             };
             let (link, pose) = match self.solving_loop(j) {
                 Some(_) => {
                     let solved = self.solved_pose(j, cx).unwrap_or_else(|| self.substitute_pose(true));
-                    self.link_if_moving(link, frame.then(&solved))
+                    self.link_if_moving(link, frame.compose_with(&solved))
                 }
                 None => self.add_chain(j, &motions, link, frame),
             };
-            let pose = pose.then(&on_child.inverse());
+            let pose = pose.compose_with(&on_child.inverse());
             let kind =
                 if child < self.description.bodies.len() { PlacedKind::Body } else { PlacedKind::Point };
-            self.register(&self.jointed[child].text, link, pose.clone(), kind);
+            self.register_placement(&self.jointed[child].text, link, pose.clone(), kind);
             self.places[child] = Some((link, pose));
         }
         self.add_passive(j, joint, cx);
@@ -72,8 +73,9 @@ impl<'g> Builder<'_, 'g> {
         for (k, motion) in motions.iter().enumerate() {
             let own = &self.coordinates[j];
             let coordinate = own.plain.get(k).map_or(own_coordinate(own.q, own.v), |(_, c, _)| *c);
-            let (motion, aligned) = motion.motion(graph, coordinate, (own.q, own.v));
-            let placement = Pose { rotation: pose.rotation.then(&aligned), translation: pose.translation };
+            let (motion, aligned) = motion.motion_of_link(graph, coordinate, (own.q, own.v));
+            let placement =
+                Pose { rotation: pose.rotation.compose_with(&aligned), translation: pose.translation };
             link =
                 Some(self.add_link(Link { parent: link, placement, motion, inertia: Inertia::zero(graph) }));
             pose = Pose { rotation: aligned.inverse(), translation: Vec3::zero(graph) };
@@ -87,13 +89,13 @@ impl<'g> Builder<'_, 'g> {
             return;
         };
         let (name, coordinate) = (name.clone(), *coordinate);
-        let damping = joint.damping.as_ref().and_then(|e| self.scope.scalar(e, cx));
-        let friction = joint.friction.as_ref().and_then(|e| self.scope.scalar(e, cx));
+        let damping = joint.damping.as_ref().and_then(|e| self.scope.resolve_scalar(e, cx));
+        let friction = joint.friction.as_ref().and_then(|e| self.scope.resolve_scalar(e, cx));
         for (value, what) in [(damping, "damping"), (friction, "friction")] {
             let describe_quantity = || format!("the {what} of `{}`", joint.name.text);
-            value
-                .iter()
-                .for_each(|value| self.scope.require(Rule::NotNegative, describe_quantity, &[*value]));
+            value.iter().for_each(|value| {
+                self.scope.record_requirement(Rule::NotNegative, describe_quantity, &[*value])
+            });
         }
         self.model.dashpots.extend(damping.map(|damping| Dashpot { on: coordinate, damping }));
         self.model.frictions.extend(friction.map(|friction| CoulombFriction { on: coordinate, friction }));

@@ -9,9 +9,9 @@ use super::reaction::RELEASED;
 use super::scope::{Placed, PlacedKind};
 use crate::diag::Diagnostics;
 use crate::expr::replace::replace_all;
-use crate::expr::sample::always;
+use crate::expr::sample::always_equals;
 use crate::expr::{Expr, Rotation, Vec3};
-use crate::kinematics::{change_axes, perpendicular};
+use crate::kinematics::{change_axes, perpendicular_directions};
 use crate::mechanism::{LinkId, Pose, Quantity, SolvedSide};
 use crate::syntax::{Description, Endpoint, GROUND, Joint, JointKind};
 
@@ -38,8 +38,8 @@ pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics
     for (j, joint) in d.joints.iter().enumerate() {
         let Some(branch) = &joint.branch else { continue };
         if !closing[j] {
-            cx.error(branch.place.clone(), "this joint does not close a loop and has no branch")
-                .help("a joint closes a loop if its child has an earlier joint");
+            cx.report_error(branch.place.clone(), "this joint does not close a loop and has no branch")
+                .add_help("a joint closes a loop if its child has an earlier joint");
             continue;
         }
         let joint_holding_body = |end: &Endpoint| {
@@ -50,7 +50,9 @@ pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics
         };
         let is_in_other_loop = |k: usize| found.iter().any(|e| e.sides.contains(&k));
         let can_be_solved = |k: &usize| {
-            d.joints[*k].kind.rotates().is_some() && d.joints[*k].mimic.is_none() && !is_in_other_loop(*k)
+            d.joints[*k].kind.rotates_about_one_axis().is_some()
+                && d.joints[*k].mimic.is_none()
+                && !is_in_other_loop(*k)
         };
         let sides = [&joint.parent, &joint.child].map(|end| joint_holding_body(end).filter(can_be_solved));
         let pins = sides.iter().flatten().filter(|k| d.joints[**k].kind == JointKind::Pin).count();
@@ -61,7 +63,8 @@ pub fn find_solved_loops(d: &Description, closing: &[bool], cx: &mut Diagnostics
         {
             found.push(ClosedFormLoop { closing: j, sides: [a, b] });
         } else {
-            cx.error(branch.place.clone(), "this loop is not solved in closed form").help(CLOSED_FORM_HELP);
+            cx.report_error(branch.place.clone(), "this loop is not solved in closed form")
+                .add_help(CLOSED_FORM_HELP);
         }
     }
     found
@@ -84,10 +87,10 @@ impl<'g> Builder<'_, 'g> {
     pub fn solved_pose(&self, j: usize, cx: &mut Diagnostics) -> Option<Pose<'g>> {
         let ClosedFormLoop { closing, sides } = self.solving_loop(j)?;
         let joint = &self.description.joints[*closing];
-        let branch = self.scope.scalar(joint.branch.as_ref()?, cx)?;
+        let branch = self.scope.resolve_scalar(joint.branch.as_ref()?, cx)?;
         let place = joint.branch.as_ref().map_or(&joint.name.place, |b| &b.place);
-        if !branch.value().is_some_and(|b| b.abs() == 1.0) {
-            cx.error(place.clone(), "unknown branch").help("write `branch = 1` or `branch = -1`");
+        if !branch.constant_value().is_some_and(|b| b.abs() == 1.0) {
+            cx.report_error(place.clone(), "unknown branch").add_help("write `branch = 1` or `branch = -1`");
             return None;
         }
         // The first side is a Pin; all following vectors are in the axes of its joint.
@@ -95,21 +98,21 @@ impl<'g> Builder<'_, 'g> {
         let (first, second) = (sides[pin], sides[1 - pin]);
         let (frame, axis) = self.joint_frame(first, cx)?;
         let ends = [&joint.parent, &joint.child];
-        let a = self.side(first, ends[pin], &frame, cx)?;
-        let b = self.side(second, ends[1 - pin], &frame, cx)?;
+        let a = self.solved_side(first, ends[pin], &frame, cx)?;
+        let b = self.solved_side(second, ends[1 - pin], &frame, cx)?;
         let (second_frame, second_axis) = self.joint_frame(second, cx)?;
         let normal =
             self.in_frame(&frame, second_frame.link, second_frame.pose.rotation.to_parent(second_axis));
-        let is_always_zero = |e: Expr<'g>| always(e, 0.0);
+        let is_always_zero = |e: Expr<'g>| always_equals(e, 0.0);
         let in_plane = match b.slide {
             None => normal.cross(axis).0.iter().all(|e| is_always_zero(*e)),
             Some(slide) => is_always_zero(slide.dot(axis)),
         };
         if !in_plane || !is_always_zero((b.base + b.point - a.point).dot(axis)) {
-            cx.error(place.clone(), "this loop does not lie in one plane").help(CLOSED_FORM_HELP);
+            cx.report_error(place.clone(), "this loop does not lie in one plane").add_help(CLOSED_FORM_HELP);
             return None;
         }
-        let [(_, e1), (_, e2)] = perpendicular(axis);
+        let [(_, e1), (_, e2)] = perpendicular_directions(axis);
         let in_plane_components = |v: Vec3<'g>| [v.dot(e1), v.dot(e2)];
         let closing_point = closing_point(&a, &b, branch, &in_plane_components);
         if j == first {
@@ -134,27 +137,36 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn rotation_pose(&self, axis: Vec3<'g>, angle: Expr<'g>) -> Pose<'g> {
-        Pose { rotation: Rotation::eigenaxis(axis, angle), translation: Vec3::zero(self.scope.graph) }
+        Pose {
+            rotation: Rotation::rotation_about_axis(axis, angle),
+            translation: Vec3::zero(self.scope.graph),
+        }
     }
 
     /// Returns the frame of a joint on its parent, and its axis in that frame.
     fn joint_frame(&self, j: usize, cx: &mut Diagnostics) -> Option<(Placed<'g>, Vec3<'g>)> {
         let joint = &self.description.joints[j];
         let (link, pose) = self.joint_parent(&joint.parent.body, cx)?;
-        let pose = pose.then(&self.endpoint(&joint.parent, cx)?);
-        let axis = match self.scope.motions(joint, cx)?.first()? {
+        let pose = pose.compose_with(&self.frame_of_endpoint(&joint.parent, cx)?);
+        let axis = match self.scope.motions_of_joint(joint, cx)?.first()? {
             Elementary::Turn(axis) | Elementary::Slide(axis) => *axis,
             _ => return None,
         };
         Some((Placed { link, pose, kind: PlacedKind::Body }, axis))
     }
 
-    fn side(&self, j: usize, end: &Endpoint, frame: &Placed<'g>, cx: &mut Diagnostics) -> Option<Side<'g>> {
+    fn solved_side(
+        &self,
+        j: usize,
+        end: &Endpoint,
+        frame: &Placed<'g>,
+        cx: &mut Diagnostics,
+    ) -> Option<Side<'g>> {
         let joint = &self.description.joints[j];
         let (joint_frame, axis) = self.joint_frame(j, cx)?;
-        let on_child = self.endpoint(&joint.child, cx)?;
-        let closing = self.endpoint(end, cx)?.translation;
-        let point = on_child.inverse().point(closing);
+        let on_child = self.frame_of_endpoint(&joint.child, cx)?;
+        let closing = self.frame_of_endpoint(end, cx)?.translation;
+        let point = on_child.inverse().transform_point(closing);
         let in_first_frame =
             |v| self.in_frame(frame, joint_frame.link, joint_frame.pose.rotation.to_parent(v));
         let terms = self.scope.kinematics.position_between(&joint_frame, frame);

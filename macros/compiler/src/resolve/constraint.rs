@@ -10,8 +10,8 @@ use super::rows::ConstraintRows;
 use super::scope::{Allowed, Context, Value};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval_one;
-use crate::expr::replace::replace;
-use crate::expr::sample::{always, sample};
+use crate::expr::replace::substitute_symbols;
+use crate::expr::sample::{always_equals, sample_of_symbol};
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::{AXES, symbols_in, time_derivative, velocity_gradient};
 use crate::language::{Callable, FunctionId};
@@ -64,13 +64,14 @@ impl<'g> Builder<'_, 'g> {
         if let (Formulation::Speeds(_, place), true) =
             (&self.description.formulation, self.model.constraints.is_empty())
         {
-            cx.error(place.clone(), "all speeds are independent: this mechanism has no constraint")
-                .help("remove this argument");
+            cx.report_error(place.clone(), "all speeds are independent: this mechanism has no constraint")
+                .add_help("remove this argument");
         }
         let count = self.model.constraints.len();
         if count > MAX_CONSTRAINTS {
             let place = self.description.name.place.clone();
-            cx.error(place, format!("{count} scalar constraints, more than {MAX_CONSTRAINTS}")).help(
+            let message = format!("{count} scalar constraints, more than {MAX_CONSTRAINTS}");
+            cx.report_error(place, message).add_help(
                 "each loop adds up to five of them: connect the bodies as a tree where possible, or divide \
                  the mechanism",
             );
@@ -111,12 +112,12 @@ impl<'g> Builder<'_, 'g> {
                 .iter()
                 .all(|s| matches!(Quantity::from_symbol(*s), Quantity::Parameter(_)))
             {
-                cx.error(constraint.value.place.clone(), "this does not constrain any coordinate")
-                    .help("a holonomic constraint sets an expression of coordinates to zero, or equal to another one");
+                cx.report_error(constraint.value.place.clone(), "this does not constrain any coordinate")
+                    .add_help("a holonomic constraint sets an expression of coordinates to zero, or equal to another one");
                 return None;
             }
-            let rate = time_derivative(self.model.space(), residual);
-            rows.push(self.row((name, &constraint.name.place), measure, Some(residual), rate));
+            let rate = time_derivative(self.model.configuration_space(), residual);
+            rows.push(self.constraint_row((name, &constraint.name.place), measure, Some(residual), rate));
         }
         Some(ConstraintRows { rows, redundant, contact_point: None })
     }
@@ -152,13 +153,13 @@ impl<'g> Builder<'_, 'g> {
                 symbols_in(e).into_iter().any(|s| f(Quantity::from_symbol(s)))
             };
             if gradient.is_empty() {
-                cx.error(place.clone(), "this does not constrain any velocity")
-                    .help("a constraint on coordinates is a `Holonomic` one");
+                cx.report_error(place.clone(), "this does not constrain any velocity")
+                    .add_help("a constraint on coordinates is a `Holonomic` one");
                 return None;
             }
             if depends_on_quantity(&[rate], |q| matches!(q, Quantity::Input(_))) {
-                cx.error(place.clone(), "a constraint contains no input")
-                    .help("a prescribed motion is an expression of time `t`");
+                cx.report_error(place.clone(), "a constraint contains no input")
+                    .add_help("a prescribed motion is an expression of time `t`");
                 return None;
             }
             let linear = match depends_on_quantity(&coefficients, |q| matches!(q, Quantity::Velocity(_))) {
@@ -166,13 +167,13 @@ impl<'g> Builder<'_, 'g> {
                 false => Some(rate),
             };
             let Some(linear) = linear else {
-                cx.error(place.clone(), "this constraint is not linear in the velocities").help(
+                cx.report_error(place.clone(), "this constraint is not linear in the velocities").add_help(
                     "each term contains at most one velocity, as in `dot(v(skate / ground / ground), \
                      sled.y)`",
                 );
                 return None;
             };
-            rows.push(self.row((name, &constraint.name.place), measure, None, linear));
+            rows.push(self.constraint_row((name, &constraint.name.place), measure, None, linear));
         }
         Some(ConstraintRows { rows, redundant, contact_point: None })
     }
@@ -200,11 +201,14 @@ impl<'g> Builder<'_, 'g> {
                 return Vec::new();
             }
         }
-        let left = self.scope.in_context(context_of_difference(), |scope| scope.value(&constraint.value, cx));
+        let left = self
+            .scope
+            .in_context(context_of_difference(), |scope| scope.resolve_value(&constraint.value, cx));
         if left.is_none() {
             // Report the errors of the other side as well.
             if let Some(other) = &constraint.other {
-                let _ = self.scope.in_context(context_of_difference(), |scope| scope.value(other, cx));
+                let _ =
+                    self.scope.in_context(context_of_difference(), |scope| scope.resolve_value(other, cx));
             }
             return Vec::new();
         }
@@ -214,7 +218,7 @@ impl<'g> Builder<'_, 'g> {
         if !vector {
             let values: Vec<Option<Expr<'g>>> = sides
                 .iter()
-                .map(|e| self.scope.in_context(context_of_difference(), |scope| scope.scalar(e, cx)))
+                .map(|e| self.scope.in_context(context_of_difference(), |scope| scope.resolve_scalar(e, cx)))
                 .collect();
             return match values.as_slice() {
                 [Some(left), Some(right)] => vec![(name.clone(), *left - *right)],
@@ -224,7 +228,7 @@ impl<'g> Builder<'_, 'g> {
         }
         let terms: Vec<_> = sides
             .iter()
-            .map(|e| self.scope.in_context(context_of_difference(), |scope| scope.terms(e, cx)))
+            .map(|e| self.scope.in_context(context_of_difference(), |scope| scope.resolve_terms(e, cx)))
             .collect();
         let Some(terms) = terms.into_iter().collect::<Option<Vec<_>>>() else { return Vec::new() };
         let kinematics = &self.scope.kinematics;
@@ -241,7 +245,8 @@ impl<'g> Builder<'_, 'g> {
 fn without_vanishing<'g>(rows: Vec<(String, Expr<'g>)>) -> (Vec<(String, Expr<'g>)>, Vec<String>) {
     let is_vanishing = |e: &Expr<'g>| {
         let is_parameter = |q: Quantity| matches!(q, Quantity::Parameter(_));
-        symbols_in(&[*e]).into_iter().all(|s| is_parameter(Quantity::from_symbol(s))) && always(*e, 0.0)
+        symbols_in(&[*e]).into_iter().all(|s| is_parameter(Quantity::from_symbol(s)))
+            && always_equals(*e, 0.0)
     };
     let (vanishing, remaining): (Vec<_>, Vec<_>) = rows.into_iter().partition(|(_, e)| is_vanishing(e));
     if remaining.is_empty() {
@@ -256,9 +261,9 @@ fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Exp
     // Signs and corner points of the velocities reveal sign changes, of all velocities together or of some.
     let evaluate_at_pattern = |e: Expr<'g>, pattern: u64| {
         eval_one(e, &|s| match Quantity::from_symbol(s) {
-            Quantity::Velocity(k) if pattern >> (k % 64) & 1 == 1 => -sample(s, pattern),
-            Quantity::Velocity(_) => sample(s, pattern),
-            _ => sample(s, 0),
+            Quantity::Velocity(k) if pattern >> (k % 64) & 1 == 1 => -sample_of_symbol(s, pattern),
+            Quantity::Velocity(_) => sample_of_symbol(s, pattern),
+            _ => sample_of_symbol(s, 0),
         })
     };
     let is_constant = |e: Expr<'g>| {
@@ -268,7 +273,9 @@ fn linear_form<'g>(rate: Expr<'g>, gradient: &[(usize, Expr<'g>)]) -> Option<Exp
             && [1, 2, 0x5555_5555, 0xAAAA_AAAA, u64::MAX].iter().all(|p| is_close(evaluate_at_pattern(e, *p)))
     };
     let substitute_velocities = |e: Expr<'g>, value: f64| {
-        replace(e, &|s| matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| e.num(value)))
+        substitute_symbols(e, &|s| {
+            matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| e.num(value))
+        })
     };
     let remainder = substitute_velocities(rate, 0.0);
     if !gradient.iter().all(|(_, c)| is_constant(*c)) || !evaluate_at_pattern(remainder, 0).is_finite() {

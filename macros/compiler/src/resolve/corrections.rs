@@ -15,16 +15,18 @@ impl Scope<'_, '_> {
             ExprKind::Method(base, ..) => base.to_source(),
             _ => String::new(),
         };
-        let error = cx.error(method.place.clone(), format!("`.{text}(…)` has no value here"));
+        let error = cx.report_error(method.place.clone(), format!("`.{text}(…)` has no value here"));
         let is_coordinate = self.kinematics.coordinates.iter().any(|(name, ..)| *name == base);
-        if is_coordinate && let Some(meant) = words::meaning(words::RATES, text, &[]) {
-            error.help(meant.replace("NAME", &base));
+        if is_coordinate && let Some(meant) = words::meaning_of_word(words::RATES, text, &[]) {
+            error.add_help(meant.replace("NAME", &base));
         } else if Callable::is_function(text) {
-            error.help(format!("write `{text}(…)`"));
-        } else if !words::explain(error, words::NUMBER_METHODS, text, &[])
-            && !words::explain(error, &words::functions(), text, &[])
+            error.add_help(format!("write `{text}(…)`"));
+        } else if !words::explain_word(error, words::NUMBER_METHODS, text, &[])
+            && !words::explain_word(error, &words::function_synonyms(), text, &[])
         {
-            error.help("functions precede their arguments, as in `sin(angle)`; `body.at(vector)` is a point");
+            error.add_help(
+                "functions precede their arguments, as in `sin(angle)`; `body.at(vector)` is a point",
+            );
         }
     }
 
@@ -50,12 +52,13 @@ impl Scope<'_, '_> {
                     true => format!("write `{one}` for its coordinate"),
                     false => format!("write `rate({one})` for its rate, `{one}` for its coordinate"),
                 };
-                cx.error(inner.place.clone(), format!("`{joint}` is a joint and has no axes")).help(help);
+                cx.report_error(inner.place.clone(), format!("`{joint}` is a joint and has no axes"))
+                    .add_help(help);
             }
             several => {
                 let message = format!("`{joint}` has no coordinate `{}`", member.text);
                 let full = format!("{joint}.{}", member.text);
-                cx.error(member.place.clone(), message).suggest(&full, several.iter().copied());
+                cx.report_error(member.place.clone(), message).suggest_name(&full, several.iter().copied());
             }
         }
         true
@@ -77,8 +80,8 @@ const FULL_TURN: f64 = 6.3;
 
 /// Converts an angle from degrees to radians. Right angles are exact: 90/180 is exact, and so is its product
 /// with π.
-pub fn degrees(angle: Expr<'_>) -> Expr<'_> {
-    match angle.value() {
+pub fn degrees_to_radians(angle: Expr<'_>) -> Expr<'_> {
+    match angle.constant_value() {
         Some(n) => angle.num(n / 180.0 * std::f64::consts::PI),
         None => angle * (std::f64::consts::PI / 180.0),
     }
@@ -87,10 +90,12 @@ pub fn degrees(angle: Expr<'_>) -> Expr<'_> {
 /// Checks an angle, and returns false after it has reported a plain number beyond a full revolution. Numbers
 /// of files are exempt, because they are not written by hand.
 pub fn check_angle(e: &syntax::Expr, cx: &mut Diagnostics) -> bool {
-    let Some(n) = e.literal().filter(|n| n.abs() > FULL_TURN && e.place.file.is_none()) else { return true };
-    cx.error(e.place.clone(), format!("an angle of {n} rad is more than a full turn")).help(format!(
-        "angles are in radians: write `degrees({n})`, or `1 * {n}` if that many radians are meant"
-    ));
+    let Some(n) = e.literal_number().filter(|n| n.abs() > FULL_TURN && e.place.file.is_none()) else {
+        return true;
+    };
+    cx.report_error(e.place.clone(), format!("an angle of {n} rad is more than a full turn")).add_help(
+        format!("angles are in radians: write `degrees({n})`, or `1 * {n}` if that many radians are meant"),
+    );
     false
 }
 
@@ -108,12 +113,12 @@ pub fn is_rotation(step: &syntax::Expr) -> bool {
 
 /// Reports an expression that is not a rotation.
 pub fn report_rotation(step: &syntax::Expr, cx: &mut Diagnostics) {
-    let error = cx.error(step.place.clone(), "expected a rotation");
+    let error = cx.report_error(step.place.clone(), "expected a rotation");
     if let ExprKind::Call(word, _) = &step.kind {
         let known: Vec<&str> = Rotation::names().collect();
-        words::explain(error, &words::rotations(), &word.text, &known);
+        words::explain_word(error, &words::rotation_synonyms(), &word.text, &known);
     }
-    error.help(
+    error.add_help(
         "write `x(angle)`, `y(angle)`, `z(angle)`, `eigenaxis(direction, angle)` or `quaternion(x, y, z, w)`",
     );
 }
@@ -121,17 +126,20 @@ pub fn report_rotation(step: &syntax::Expr, cx: &mut Diagnostics) {
 /// Reports an array that is not a matrix.
 pub fn report_matrix(e: &syntax::Expr, cx: &mut Diagnostics) {
     let ExprKind::Array(items) = &e.kind else {
-        cx.error(e.place.clone(), "expected a 3×3 matrix").help(MATRIX_SYNTAX);
+        cx.report_error(e.place.clone(), "expected a 3×3 matrix").add_help(MATRIX_SYNTAX);
         return;
     };
     let is_matrix_row = |item: &syntax::Expr| matches!(item.kind, ExprKind::Array(_) | ExprKind::Tuple(_));
     let what = if items.iter().any(is_matrix_row) { "rows" } else { "numbers" };
     let count = if items.len() == 3 { "three".to_string() } else { items.len().to_string() };
-    let error = cx.error(e.place.clone(), format!("expected a 3×3 matrix, found {count} {what}"));
+    let error = cx.report_error(e.place.clone(), format!("expected a 3×3 matrix, found {count} {what}"));
     match (what, items.as_slice()) {
-        ("numbers", [a, b, c]) => {
-            error.help(format!("write `diagonal({}, {}, {})`", a.to_source(), b.to_source(), c.to_source()))
-        }
-        _ => error.help(MATRIX_SYNTAX),
+        ("numbers", [a, b, c]) => error.add_help(format!(
+            "write `diagonal({}, {}, {})`",
+            a.to_source(),
+            b.to_source(),
+            c.to_source()
+        )),
+        _ => error.add_help(MATRIX_SYNTAX),
     };
 }

@@ -1,12 +1,12 @@
 //! Curves and fields: derivatives of an expression by a coordinate or a position.
 
 use super::call::Call;
-use super::quantities::{in_links, vector};
+use super::quantities::{in_links, vector_value};
 use super::scope::{Allowed, Context, Placed, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::diff::Derivative;
-use crate::expr::replace::replace;
-use crate::expr::sample::always;
+use crate::expr::replace::substitute_symbols;
+use crate::expr::sample::always_equals;
 use crate::expr::{Expr, Mat3, Rotation, Vec3};
 use crate::kinematics::symbols_in;
 use crate::language;
@@ -25,22 +25,22 @@ impl<'g> Scope<'_, 'g> {
     ) -> Option<Rotation<'g>> {
         let context = Context::new(Allowed::Placement, Some((start.link, start.pose.clone())));
         self.in_context(context, |scope| match (rotation, arguments) {
-            (language::Rotation::Frenet, [curve, along]) => scope.frenet(curve, along, start, cx),
+            (language::Rotation::Frenet, [curve, along]) => scope.frenet_frame(curve, along, start, cx),
             (language::Rotation::Frenet, _) => {
-                cx.error(name.place.clone(), "`frenet` takes a curve and the coordinate along it")
-                    .help("write `frenet(curve, s)`, a vector that depends on a coordinate `s`");
+                cx.report_error(name.place.clone(), "`frenet` takes a curve and the coordinate along it")
+                    .add_help("write `frenet(curve, s)`, a vector that depends on a coordinate `s`");
                 None
             }
             (_, [argument]) => {
-                let terms = scope.terms(argument, cx)?;
+                let terms = scope.resolve_terms(argument, cx)?;
                 let v = scope.kinematics.resolve(&terms, start.link, Vec3::zero(scope.graph));
                 let [x, y, z] = start.pose.rotation.to_child(v).0;
-                if always(x.square() + y.square(), 0.0) {
-                    cx.error(
+                if always_equals(x.square() + y.square(), 0.0) {
+                    cx.report_error(
                         argument.place.clone(),
                         format!("this vector lies on the z axis, on which `{}` has no directions", name.text),
                     )
-                    .help(
+                    .add_help(
                         "the axes are determined by a vector that is not on the z axis of the frame in which \
                          it starts",
                     );
@@ -51,18 +51,18 @@ impl<'g> Scope<'_, 'g> {
                     return Some(about);
                 }
                 let elevation = z.atan2((x.square() + y.square()).sqrt());
-                Some(about.then(&Rotation::about_axis(1, -elevation)))
+                Some(about.compose_with(&Rotation::about_axis(1, -elevation)))
             }
             _ => {
-                cx.error(name.place.clone(), format!("`{}` takes a vector", name.text))
-                    .help(format!("write `{}(r(point / ground))`", name.text));
+                cx.report_error(name.place.clone(), format!("`{}` takes a vector", name.text))
+                    .add_help(format!("write `{}(r(point / ground))`", name.text));
                 None
             }
         })
     }
 
     /// Returns tangent, normal and binormal of a curve (Frenet and Serret), in the axes of a frame.
-    fn frenet(
+    fn frenet_frame(
         &self,
         curve: &syntax::Expr,
         along: &syntax::Expr,
@@ -71,9 +71,9 @@ impl<'g> Scope<'_, 'g> {
     ) -> Option<Rotation<'g>> {
         let ([first, second, _], link) = self.derivatives_along("frenet", curve, along, cx)?;
         let binormal = first.cross(second);
-        if binormal.0.iter().all(|c| always(*c, 0.0)) {
-            cx.error(curve.place.clone(), "this curve is straight, and has no normal")
-                .help("its tangent is `unit(…)` of its direction; curvature and torsion are zero");
+        if binormal.0.iter().all(|c| always_equals(*c, 0.0)) {
+            cx.report_error(curve.place.clone(), "this curve is straight, and has no normal")
+                .add_help("its tangent is `unit(…)` of its direction; curvature and torsion are zero");
             return None;
         }
         let normalised_vector = |v: Vec3<'g>| {
@@ -89,10 +89,10 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Resolves `curvature(curve, s)`: `|r′ × r″| / |r′|³` of a curve `r` that depends on a coordinate.
-    pub fn curvature(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_curvature(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [first, second, _] = self.curve_derivatives(call, cx)?;
         let normal = first.cross(second);
-        if normal.0.iter().all(|c| always(*c, 0.0)) {
+        if normal.0.iter().all(|c| always_equals(*c, 0.0)) {
             return Some(Value::Scalar(self.graph.zero()));
         }
         let speed = first.norm();
@@ -100,12 +100,12 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Resolves `torsion(curve, s)`: `(r′ × r″)·r‴ / |r′ × r″|²` of a curve `r` that depends on a coordinate.
-    pub fn torsion(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_torsion(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [first, second, third] = self.curve_derivatives(call, cx)?;
         let normal = first.cross(second);
-        if normal.0.iter().all(|c| always(*c, 0.0)) {
-            cx.error(call.arguments[0].place.clone(), "this curve is straight, and has no torsion")
-                .help("its curvature is zero: it has no normal");
+        if normal.0.iter().all(|c| always_equals(*c, 0.0)) {
+            cx.report_error(call.arguments[0].place.clone(), "this curve is straight, and has no torsion")
+                .add_help("its curvature is zero: it has no normal");
             return None;
         }
         Some(Value::Scalar(normal.dot(third) / normal.dot(normal)))
@@ -113,8 +113,8 @@ impl<'g> Scope<'_, 'g> {
 
     /// Returns the first three derivatives of a function's curve argument by its coordinate argument.
     fn curve_derivatives(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<[Vec3<'g>; 3]> {
-        let [curve, along] = call.take(cx)?;
-        let text = call.name();
+        let [curve, along] = call.take_arguments(cx)?;
+        let text = call.function_name();
         if !self.check_allowed(Allowed::Placement, &format!("`{text}(…)`"), call.place, cx) {
             return None;
         }
@@ -132,12 +132,12 @@ impl<'g> Scope<'_, 'g> {
     ) -> Option<([Vec3<'g>; 3], Option<LinkId>)> {
         let c = self.named_coordinate(text, along, cx)?;
         let symbol = Quantity::Configuration(c.q.0).symbol();
-        let terms = in_links(self.vector(curve, cx)?);
+        let terms = in_links(self.resolve_vector(curve, cx)?);
         let kinematics = &self.kinematics;
         let zero = Vec3::zero(self.graph);
         let link_rotates_with_parameter = |link: Option<LinkId>| {
-            let axes =
-                (0..3).map(|k| kinematics.resolve(&vec![(link, Vec3::axis(self.graph, k))], None, zero));
+            let axes = (0..3)
+                .map(|k| kinematics.resolve(&vec![(link, Vec3::coordinate_axis(self.graph, k))], None, zero));
             axes.into_iter().any(|axis| symbols_in(&axis.0).contains(&symbol))
         };
         let link = terms.first().and_then(|(link, _)| *link);
@@ -148,8 +148,11 @@ impl<'g> Scope<'_, 'g> {
         let mut next = |v: Vec3<'g>| v.map(|c| derivative.differentiate(c) * scale);
         let first = next(position);
         if first.is_zero() {
-            cx.error(curve.place.clone(), format!("this vector does not depend on `{}`", along.to_source()))
-                .help(format!("write `{text}(curve, s)`, a vector that depends on a coordinate `s`"));
+            cx.report_error(
+                curve.place.clone(),
+                format!("this vector does not depend on `{}`", along.to_source()),
+            )
+            .add_help(format!("write `{text}(curve, s)`, a vector that depends on a coordinate `s`"));
             return None;
         }
         let second = next(first);
@@ -164,11 +167,13 @@ impl<'g> Scope<'_, 'g> {
             return Some(*c);
         }
         let known: Vec<&str> = kinematics.coordinates.iter().map(|(known, ..)| known.as_str()).collect();
-        let error =
-            cx.error(e.place.clone(), format!("`{text}` takes the coordinate that parametrises the curve"));
-        error.suggest(&name, known);
+        let error = cx.report_error(
+            e.place.clone(),
+            format!("`{text}` takes the coordinate that parametrises the curve"),
+        );
+        error.suggest_name(&name, known);
         if error.is_bare() {
-            error.help(
+            error.add_help(
                 "a coordinate is a joint with one degree of freedom, `joint.x` of one with several, or a \
                  `Coordinate`",
             );
@@ -178,16 +183,18 @@ impl<'g> Scope<'_, 'g> {
 
     /// Resolves `gradient(field / point)`: the derivative of a scalar by the position of a point; all other
     /// quantities are constant.
-    pub fn gradient(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [whole] = call.take(cx)?;
-        let ExprKind::Binary(BinaryOp::Div, field, point, _) = &whole.kind else { return call.reject(cx) };
+    pub fn resolve_gradient(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [whole] = call.take_arguments(cx)?;
+        let ExprKind::Binary(BinaryOp::Div, field, point, _) = &whole.kind else {
+            return call.reject_arguments(cx);
+        };
         if !self.check_allowed(Allowed::Placement, "`gradient(…)`", call.place, cx) {
             return None;
         }
-        let placed = self.place(point, cx)?;
-        let Some(name) = point.name().filter(|name| *name != syntax::GROUND) else {
-            cx.error(point.place.clone(), "expected the name of a point")
-                .help("name a `Point`, a particle or a body");
+        let placed = self.resolve_placement(point, cx)?;
+        let Some(name) = point.as_name().filter(|name| *name != syntax::GROUND) else {
+            cx.report_error(point.place.clone(), "expected the name of a point")
+                .add_help("name a `Point`, a particle or a body");
             return None;
         };
         // The point is displaced by three symbols, and the field is differentiated by them.
@@ -197,20 +204,20 @@ impl<'g> Scope<'_, 'g> {
         let moved = Placed { pose, ..placed.clone() };
         self.records.borrow_mut().definition_values.clear();
         self.records.borrow_mut().displaced.push((name.to_string(), moved));
-        let value = self.scalar(field, cx);
+        let value = self.resolve_scalar(field, cx);
         self.records.borrow_mut().displaced.pop();
         self.records.borrow_mut().definition_values.clear();
         let value = value?;
         let set_coordinates_to_zero =
-            |e: Expr<'g>| replace(e, &|s| moves.contains(&s).then(|| self.graph.zero()));
+            |e: Expr<'g>| substitute_symbols(e, &|s| moves.contains(&s).then(|| self.graph.zero()));
         let gradient = Vec3(moves.map(|s| {
             set_coordinates_to_zero(Derivative::with_respect_to(s, self.graph).differentiate(value))
         }));
         if gradient.is_zero() {
-            cx.error(field.place.clone(), format!("this does not depend on the position of `{name}`"))
-                .help(format!("a field is an expression of `r({name} / ground)`"));
+            cx.report_error(field.place.clone(), format!("this does not depend on the position of `{name}`"))
+                .add_help(format!("a field is an expression of `r({name} / ground)`"));
             return None;
         }
-        Some(vector(vec![(placed.link, gradient)]))
+        Some(vector_value(vec![(placed.link, gradient)]))
     }
 }

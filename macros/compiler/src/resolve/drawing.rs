@@ -8,7 +8,7 @@ use crate::diag::Diagnostics;
 use crate::expr::{Expr, Rotation, Vec3};
 use crate::kinematics::symbols_in;
 use crate::language::{Callable, Method, Solid};
-use crate::mechanism::drawing::{entries, rows};
+use crate::mechanism::drawing::{entries_by_row, entries_of_vectors};
 use crate::mechanism::{Input, LinkId, Piece, PieceKind, Pose, Quantity, Role};
 use crate::syntax::{
     self, Action, BinaryOp, Callee, DriveLaw, Endpoint, ExprKind, GROUND, Shape, Target, Visual,
@@ -31,7 +31,7 @@ impl<'g> Builder<'_, 'g> {
         let mut pieces = Vec::new();
         let shown = self.draw_visuals(&mut pieces);
         if !self.model.gravity.is_zero() {
-            let numbers = entries(&[Vec3::zero(self.scope.graph), self.model.gravity]);
+            let numbers = entries_of_vectors(&[Vec3::zero(self.scope.graph), self.model.gravity]);
             let name = "gravity".to_string();
             pieces.push(Piece {
                 name,
@@ -56,12 +56,12 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns a pose on a link, relative to a named frame of that link; `None` if the link has none.
-    pub(super) fn anchor(&self, link: Option<LinkId>, pose: &Pose<'g>) -> Option<Anchor<'g>> {
+    pub(super) fn anchor_of_pose(&self, link: Option<LinkId>, pose: &Pose<'g>) -> Option<Anchor<'g>> {
         if link.is_none() {
             return Some((None, pose.clone()));
         }
         let index = self.model.frames.iter().position(|frame| frame.link == link)?;
-        Some((Some(index), self.model.frames[index].pose.inverse().then(pose)))
+        Some((Some(index), self.model.frames[index].pose.inverse().compose_with(pose)))
     }
 
     /// Returns the index of a body's own frame.
@@ -71,8 +71,8 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the pose of the end of a joint.
     fn joint_end(&self, end: &Endpoint) -> Option<Anchor<'g>> {
-        let mut silent = Diagnostics::unread();
-        let on_body = self.endpoint(end, &mut silent)?;
+        let mut silent = Diagnostics::discarded_diagnostics();
+        let on_body = self.frame_of_endpoint(end, &mut silent)?;
         if end.body.text == GROUND {
             return Some((None, on_body));
         }
@@ -80,7 +80,7 @@ impl<'g> Builder<'_, 'g> {
             return Some((Some(frame), on_body));
         }
         let (link, pose) = self.joint_parent(&end.body, &mut silent)?;
-        self.anchor(link, &pose.then(&on_body))
+        self.anchor_of_pose(link, &pose.compose_with(&on_body))
     }
 
     /// Adds the visual geometry of a file. Returns the bodies that have visual geometry without meshes.
@@ -90,15 +90,15 @@ impl<'g> Builder<'_, 'g> {
         let g = self.scope.graph;
         for Visual { on, shape, mesh } in &self.description.visuals {
             let Some((frame, pose)) = self.joint_end(on) else { continue };
-            let z = pose.rotation.to_parent(Vec3::axis(g, 2));
+            let z = pose.rotation.to_parent(Vec3::coordinate_axis(g, 2));
             let number_expression = |x: f64| g.num(x);
             let entries_of_round_solid = |numbers: &[f64]| {
-                let axis = entries(&[pose.translation, z]);
+                let axis = entries_of_vectors(&[pose.translation, z]);
                 axis.into_iter().chain(numbers.iter().map(|x| g.num(*x))).collect()
             };
             let along_axes = |lengths: [f64; 3]| {
-                let axes = rows(&pose.rotation.matrix());
-                entries(&[pose.translation])
+                let axes = entries_by_row(&pose.rotation.rotation_matrix());
+                entries_of_vectors(&[pose.translation])
                     .into_iter()
                     .chain(axes)
                     .chain(lengths.map(number_expression))
@@ -106,7 +106,7 @@ impl<'g> Builder<'_, 'g> {
             };
             let (kind, numbers) = match (shape, mesh) {
                 (Shape::Sphere(radius), _) => {
-                    let mut numbers = entries(&[pose.translation]);
+                    let mut numbers = entries_of_vectors(&[pose.translation]);
                     numbers.push(number_expression(*radius));
                     (PieceKind::Sphere, numbers)
                 }
@@ -144,7 +144,9 @@ impl<'g> Builder<'_, 'g> {
             }
             let mut solids = Vec::new();
             let complete = match &body.inertia {
-                Some(e) if body.about.is_none() => self.solids(e, &Rotation::identity(g), com, &mut solids),
+                Some(e) if body.about.is_none() => {
+                    self.collect_solids(e, &Rotation::identity(g), com, &mut solids)
+                }
                 _ => false,
             };
             if !complete {
@@ -154,7 +156,8 @@ impl<'g> Builder<'_, 'g> {
                 let inertial_parameters = std::iter::once(mass).chain(tensor);
                 let inertial_parameters: Vec<Expr<'g>> =
                     if is_point { Vec::new() } else { inertial_parameters.collect() };
-                solids = vec![(kind, entries(&[com]).into_iter().chain(inertial_parameters).collect())];
+                solids =
+                    vec![(kind, entries_of_vectors(&[com]).into_iter().chain(inertial_parameters).collect())];
             }
             pieces.extend(solids.into_iter().map(|(kind, numbers)| Piece {
                 name: name.clone(),
@@ -167,7 +170,7 @@ impl<'g> Builder<'_, 'g> {
         for particle in &self.description.particles {
             let name = particle.name.text.clone();
             let frames = [self.body_frame(&name), None];
-            let numbers = entries(&[Vec3::zero(g)]);
+            let numbers = entries_of_vectors(&[Vec3::zero(g)]);
             if frames[0].is_some() {
                 pieces.push(Piece { name, role: Role::Body, kind: PieceKind::Point, frames, numbers });
             }
@@ -176,40 +179,41 @@ impl<'g> Builder<'_, 'g> {
 
     /// Collects the solids of an inertia about a point; returns false if a term of the inertia is not a
     /// solid.
-    fn solids(
+    fn collect_solids(
         &self,
         e: &syntax::Expr,
         orientation: &Rotation<'g>,
         com: Vec3<'g>,
         found: &mut Vec<(PieceKind, Vec<Expr<'g>>)>,
     ) -> bool {
-        let mut silent = Diagnostics::unread();
+        let mut silent = Diagnostics::discarded_diagnostics();
         match &e.kind {
             ExprKind::Binary(BinaryOp::Add, a, b, _) => {
-                self.solids(a, orientation, com, found) && self.solids(b, orientation, com, found)
+                self.collect_solids(a, orientation, com, found)
+                    && self.collect_solids(b, orientation, com, found)
             }
             ExprKind::Method(inner, method, steps) if method.id == Some(Method::Rotated) => {
-                let Some(rotation) = self.scope.rotation(steps, &mut silent) else { return false };
-                self.solids(inner, &orientation.clone().then(&rotation), com, found)
+                let Some(rotation) = self.scope.resolve_rotation(steps, &mut silent) else { return false };
+                self.collect_solids(inner, &orientation.clone().compose_with(&rotation), com, found)
             }
             ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, arguments) => {
                 let Some(kind) = solid.row().piece.clone() else { return false };
-                let mut numbers = entries(&[com]);
+                let mut numbers = entries_of_vectors(&[com]);
                 let (axis, sizes) = match arguments.split_last() {
                     Some((axis, sizes)) if solid.has_axis() => (Some(axis), sizes),
                     _ => (None, arguments.as_slice()),
                 };
                 match axis {
                     Some(axis) => match self.scope.unit_vector(axis, false, &mut silent) {
-                        Some(axis) => numbers.extend(entries(&[orientation.to_parent(axis)])),
+                        Some(axis) => numbers.extend(entries_of_vectors(&[orientation.to_parent(axis)])),
                         None => return false,
                     },
                     None if kind == PieceKind::Sphere => {}
-                    None => numbers.extend(rows(&orientation.matrix())),
+                    None => numbers.extend(entries_by_row(&orientation.rotation_matrix())),
                 }
                 // The first argument is the mass.
                 for size in sizes.iter().skip(1) {
-                    match self.scope.scalar(size, &mut silent) {
+                    match self.scope.resolve_scalar(size, &mut silent) {
                         Some(size) => numbers.push(size),
                         None => return false,
                     }
@@ -239,8 +243,10 @@ impl<'g> Builder<'_, 'g> {
                 joint_positions.push((&body.text, place));
             }
             let Some((kind, axis)) = self.joint_symbol(joint) else { continue };
-            let mut numbers = entries(&[on_parent.translation]);
-            numbers.extend(axis.iter().flat_map(|axis| entries(&[on_parent.rotation.to_parent(*axis)])));
+            let mut numbers = entries_of_vectors(&[on_parent.translation]);
+            numbers.extend(
+                axis.iter().flat_map(|axis| entries_of_vectors(&[on_parent.rotation.to_parent(*axis)])),
+            );
             let name = joint.name.text.clone();
             pieces.push(Piece { name, role: Role::Joint, kind, frames: [parent, None], numbers });
         }
@@ -256,7 +262,7 @@ impl<'g> Builder<'_, 'g> {
                     role: Role::Link,
                     kind: PieceKind::Bar,
                     frames: [Some(frame), Some(frame)],
-                    numbers: entries(&[first, other]),
+                    numbers: entries_of_vectors(&[first, other]),
                 });
             }
         }
@@ -266,7 +272,11 @@ impl<'g> Builder<'_, 'g> {
     fn joint_symbol(&self, joint: &syntax::Joint) -> Option<(PieceKind, Option<Vec3<'g>>)> {
         let (kind, axes) = drawing_symbol(joint)?;
         let unit_axis = |axes: &[syntax::Expr]| {
-            self.scope.unit_vector(axes.first()?, joint.normalise_axis, &mut Diagnostics::unread())
+            self.scope.unit_vector(
+                axes.first()?,
+                joint.normalise_axis,
+                &mut Diagnostics::discarded_diagnostics(),
+            )
         };
         Some((kind, axes.map_or(Some(None), |axes| unit_axis(axes).map(Some))?))
     }
@@ -292,9 +302,12 @@ impl<'g> Builder<'_, 'g> {
     fn draw_element(&self, action: &Action, long: PieceKind, round: PieceKind, pieces: &mut Vec<Piece<'g>>) {
         let found = match &action.on {
             Target::Between(a, b) => {
-                let mut silent = Diagnostics::unread();
-                let mut place =
-                    |e| self.scope.place(e, &mut silent).and_then(|p| self.anchor(p.link, &p.pose));
+                let mut silent = Diagnostics::discarded_diagnostics();
+                let mut place = |e| {
+                    self.scope
+                        .resolve_placement(e, &mut silent)
+                        .and_then(|p| self.anchor_of_pose(p.link, &p.pose))
+                };
                 place(a).zip(place(b)).map(|(a, b)| (long, [a.0, b.0], [a.1.translation, b.1.translation]))
             }
             Target::On(on) => self.on_joint(on).map(|(turns, frames, ends, axis)| match turns {
@@ -303,7 +316,7 @@ impl<'g> Builder<'_, 'g> {
             }),
         };
         if let Some((kind, frames, vectors)) = found {
-            let (name, numbers) = (action.name.text.clone(), entries(&vectors));
+            let (name, numbers) = (action.name.text.clone(), entries_of_vectors(&vectors));
             pieces.push(Piece { name, role: Role::Element, kind, frames, numbers });
         }
     }
@@ -312,7 +325,7 @@ impl<'g> Builder<'_, 'g> {
     /// its ends, and its axis on the parent.
     #[expect(clippy::type_complexity, reason = "it is taken apart where it is made")]
     fn on_joint(&self, on: &syntax::Expr) -> Option<(bool, [Option<usize>; 2], [Vec3<'g>; 2], Vec3<'g>)> {
-        let name = on.name()?;
+        let name = on.as_name()?;
         let joint = self.description.joints.iter().find(|joint| joint.name.text == name)?;
         let ((a, on_a), (b, on_b)) = self.joint_end(&joint.parent).zip(self.joint_end(&joint.child))?;
         let (kind, axis) = self.joint_symbol(joint)?;
@@ -325,7 +338,7 @@ impl<'g> Builder<'_, 'g> {
         let drives = &self.description.drives;
         let found =
             drives.iter().find(|drive| matches!(&drive.law, DriveLaw::Input(_)) && drive.name.text == input);
-        found.and_then(|drive| drive.on.terms().first()).map(|(joint, _)| joint.text.as_str())
+        found.and_then(|drive| drive.on.weighted_joints().first()).map(|(joint, _)| joint.text.as_str())
     }
 
     /// Returns an arrow for an input, if the input has one direction.
@@ -351,7 +364,7 @@ impl<'g> Builder<'_, 'g> {
                 };
                 let (turns, [a, _], [position, _], axis) = joint?;
                 let kind = if turns { PieceKind::Torque(k) } else { PieceKind::Force(k) };
-                return Some((kind, [a, a], entries(&[position, axis])));
+                return Some((kind, [a, a], entries_of_vectors(&[position, axis])));
             }
             Input::Force { link, point, along } => (*link, *point, along, false),
             Input::Torque { link, about } => (*link, Vec3::zero(g), about, true),
@@ -362,10 +375,10 @@ impl<'g> Builder<'_, 'g> {
             pose: Pose { rotation: Rotation::identity(g), translation: point },
             kind: PlacedKind::Point,
         };
-        let (frame, pose) = self.anchor(place.link, &place.pose)?;
-        let (axes_frame, axes) = self.anchor(*axes, &Pose::identity(g))?;
+        let (frame, pose) = self.anchor_of_pose(place.link, &place.pose)?;
+        let (axes_frame, axes) = self.anchor_of_pose(*axes, &Pose::identity(g))?;
         let kind = if torque { PieceKind::Torque(k) } else { PieceKind::Force(k) };
-        let numbers = entries(&[pose.translation, axes.rotation.to_parent(*direction)]);
+        let numbers = entries_of_vectors(&[pose.translation, axes.rotation.to_parent(*direction)]);
         Some((kind, [frame, axes_frame], numbers))
     }
 }

@@ -33,7 +33,7 @@ impl<'g> Forces<'g> {
     }
 
     /// Returns a force that opposes a rate and dissipates energy.
-    pub fn resisting(rate: Expr<'g>, force: Expr<'g>) -> Forces<'g> {
+    pub fn resisting_force(rate: Expr<'g>, force: Expr<'g>) -> Forces<'g> {
         Forces { loads: vec![Load { rate, force: -force, dissipative: true }], ..Forces::default() }
     }
 

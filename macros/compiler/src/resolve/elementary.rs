@@ -1,6 +1,6 @@
 //! Elementary motions of joints, before coordinates are assigned.
 
-use super::axis::align;
+use super::axis::nearest_axis_and_rotation;
 use crate::expr::{Expr, Graph, Rotation, Vec3};
 use crate::mechanism::{Coordinate, InQ, InV, Motion};
 
@@ -20,7 +20,7 @@ pub enum Elementary<'g> {
 
 impl<'g> Elementary<'g> {
     /// Returns the axis of translation, if the motion is a translation or a screw.
-    pub fn slide(&self) -> Option<Vec3<'g>> {
+    pub fn translation_axis(&self) -> Option<Vec3<'g>> {
         match self {
             Elementary::Slide(axis) | Elementary::Helix(axis, _) => Some(*axis),
             Elementary::Turn(_) | Elementary::Ball | Elementary::Free => None,
@@ -28,7 +28,7 @@ impl<'g> Elementary<'g> {
     }
 
     /// Returns the axis of rotation, if the motion is a rotation or a screw.
-    pub fn turn(&self) -> Option<Vec3<'g>> {
+    pub fn rotation_axis(&self) -> Option<Vec3<'g>> {
         match self {
             Elementary::Turn(axis) | Elementary::Helix(axis, _) => Some(*axis),
             Elementary::Slide(_) | Elementary::Ball | Elementary::Free => None,
@@ -38,7 +38,7 @@ impl<'g> Elementary<'g> {
     /// Returns the motion of a link, and the orientation of the link in the axes of the joint. The motion has
     /// the given coordinate, or the given first entries of `q` and `v`. Constant axes of rotation become
     /// coordinate axes of the link.
-    pub fn motion(
+    pub fn motion_of_link(
         &self,
         graph: &'g Graph,
         coordinate: Coordinate,
@@ -47,11 +47,11 @@ impl<'g> Elementary<'g> {
         let none = Rotation::identity(graph);
         match self {
             Elementary::Turn(axis) => {
-                let (axis, aligned) = align(graph, *axis);
+                let (axis, aligned) = nearest_axis_and_rotation(graph, *axis);
                 (Motion::Turn { axis, coordinate }, aligned)
             }
             Elementary::Helix(axis, pitch) => {
-                let (axis, aligned) = align(graph, *axis);
+                let (axis, aligned) = nearest_axis_and_rotation(graph, *axis);
                 (Motion::Helix { axis, pitch: *pitch, coordinate }, aligned)
             }
             Elementary::Slide(axis) => (Motion::Slide { axis: *axis, coordinate }, none),

@@ -24,22 +24,27 @@ impl<'g> Builder<'_, 'g> {
         let dry = self.description.actions.iter().any(is_friction);
         for declared in &self.description.equilibria {
             if dry {
-                cx.error(
+                cx.report_error(
                     declared.name.place.clone(),
                     format!("dry friction cannot be linearised about `{}`", declared.name.text),
                 )
-                .help(DRY_FRICTION);
+                .add_help(DRY_FRICTION);
             } else if self.model.kinematic {
-                cx.error(declared.name.place.clone(), "linear equations of motion need inertia").help(
-                    "remove the equilibrium, or `inertia = none`: without inertia there are no dynamics",
-                );
-            } else if let Some(found) = self.equilibrium(declared, cx) {
+                cx.report_error(declared.name.place.clone(), "linear equations of motion need inertia")
+                    .add_help(
+                        "remove the equilibrium, or `inertia = none`: without inertia there are no dynamics",
+                    );
+            } else if let Some(found) = self.resolve_equilibrium(declared, cx) {
                 self.model.equilibria.push(found);
             }
         }
     }
 
-    fn equilibrium(&self, declared: &syntax::Equilibrium, cx: &mut Diagnostics) -> Option<Equilibrium<'g>> {
+    fn resolve_equilibrium(
+        &self,
+        declared: &syntax::Equilibrium,
+        cx: &mut Diagnostics,
+    ) -> Option<Equilibrium<'g>> {
         let g = self.scope.graph;
         let mut found = Equilibrium {
             name: declared.name.text.clone(),
@@ -49,17 +54,17 @@ impl<'g> Builder<'_, 'g> {
             states: self.resting_states(),
         };
         for chart in &self.model.charts {
-            if let Some(first) = chart.quaternion() {
+            if let Some(first) = chart.first_quaternion_index() {
                 found.configuration[first.0 + 3] = g.one();
             }
         }
         let before = cx.len();
         let mut given = BTreeSet::new();
         for (place, value) in &declared.values {
-            let Some(variable) = self.variable(place, cx) else { continue };
+            let Some(variable) = self.resolve_variable(place, cx) else { continue };
             if !given.insert(variable) {
-                cx.error(place.place.clone(), format!("`{}` is given twice", place.to_source()))
-                    .help("remove one of the two");
+                cx.report_error(place.place.clone(), format!("`{}` is given twice", place.to_source()))
+                    .add_help("remove one of the two");
                 continue;
             }
             let Some(value) = self.value_at_rest(variable, value, cx) else { continue };
@@ -100,12 +105,12 @@ impl<'g> Builder<'_, 'g> {
         let angle = coordinates.iter().any(|(known, _, angle)| known == name && *angle);
         self.scope.in_context(Context::new(Allowed::Constant, None), |scope| match angle {
             true => scope.plane_angle(value, cx),
-            false => scope.scalar(value, cx),
+            false => scope.resolve_scalar(value, cx),
         })
     }
 
     /// Returns the variable with this name, or reports an error.
-    fn variable(&self, place: &Expr, cx: &mut Diagnostics) -> Option<Variable> {
+    fn resolve_variable(&self, place: &Expr, cx: &mut Diagnostics) -> Option<Variable> {
         let text = place.to_source();
         let coordinate = self.model.configuration.iter().position(|name| *name == text);
         let find_input = || self.model.inputs.iter().position(|(name, _)| *name == text).map(Variable::Input);
@@ -132,19 +137,19 @@ impl<'g> Builder<'_, 'g> {
             self.model.configuration.iter().map(String::as_str).chain(inputs).chain(states).collect();
         let follows = self.scope.joints.iter().any(|joint| joint == text);
         let what = self.scope.kind_of_name(text);
-        let error = cx.error(place.place.clone(), format!("`{text}` cannot have a value at rest"));
+        let error = cx.report_error(place.place.clone(), format!("`{text}` cannot have a value at rest"));
         match (own.as_slice(), what) {
-            ([first, ..], _) => error.help(format!("give its coordinates values: write `{first} = …`")),
-            (_, Some("a parameter")) => error.help(
+            ([first, ..], _) => error.add_help(format!("give its coordinates values: write `{first} = …`")),
+            (_, Some("a parameter")) => error.add_help(
                 "parameters have their values in the struct; values here can be expressions of parameters",
             ),
             _ if follows => {
-                error.help("it has no coordinate: it is welded, closes a loop, or follows others")
+                error.add_help("it has no coordinate: it is welded, closes a loop, or follows others")
             }
-            _ => error.suggest(text, known),
+            _ => error.suggest_name(text, known),
         };
         if error.is_bare() {
-            error.help("coordinates, inputs and states have values: `#[equilibrium(joint = angle)]`");
+            error.add_help("coordinates, inputs and states have values: `#[equilibrium(joint = angle)]`");
         }
     }
 }

@@ -9,17 +9,18 @@ use crate::syntax::{self, BinaryOp, ExprKind};
 
 impl<'a, 'g> Scope<'a, 'g> {
     /// Returns the value of a scalar expression.
-    pub fn scalar(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
-        match self.value(e, cx)? {
+    pub fn resolve_scalar(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
+        match self.resolve_value(e, cx)? {
             Value::Scalar(s) => Some(s),
             Value::Vector(_) => {
-                cx.error(e.place.clone(), "expected a scalar, found a vector")
-                    .help("its length is `norm(v)`, its component along a direction `dot(v, x)`");
+                cx.report_error(e.place.clone(), "expected a scalar, found a vector")
+                    .add_help("its length is `norm(v)`, its component along a direction `dot(v, x)`");
                 None
             }
             Value::Matrix(_) => {
-                cx.error(e.place.clone(), "expected a scalar, found a matrix")
-                    .help("an entry of it is `dot(x, M * y)`, the sum of those of its diagonal `trace(M)`");
+                cx.report_error(e.place.clone(), "expected a scalar, found a matrix").add_help(
+                    "an entry of it is `dot(x, M * y)`, the sum of those of its diagonal `trace(M)`",
+                );
                 None
             }
         }
@@ -27,7 +28,7 @@ impl<'a, 'g> Scope<'a, 'g> {
 
     /// Returns the value of a vector expression in the attribute's own axes.
     pub fn own_vector(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec3<'g>> {
-        self.vector(e, cx).and_then(|terms| self.own_axes_sum(terms, e, cx))
+        self.resolve_vector(e, cx).and_then(|terms| self.own_axes_sum(terms, e, cx))
     }
 
     /// Returns the sum of a vector's terms, which must all be in the attribute's own axes.
@@ -40,8 +41,8 @@ impl<'a, 'g> Scope<'a, 'g> {
         let mut sum = Vec3::zero(self.graph);
         for (axes, v) in terms {
             if let Axes::Of(body) = axes {
-                cx.error(e.place.clone(), format!("this vector is given in the axes of `{body}`"))
-                    .help("only the axes `x`, `y` and `z` of the frame are allowed here");
+                cx.report_error(e.place.clone(), format!("this vector is given in the axes of `{body}`"))
+                    .add_help("only the axes `x`, `y` and `z` of the frame are allowed here");
                 return None;
             }
             sum += v;
@@ -50,7 +51,7 @@ impl<'a, 'g> Scope<'a, 'g> {
     }
 
     /// Returns the value of a vector expression as a sum over axes.
-    pub fn vector(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<(Axes, Vec3<'g>)>> {
+    pub fn resolve_vector(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<(Axes, Vec3<'g>)>> {
         self.vector_or(e, "multiply it by a direction, as in `length * y`", cx)
     }
 
@@ -62,17 +63,17 @@ impl<'a, 'g> Scope<'a, 'g> {
         help: &str,
         cx: &mut Diagnostics,
     ) -> Option<Vec<(Axes, Vec3<'g>)>> {
-        match self.value(e, cx)? {
+        match self.resolve_value(e, cx)? {
             Value::Vector(v) => Some(v),
             // The number zero is also the zero vector.
             Value::Scalar(s) if s.is_zero() => Some(vec![(Axes::Own, Vec3::zero(self.graph))]),
             Value::Scalar(_) => {
-                cx.error(e.place.clone(), "expected a vector, found a scalar").help(help);
+                cx.report_error(e.place.clone(), "expected a vector, found a scalar").add_help(help);
                 None
             }
             Value::Matrix(_) => {
-                cx.error(e.place.clone(), "expected a vector, found a matrix")
-                    .help("a matrix times a vector is one: `M * v`");
+                cx.report_error(e.place.clone(), "expected a vector, found a matrix")
+                    .add_help("a matrix times a vector is one: `M * v`");
                 None
             }
         }
@@ -82,7 +83,7 @@ impl<'a, 'g> Scope<'a, 'g> {
     ///
     /// The left operands of a chain of operators, such as a long sum, are visited in a loop. The depth of the
     /// recursion is therefore the nesting of brackets and signs, which `syntax::guard` bounds.
-    pub fn value(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_value(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let mut operations = Vec::new();
         let mut first = e;
         while let ExprKind::Binary(op, left, right, _) = &first.kind
@@ -91,18 +92,18 @@ impl<'a, 'g> Scope<'a, 'g> {
             operations.push((*op, &**right, first));
             first = left;
         }
-        let mut value = self.operand(first, cx).and_then(|value| finite(value, first, cx));
+        let mut value = self.resolve_operand(first, cx).and_then(|value| require_finite(value, first, cx));
         for (op, right, whole) in operations.into_iter().rev() {
-            let right = self.value(right, cx);
+            let right = self.resolve_value(right, cx);
             let both = value.zip(right);
-            value = both.and_then(|(left, right)| self.binary(op, left, right, whole, cx));
-            value = value.and_then(|value| finite(value, whole, cx));
+            value = both.and_then(|(left, right)| self.resolve_binary(op, left, right, whole, cx));
+            value = value.and_then(|value| require_finite(value, whole, cx));
         }
         value
     }
 
     /// Returns the value of an expression that is not a binary operation.
-    fn operand(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    fn resolve_operand(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
         if let Some(symbol) = self.compared_symbol(e) {
             return Some(Value::Scalar(symbol));
         }
@@ -111,28 +112,28 @@ impl<'a, 'g> Scope<'a, 'g> {
                 let small = *n != 0.0 && n.abs() < f64::from(f32::MIN_POSITIVE);
                 if self.is_f32 && (small || n.abs() > f64::from(f32::MAX)) {
                     let what = if small { "small" } else { "large" };
-                    cx.error(e.place.clone(), format!("this number is too {what} for `f32`: {n:e}"))
-                        .help("use `f64`, or other units");
+                    cx.report_error(e.place.clone(), format!("this number is too {what} for `f32`: {n:e}"))
+                        .add_help("use `f64`, or other units");
                     return None;
                 }
                 Some(Value::Scalar(self.graph.num(*n)))
             }
-            ExprKind::Name(name) => self.name(name, e, cx),
-            ExprKind::Field(inner, member) => self.member(inner, member, cx),
-            ExprKind::Neg(inner) => Some(match self.value(inner, cx)? {
+            ExprKind::Name(name) => self.resolve_name(name, e, cx),
+            ExprKind::Field(inner, member) => self.resolve_member(inner, member, cx),
+            ExprKind::Neg(inner) => Some(match self.resolve_value(inner, cx)? {
                 Value::Scalar(s) => Value::Scalar(-s),
                 Value::Vector(v) => Value::Vector(v.into_iter().map(|(a, v)| (a, -v)).collect()),
                 Value::Matrix(m) => Value::Matrix(m.map(|entry| -entry)),
             }),
-            ExprKind::Binary(..) => self.value(e, cx),
-            ExprKind::Call(function, arguments) => self.call(function, arguments, cx),
+            ExprKind::Binary(..) => self.resolve_value(e, cx),
+            ExprKind::Call(function, arguments) => self.resolve_call(function, arguments, cx),
             ExprKind::Array(items)
                 if !items.is_empty() && items.iter().all(|item| matches!(item.kind, ExprKind::Array(_))) =>
             {
                 self.matrix_by_rows(e, cx)
             }
             ExprKind::Array(items) if items.len() == 3 => {
-                let parts: Vec<Option<Expr<'g>>> = items.iter().map(|i| self.scalar(i, cx)).collect();
+                let parts: Vec<Option<Expr<'g>>> = items.iter().map(|i| self.resolve_scalar(i, cx)).collect();
                 let vector = Vec3([parts[0]?, parts[1]?, parts[2]?]);
                 Some(self.own_axes(vector))
             }
@@ -141,31 +142,34 @@ impl<'a, 'g> Scope<'a, 'g> {
                 None
             }
             ExprKind::Array(items) => {
-                cx.error(e.place.clone(), format!("a vector has three components, found {}", items.len()))
-                    .help(VECTOR_SYNTAX);
+                cx.report_error(
+                    e.place.clone(),
+                    format!("a vector has three components, found {}", items.len()),
+                )
+                .add_help(VECTOR_SYNTAX);
                 None
             }
             ExprKind::Text(_) => {
-                cx.error(e.place.clone(), "expected a scalar or a vector, found a path");
+                cx.report_error(e.place.clone(), "expected a scalar or a vector, found a path");
                 None
             }
             ExprKind::Tuple(items) => {
-                let error = cx.error(e.place.clone(), "expected a scalar or a vector, found a list");
+                let error = cx.report_error(e.place.clone(), "expected a scalar or a vector, found a list");
                 match items.as_slice() {
-                    [a, b, c] => error.help(format!(
+                    [a, b, c] => error.add_help(format!(
                         "write `[{}, {}, {}]` for a vector",
                         a.to_source(),
                         b.to_source(),
                         c.to_source()
                     )),
-                    _ => error.help(VECTOR_SYNTAX),
+                    _ => error.add_help(VECTOR_SYNTAX),
                 };
                 None
             }
         }
     }
 
-    fn binary(
+    fn resolve_binary(
         &self,
         op: BinaryOp,
         left: Value<'g>,
@@ -179,17 +183,17 @@ impl<'a, 'g> Scope<'a, 'g> {
             (BinaryOp::Sub, Scalar(a), Scalar(b)) => Scalar(a - b),
             (BinaryOp::Mul, Scalar(a), Scalar(b)) => Scalar(a * b),
             (BinaryOp::Div, _, Scalar(b)) if b.is_zero() => {
-                cx.error(e.place.clone(), "division by zero")
-                    .help("the divisor is zero, or simplifies to zero");
+                cx.report_error(e.place.clone(), "division by zero")
+                    .add_help("the divisor is zero, or simplifies to zero");
                 return None;
             }
             (op, left @ Value::Matrix(_), right) | (op, left, right @ Value::Matrix(_)) => {
                 return self.matrix_binary(op, left, right, e, cx);
             }
             (BinaryOp::Div, Scalar(a), Scalar(b)) => Scalar(a / b),
-            (BinaryOp::Add, Vector(a), Vector(b)) => Vector(sum(a, b)),
+            (BinaryOp::Add, Vector(a), Vector(b)) => Vector(sum_by_axes(a, b)),
             (BinaryOp::Sub, Vector(a), Vector(b)) => {
-                Vector(sum(a, b.into_iter().map(|(axes, v)| (axes, -v)).collect()))
+                Vector(sum_by_axes(a, b.into_iter().map(|(axes, v)| (axes, -v)).collect()))
             }
             (BinaryOp::Mul, Scalar(s), Vector(v)) | (BinaryOp::Mul, Vector(v), Scalar(s)) => {
                 Vector(v.into_iter().map(|(a, v)| (a, v * s)).collect())
@@ -198,20 +202,26 @@ impl<'a, 'g> Scope<'a, 'g> {
                 Vector(v.into_iter().map(|(a, v)| (a, v.map(|c| c / s))).collect())
             }
             (BinaryOp::Mul, Vector(_), Vector(_)) => {
-                cx.error(e.place.clone(), "the product of two vectors is not defined")
-                    .help("write `dot(a, b)` or `cross(a, b)`");
+                cx.report_error(e.place.clone(), "the product of two vectors is not defined")
+                    .add_help("write `dot(a, b)` or `cross(a, b)`");
                 return None;
             }
             (BinaryOp::Div, left, Vector(_)) => {
-                cx.error(e.place.clone(), format!("{} cannot be divided by a vector", left.word()))
-                    .help("divide by its length, `norm(v)`");
+                cx.report_error(
+                    e.place.clone(),
+                    format!("{} cannot be divided by a vector", left.kind_with_article()),
+                )
+                .add_help("divide by its length, `norm(v)`");
                 return None;
             }
             (_, left, right) => {
                 let verb = if op == BinaryOp::Add { "added to" } else { "subtracted from" };
                 let (what, from) = if op == BinaryOp::Add { (&left, &right) } else { (&right, &left) };
-                cx.error(e.place.clone(), format!("{} cannot be {verb} {}", what.word(), from.word()))
-                    .help("multiply the scalar by a direction, as in `length * y`");
+                cx.report_error(
+                    e.place.clone(),
+                    format!("{} cannot be {verb} {}", what.kind_with_article(), from.kind_with_article()),
+                )
+                .add_help("multiply the scalar by a direction, as in `length * y`");
                 return None;
             }
         })
@@ -219,22 +229,22 @@ impl<'a, 'g> Scope<'a, 'g> {
 }
 
 /// Returns the value if it is finite; otherwise reports an error at the expression.
-fn finite<'g>(value: Value<'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
-    let is_finite = |s: &Expr<'g>| s.value().is_none_or(f64::is_finite);
+fn require_finite<'g>(value: Value<'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    let is_finite = |s: &Expr<'g>| s.constant_value().is_none_or(f64::is_finite);
     let is_valid = match &value {
         Value::Scalar(s) => is_finite(s),
         Value::Vector(terms) => terms.iter().all(|(_, v)| v.0.iter().all(is_finite)),
         Value::Matrix(m) => m.entries.0.iter().flatten().all(is_finite),
     };
     if !is_valid {
-        cx.error(e.place.clone(), "this value is not a finite number")
-            .help("the largest number is about 1e308: use smaller numbers");
+        cx.report_error(e.place.clone(), "this value is not a finite number")
+            .add_help("the largest number is about 1e308: use smaller numbers");
     }
     is_valid.then_some(value)
 }
 
 /// Returns the sum of two vectors, combined by axes.
-pub fn sum<'g>(mut a: Vec<(Axes, Vec3<'g>)>, b: Vec<(Axes, Vec3<'g>)>) -> Vec<(Axes, Vec3<'g>)> {
+pub fn sum_by_axes<'g>(mut a: Vec<(Axes, Vec3<'g>)>, b: Vec<(Axes, Vec3<'g>)>) -> Vec<(Axes, Vec3<'g>)> {
     for (axes, v) in b {
         match a.iter_mut().find(|(known, _)| *known == axes) {
             Some((_, sum)) => *sum += v,

@@ -2,7 +2,7 @@
 //! are forward, right and down; ground axes are north, east and down.
 
 use super::call::Call;
-use super::expression::sum;
+use super::expression::sum_by_axes;
 use super::functions::length;
 use super::scope::{Scope, Value};
 use crate::diag::Diagnostics;
@@ -32,18 +32,18 @@ impl<'g> Air<'g> {
 
 impl<'g> Scope<'_, 'g> {
     /// Returns a value of the standard atmosphere at a height above sea level.
-    pub fn air(
+    pub fn resolve_air_quantity(
         &self,
         call: &Call<'_>,
         value: fn(Air<'g>) -> Expr<'g>,
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
-        let [height] = self.scalars(call, cx)?;
+        let [height] = self.resolve_scalars(call, cx)?;
         let number_expression = |n: f64| height.num(n);
         let geopotential =
             number_expression(air::RADIUS) * height / (number_expression(air::RADIUS) + height);
-        let temperature = geopotential.call(Function::IsaTemperature);
-        let pressure = geopotential.call(Function::IsaPressure);
+        let temperature = geopotential.apply_function(Function::IsaTemperature);
+        let pressure = geopotential.apply_function(Function::IsaPressure);
         Some(Value::Scalar(value(Air { temperature, pressure })))
     }
 
@@ -54,8 +54,8 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
         angle: fn([Expr<'g>; 3]) -> Expr<'g>,
     ) -> Option<Value<'g>> {
-        let [body, velocity] = call.take(cx)?;
-        self.components(velocity, body, cx).map(|parts| Value::Scalar(angle(parts)))
+        let [body, velocity] = call.take_arguments(cx)?;
+        self.vector_components(velocity, body, cx).map(|parts| Value::Scalar(angle(parts)))
     }
 
     /// Returns an angle of a velocity, computed from its components in ground axes.
@@ -65,8 +65,9 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
         angle: fn([Expr<'g>; 3]) -> Expr<'g>,
     ) -> Option<Value<'g>> {
-        let [velocity] = call.take(cx)?;
-        self.components(velocity, &ground(call.place), cx).map(|parts| Value::Scalar(angle(parts)))
+        let [velocity] = call.take_arguments(cx)?;
+        self.vector_components(velocity, &ground_expression(call.place), cx)
+            .map(|parts| Value::Scalar(angle(parts)))
     }
 
     /// Returns an angle of a body, computed from the components of its forward axis in ground axes.
@@ -76,14 +77,16 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
         angle: fn([Expr<'g>; 3]) -> Expr<'g>,
     ) -> Option<Value<'g>> {
-        let [body] = call.take(cx)?;
-        self.components(&axis(body, 0), &ground(call.place), cx).map(|parts| Value::Scalar(angle(parts)))
+        let [body] = call.take_arguments(cx)?;
+        self.vector_components(&body_axis_expression(body, 0), &ground_expression(call.place), cx)
+            .map(|parts| Value::Scalar(angle(parts)))
     }
 
     /// Returns the bank angle of a body.
-    pub fn bank(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [body] = call.take(cx)?;
-        let [_, right, below] = self.components(&axis(&ground(call.place), 2), body, cx)?;
+    pub fn resolve_bank_angle(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let [body] = call.take_arguments(cx)?;
+        let [_, right, below] =
+            self.vector_components(&body_axis_expression(&ground_expression(call.place), 2), body, cx)?;
         Some(Value::Scalar(right.atan2(below)))
     }
 
@@ -91,15 +94,18 @@ impl<'g> Scope<'_, 'g> {
     /// of attack, or in wind axes, which are also rotated by the sideslip angle: forward along the velocity,
     /// right, down (Etkin and Reid, *Dynamics of Flight*, 1996, § 1.6 and appendix A.7).
     pub fn in_flight_axes(&self, call: &Call<'_>, of_wind: bool, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let [body, velocity, list] = call.take(cx)?;
+        let [body, velocity, list] = call.take_arguments(cx)?;
         let ExprKind::Array(items) = &list.kind else {
-            cx.error(list.place.clone(), "expected the three components in a list")
-                .help(format!("as in `{}(airframe, velocity, [-drag, side, -lift])`", call.name()));
+            cx.report_error(list.place.clone(), "expected the three components in a list").add_help(format!(
+                "as in `{}(airframe, velocity, [-drag, side, -lift])`",
+                call.function_name()
+            ));
             return None;
         };
-        let [ahead, aside, below] = items.as_slice() else { return self.value(list, cx) };
-        let [forward, right, down] = self.components(velocity, body, cx)?;
-        let parts = [self.scalar(ahead, cx), self.scalar(aside, cx), self.scalar(below, cx)];
+        let [ahead, aside, below] = items.as_slice() else { return self.resolve_value(list, cx) };
+        let [forward, right, down] = self.vector_components(velocity, body, cx)?;
+        let parts =
+            [self.resolve_scalar(ahead, cx), self.resolve_scalar(aside, cx), self.resolve_scalar(below, cx)];
         let [ahead, aside, below] = [parts[0]?, parts[1]?, parts[2]?];
         let plane = length(forward, down);
         let (cosine, sine) = (forward / plane, down / plane);
@@ -115,38 +121,38 @@ impl<'g> Scope<'_, 'g> {
         let in_body = [along * cosine - below * sine, across, along * sine + below * cosine];
         let mut total = Vec::new();
         for (k, part) in in_body.into_iter().enumerate() {
-            let along = self.vector(&axis(body, k), cx)?;
-            total = sum(total, along.into_iter().map(|(axes, v)| (axes, v * part)).collect());
+            let along = self.resolve_vector(&body_axis_expression(body, k), cx)?;
+            total = sum_by_axes(total, along.into_iter().map(|(axes, v)| (axes, v * part)).collect());
         }
         Some(Value::Vector(total))
     }
 
     /// Returns the components of a vector along the axes of a body.
-    fn components(
+    fn vector_components(
         &self,
         vector: &syntax::Expr,
         body: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<[Expr<'g>; 3]> {
         if !matches!(body.kind, ExprKind::Name(_)) {
-            cx.error(body.place.clone(), "expected the name of a body")
-                .help("as in `angle_of_attack(body, velocity)`");
+            cx.report_error(body.place.clone(), "expected the name of a body")
+                .add_help("as in `angle_of_attack(body, velocity)`");
             return None;
         }
         let mut along = |k: usize| {
-            let (_, both) = self.common_axes(&[vector, &axis(body, k)], cx)?;
+            let (_, both) = self.common_axes(&[vector, &body_axis_expression(body, k)], cx)?;
             Some(both[0].dot(both[1]))
         };
         Some([along(0)?, along(1)?, along(2)?])
     }
 }
 
-fn ground(place: &crate::diag::Place) -> syntax::Expr {
+fn ground_expression(place: &crate::diag::Place) -> syntax::Expr {
     syntax::Expr { kind: ExprKind::Name(GROUND.to_string()), place: place.clone() }
 }
 
 /// Returns the expression of an axis of a body.
-fn axis(body: &syntax::Expr, k: usize) -> syntax::Expr {
+fn body_axis_expression(body: &syntax::Expr, k: usize) -> syntax::Expr {
     let text = AXES.get(k).unwrap_or(&AXES[0]).to_string();
     let member = Name { text, place: body.place.clone() };
     syntax::Expr { kind: ExprKind::Field(Box::new(body.clone()), member), place: body.place.clone() }

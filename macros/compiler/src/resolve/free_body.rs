@@ -13,7 +13,7 @@ use super::scope::{Allowed, Context, Placed, PlacedKind, Terms};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
 use crate::expr::replace::replace_all;
-use crate::expr::sample::sample;
+use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Function, Symbol, Vec3};
 use crate::kinematics::{random_configuration, time_derivative, velocity_gradient};
 use crate::mechanism::{Diagram, LinkId, Origin, OutputValue, Pose, Quantity};
@@ -82,14 +82,14 @@ impl<'g> Builder<'_, 'g> {
             add(load.rate, load.force);
         }
         for energy in &applied.potentials {
-            add(time_derivative(m.space(), *energy), -m.graph.one());
+            add(time_derivative(m.configuration_space(), *energy), -m.graph.one());
         }
         for function in &applied.dissipations {
             add(*function, -m.graph.one());
         }
         for element in &applied.inertances {
             let gradient = velocity_gradient(element.rate);
-            let start = time_derivative(m.space(), element.rate);
+            let start = time_derivative(m.configuration_space(), element.rate);
             let change = gradient.into_iter().fold(start, |sum, (k, d)| sum + d * acceleration_expression(k));
             add(element.rate, -(element.inertance * change));
         }
@@ -141,9 +141,9 @@ impl<'g> Builder<'_, 'g> {
         let e = &output.value;
         self.scope
             .in_context(Context::new(Allowed::Reaction, ground), |scope| scope.body_with_mass(e, cx))?;
-        let name = e.name()?;
+        let name = e.as_name()?;
         if self.holders_of(name).iter().all(|(_, holds)| !holds) {
-            cx.error(e.place.clone(), format!("`{name}` has no joint that can be released")).help(
+            cx.report_error(e.place.clone(), format!("`{name}` has no joint that can be released")).add_help(
                 "a free-body diagram is available for a body or a particle with a joint or with its own `at` \
                  and `frame`; a body fixed to another one belongs to the diagram of that one",
             );
@@ -178,18 +178,18 @@ impl<'g> Builder<'_, 'g> {
                 continue;
             }
             if placed.link != link {
-                cx.error(
+                cx.report_error(
                     output.value.place.clone(),
                     format!(
                         "`{other}` moves relative to `{name}` without a joint, so `{name}` cannot be \
                          isolated"
                     ),
                 )
-                .help("connect it by a joint, whose reaction acts on both");
+                .add_help("connect it by a joint, whose reaction acts on both");
                 return None;
             }
             mass += *m;
-            sum += placed.pose.point(*com) * *m;
+            sum += placed.pose.transform_point(*com) * *m;
         }
         let at = &kinematics.places.get(name)?.pose;
         let translation = if mass.is_zero() { at.translation } else { sum.map(|c| c / mass) };
@@ -211,7 +211,7 @@ impl<'g> Builder<'_, 'g> {
     fn arm_from_center(&self, body: &FreedBody<'g>, place: &Terms<'g>) -> Vec3<'g> {
         let kinematics = &self.scope.kinematics;
         let mut terms = place.clone();
-        let center = kinematics.position(body.center.link, body.center.pose.translation);
+        let center = kinematics.position_of_point(body.center.link, body.center.pose.translation);
         for (axes, v) in center {
             match terms.iter_mut().find(|(known, _)| *known == axes) {
                 Some((_, total)) => *total -= v,
@@ -223,7 +223,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn position_of(&self, placed: &Placed<'g>) -> Terms<'g> {
-        self.scope.kinematics.position(placed.link, placed.pose.translation)
+        self.scope.kinematics.position_of_point(placed.link, placed.pose.translation)
     }
 
     fn gravity_on(&self, body: &FreedBody<'g>) -> Option<DiagramAction<'g>> {
@@ -300,7 +300,7 @@ impl<'g> Builder<'_, 'g> {
     /// Returns the point of the body at which an element acts, if it acts at a single point.
     fn place_of_element(&self, body: &FreedBody<'g>, name: &str) -> Option<Terms<'g>> {
         let action = self.description.actions.iter().find(|action| action.name.text == name)?;
-        let mut unread = Diagnostics::unread();
+        let mut unread = Diagnostics::discarded_diagnostics();
         let mut here = |e: &syntax::Expr| {
             let placed = self.scope.current_place(e, &mut unread)?;
             (placed.link == body.link).then(|| self.position_of(&placed))
@@ -353,7 +353,7 @@ impl<'g> Builder<'_, 'g> {
         let mut index: BTreeMap<String, usize> = BTreeMap::new();
         for (k, c) in self.model.constraints.iter().enumerate() {
             let multiplier = Quantity::Reaction(Quantity::MULTIPLIERS + k).expr(g);
-            let size = multiplier.call(Function::Abs);
+            let size = multiplier.apply_function(Function::Abs);
             let name = c.name.split('.').next().unwrap_or(&c.name).to_string();
             let slot = *index.entry(name.clone()).or_insert(by_name.len());
             if slot == by_name.len() {
@@ -420,11 +420,11 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the position of the end of a joint that belongs to the body.
     fn joint_end_on(&self, body: &FreedBody<'g>, ends: [&Endpoint; 2]) -> Option<Terms<'g>> {
-        let mut unread = Diagnostics::unread();
+        let mut unread = Diagnostics::discarded_diagnostics();
         ends.into_iter().find_map(|end| {
             let (link, pose) = self.joint_parent(&end.body, &mut unread)?;
-            let on_body = self.endpoint(end, &mut unread)?;
-            let placed = Placed { link, pose: pose.then(&on_body), kind: PlacedKind::Point };
+            let on_body = self.frame_of_endpoint(end, &mut unread)?;
+            let placed = Placed { link, pose: pose.compose_with(&on_body), kind: PlacedKind::Point };
             (link == body.link).then(|| self.position_of(&placed))
         })
     }
@@ -448,7 +448,7 @@ impl<'g> Builder<'_, 'g> {
             let q = random_configuration(&self.model, seed);
             let value_of_symbol = |s: Symbol| match Quantity::from_symbol(s) {
                 Quantity::Configuration(k) => q[k],
-                _ => sample(s, seed),
+                _ => sample_of_symbol(s, seed),
             };
             let largest_magnitude =
                 |e: &[Expr<'g>]| eval(e, &value_of_symbol).iter().fold(0.0_f64, |size, x| size.max(x.abs()));

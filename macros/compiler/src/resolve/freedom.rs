@@ -10,14 +10,14 @@ impl<'g> Builder<'_, 'g> {
     /// Removes redundant rows and counts the degrees of freedom.
     pub fn check_mobility(&mut self, cx: &mut Diagnostics) {
         let mut rows = Rows::new(&self.model);
-        let constant = redundancy::constant(&self.model, &rows);
+        let constant = redundancy::constant_rows(&self.model, &rows);
         redundancy::check_constant(&self.model, &constant, cx);
         if !cx.is_empty() {
             return;
         }
         let samples = mobility::sample_configurations(&self.model, &rows, cx);
         let before = self.model.constraints.clone();
-        if redundancy::prune(&mut self.model, &rows, &constant, &samples) {
+        if redundancy::prune_redundant_rows(&mut self.model, &rows, &constant, &samples) {
             contact::check_pressed(&before, &self.model.redundant, cx);
             rows = Rows::new(&self.model);
         }
@@ -29,45 +29,48 @@ impl<'g> Builder<'_, 'g> {
     fn choose_speeds(&mut self, rows: &Rows<'_>, samples: &[mobility::Sample], cx: &mut Diagnostics) {
         let Formulation::Speeds(names, place) = &self.description.formulation else { return };
         if self.model.constraints.iter().any(|c| !c.friction.is_empty()) {
-            cx.error(place.clone(), "independent speeds eliminate the normal force that friction depends on")
-                .help("a mechanism with slipping contacts is solved by multipliers: remove this argument");
+            cx.report_error(
+                place.clone(),
+                "independent speeds eliminate the normal force that friction depends on",
+            )
+            .add_help("a mechanism with slipping contacts is solved by multipliers: remove this argument");
             return;
         }
         let mut independent = Vec::new();
         for e in names {
             let name = match &e.kind {
                 ExprKind::Field(joint, member) => {
-                    joint.name().map(|joint| format!("{joint}.{}", member.text))
+                    joint.as_name().map(|joint| format!("{joint}.{}", member.text))
                 }
-                _ => e.name().map(str::to_string),
+                _ => e.as_name().map(str::to_string),
             };
             let velocity_names = || self.model.velocities.iter().map(|(name, _)| name.as_str());
             match velocity_names().position(|v| Some(v) == name.as_deref()) {
                 Some(k) => independent.push(k),
                 None => {
-                    cx.error(e.place.clone(), "expected a velocity")
-                        .suggest(name.as_deref().unwrap_or(""), velocity_names());
+                    cx.report_error(e.place.clone(), "expected a velocity")
+                        .suggest_name(name.as_deref().unwrap_or(""), velocity_names());
                     return;
                 }
             }
         }
         let free = self.model.freedom.velocities;
         if !independent.is_empty() && independent.len() != free {
-            cx.error(
+            cx.report_error(
                 place.clone(),
                 format!("{} independent speeds for {free} degrees of freedom", independent.len()),
             )
-            .help(format!("name {free}, or remove `independent` to have them chosen"));
+            .add_help(format!("name {free}, or remove `independent` to have them chosen"));
             return;
         }
         if !cx.is_empty() {
             return;
         }
-        self.model.dependent = mobility::dependent(&self.model, rows, samples, &independent);
+        self.model.dependent = mobility::dependent_velocities(&self.model, rows, samples, &independent);
         if self.model.dependent.is_none() {
-            let diagnostic =
-                cx.error(place.clone(), "the independent speeds do not determine the other velocities");
-            diagnostic.help(
+            let diagnostic = cx
+                .report_error(place.clone(), "the independent speeds do not determine the other velocities");
+            diagnostic.add_help(
                 "constraints are redundant, or these speeds depend on each other: use `formulation = \
                  multipliers`, or others",
             );

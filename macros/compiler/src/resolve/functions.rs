@@ -1,32 +1,34 @@
 //! Values of function calls in expressions, with one match arm per function.
 
 use super::call::Call;
-use super::corrections::{DOMAIN_HELP, check_angle, degrees};
+use super::corrections::{DOMAIN_HELP, check_angle, degrees_to_radians};
 use super::momenta::Sum;
 use super::scope::{Axes, Scope, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Extreme, Function, Lookup, Vec3};
-use crate::kinematics::unit;
+use crate::kinematics::normalised_or_zero;
 use crate::language::{Callable, FunctionId, Solid};
 use crate::syntax::{self, Callee, words};
 
 impl<'g> Scope<'_, 'g> {
     /// Returns the value of a call of a function of the language, a table of the user, or a piecewise law.
-    pub fn call(
+    pub fn resolve_call(
         &self,
         callee: &Callee,
         arguments: &[syntax::Expr],
         cx: &mut Diagnostics,
     ) -> Option<Value<'g>> {
         if let Some(Callable::Elementary(f)) = callee.id {
-            return self.elementary(f, callee, arguments, cx);
+            return self.resolve_elementary(f, callee, arguments, cx);
         }
         if let Some(k) = self.tables.iter().position(|table| table.name.text == callee.text) {
-            return self.lookup(k, callee, arguments, cx);
+            return self.resolve_table_lookup(k, callee, arguments, cx);
         }
         match callee.id {
-            Some(Callable::Function(id)) => self.function(&Call { id, place: &callee.place, arguments }, cx),
-            Some(Callable::If) => self.pieces(arguments, cx).map(Value::Scalar),
+            Some(Callable::Function(id)) => {
+                self.resolve_function(&Call { id, place: &callee.place, arguments }, cx)
+            }
+            Some(Callable::If) => self.resolve_pieces(arguments, cx).map(Value::Scalar),
             other => {
                 let solid = if let Some(Callable::Solid(solid)) = other { Some(solid) } else { None };
                 self.report_function(callee, solid, cx);
@@ -36,27 +38,33 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the value of a function of the language.
-    fn function(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    fn resolve_function(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         use FunctionId as F;
         match call.id {
-            F::Degrees => self.scalars(call, cx).map(|[angle]| Value::Scalar(degrees(angle))),
-            F::Atan2 => self.scalars(call, cx).map(|[y, x]| Value::Scalar(y.atan2(x))),
+            F::Degrees => {
+                self.resolve_scalars(call, cx).map(|[angle]| Value::Scalar(degrees_to_radians(angle)))
+            }
+            F::Atan2 => self.resolve_scalars(call, cx).map(|[y, x]| Value::Scalar(y.atan2(x))),
             F::Pow => {
-                let [base, exponent] = self.scalars(call, cx)?;
+                let [base, exponent] = self.resolve_scalars(call, cx)?;
                 check_power(call.place, base, exponent, cx).then(|| Value::Scalar(base.pow(exponent)))
             }
-            F::Min => self.scalars(call, cx).map(|[a, b]| Value::Scalar(a.extreme(Extreme::Min, b))),
-            F::Max => self.scalars(call, cx).map(|[a, b]| Value::Scalar(a.extreme(Extreme::Max, b))),
+            F::Min => self
+                .resolve_scalars(call, cx)
+                .map(|[a, b]| Value::Scalar(a.minimum_or_maximum(Extreme::Min, b))),
+            F::Max => self
+                .resolve_scalars(call, cx)
+                .map(|[a, b]| Value::Scalar(a.minimum_or_maximum(Extreme::Max, b))),
             F::Dot => {
-                let (_, v) = self.common_axes(&call.take::<2>(cx)?.each_ref(), cx)?;
+                let (_, v) = self.common_axes(&call.take_arguments::<2>(cx)?.each_ref(), cx)?;
                 Some(Value::Scalar(v[0].dot(v[1])))
             }
             F::Cross => {
-                let (axes, v) = self.common_axes(&call.take::<2>(cx)?.each_ref(), cx)?;
+                let (axes, v) = self.common_axes(&call.take_arguments::<2>(cx)?.each_ref(), cx)?;
                 Some(Value::Vector(vec![(axes, v[0].cross(v[1]))]))
             }
             F::Project => {
-                let (axes, v) = self.common_axes(&call.take::<2>(cx)?.each_ref(), cx)?;
+                let (axes, v) = self.common_axes(&call.take_arguments::<2>(cx)?.each_ref(), cx)?;
                 let (a, b) = (v[0], v[1]);
                 Some(Value::Vector(vec![(axes, b * (a.dot(b) / b.dot(b)))]))
             }
@@ -67,25 +75,25 @@ impl<'g> Scope<'_, 'g> {
             F::Unit => {
                 let (axes, v) = self.vector_argument(call, "a scalar has no direction", cx)?;
                 if v.is_zero() {
-                    cx.error(call.arguments[0].place.clone(), "the zero vector has no direction")
-                        .help("a direction is a nonzero vector");
+                    cx.report_error(call.arguments[0].place.clone(), "the zero vector has no direction")
+                        .add_help("a direction is a nonzero vector");
                     return None;
                 }
-                Some(Value::Vector(vec![(axes, unit(v))]))
+                Some(Value::Vector(vec![(axes, normalised_or_zero(v))]))
             }
-            F::Angle => self.angle(call, cx),
+            F::Angle => self.resolve_angle(call, cx),
             F::Position => self.relative_position(call, cx),
             F::Velocity => self.relative_velocity(call, cx),
             F::Acceleration => self.relative_acceleration(call, cx),
             F::Omega => self.angular_velocity(call, cx),
             F::Alpha => self.angular_acceleration(call, cx),
-            F::ReactionForce => self.reaction(call, 0, cx),
-            F::ReactionTorque => self.reaction(call, 3, cx),
+            F::ReactionForce => self.resolve_reaction(call, 0, cx),
+            F::ReactionTorque => self.resolve_reaction(call, 3, cx),
             F::ContactForce => self.contact_force(call, cx),
             F::ContactMoment => self.contact_moment(call, cx),
-            F::Momentum => self.momentum(call, Sum::Momentum, cx),
-            F::AngularMomentum => self.momentum(call, Sum::AngularMomentum, cx),
-            F::KineticEnergy => self.momentum(call, Sum::Energy, cx),
+            F::Momentum => self.resolve_momentum(call, Sum::Momentum, cx),
+            F::AngularMomentum => self.resolve_momentum(call, Sum::AngularMomentum, cx),
+            F::KineticEnergy => self.resolve_momentum(call, Sum::Energy, cx),
             F::MomentOfInertia => self.moment_of_inertia(call, cx),
             F::CenterOfMass => self.center_of_mass(call, cx),
             F::CenterOfPercussion => self.center_of_percussion(call, cx),
@@ -93,45 +101,49 @@ impl<'g> Scope<'_, 'g> {
             F::AccelerationCenter => self.acceleration_center(call, cx),
             F::ScrewAxis => self.screw_axis(call, cx),
             F::ScrewPitch => self.screw_pitch(call, cx),
-            F::Projector => self.projector(call, cx),
-            F::Skew => self.skew(call, cx),
-            F::Outer => self.outer(call, cx),
+            F::Projector => self.resolve_projector(call, cx),
+            F::Skew => self.resolve_skew(call, cx),
+            F::Outer => self.resolve_outer_product(call, cx),
             F::Transpose => self.transpose(call, cx),
-            F::Trace => self.trace(call, cx),
+            F::Trace => self.resolve_trace(call, cx),
             F::Rotation => self.physical_rotation(call, cx),
             F::Inertia => self.inertia_matrix(call, cx),
             F::Identity => self.identity(call, cx),
-            F::Curvature => self.curvature(call, cx),
-            F::Torsion => self.torsion(call, cx),
-            F::Cable => self.cable(call, cx),
-            F::Gradient => self.gradient(call, cx),
-            F::Power => self.power(call, cx),
+            F::Curvature => self.resolve_curvature(call, cx),
+            F::Torsion => self.resolve_torsion(call, cx),
+            F::Cable => self.resolve_cable(call, cx),
+            F::Gradient => self.resolve_gradient(call, cx),
+            F::Power => self.resolve_power(call, cx),
             F::Rate => self.rate_of(call, cx),
-            F::Temperature => self.air(call, |air| air.temperature, cx),
-            F::Pressure => self.air(call, |air| air.pressure, cx),
-            F::Density => self.air(call, |air| air.density(), cx),
-            F::SpeedOfSound => self.air(call, |air| air.speed_of_sound(), cx),
+            F::Temperature => self.resolve_air_quantity(call, |air| air.temperature, cx),
+            F::Pressure => self.resolve_air_quantity(call, |air| air.pressure, cx),
+            F::Density => self.resolve_air_quantity(call, |air| air.density(), cx),
+            F::SpeedOfSound => self.resolve_air_quantity(call, |air| air.speed_of_sound(), cx),
             F::AngleOfAttack => self.flight_angle(call, cx, |[forward, _, down]| down.atan2(forward)),
             F::Sideslip => self.flight_angle(call, cx, |[f, right, d]| right.atan2(length(f, d))),
             F::Course => self.velocity_angle(call, cx, |[north, east, _]| east.atan2(north)),
             F::FlightPath => self.velocity_angle(call, cx, |[n, e, down]| (-down).atan2(length(n, e))),
             F::Heading => self.attitude_angle(call, cx, |[north, east, _]| east.atan2(north)),
             F::Elevation => self.attitude_angle(call, cx, |[n, e, down]| (-down).atan2(length(n, e))),
-            F::Bank => self.bank(call, cx),
+            F::Bank => self.resolve_bank_angle(call, cx),
             F::StabilityAxes => self.in_flight_axes(call, false, cx),
             F::WindAxes => self.in_flight_axes(call, true, cx),
         }
     }
 
     /// Returns the values of arguments that are scalars.
-    pub fn scalars<const N: usize>(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<[Expr<'g>; N]> {
+    pub fn resolve_scalars<const N: usize>(
+        &self,
+        call: &Call<'_>,
+        cx: &mut Diagnostics,
+    ) -> Option<[Expr<'g>; N]> {
         let values: Vec<Option<Expr<'g>>> =
-            call.take::<N>(cx)?.iter().map(|argument| self.scalar(argument, cx)).collect();
+            call.take_arguments::<N>(cx)?.iter().map(|argument| self.resolve_scalar(argument, cx)).collect();
         values.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()
     }
 
     /// Returns the value of an elementary function of a number or an angle.
-    fn elementary(
+    fn resolve_elementary(
         &self,
         f: Function,
         callee: &Callee,
@@ -146,20 +158,20 @@ impl<'g> Scope<'_, 'g> {
                 }
                 _ => format!("write `{text}(a)`"),
             };
-            cx.error(callee.place.clone(), format!("`{text}` takes 1 argument")).help(help);
+            cx.report_error(callee.place.clone(), format!("`{text}` takes 1 argument")).add_help(help);
             return None;
         };
         let turns = matches!(f, Function::Sin | Function::Cos | Function::Tan);
         if turns && !check_angle(argument, cx) {
             return None;
         }
-        let s = self.scalar(argument, cx)?.call(f);
+        let s = self.resolve_scalar(argument, cx)?.apply_function(f);
         if let crate::expr::Node::Call(f, inner) = s.node()
-            && let Some(number) = self.graph.expr(inner).value()
+            && let Some(number) = self.graph.expr(inner).constant_value()
         {
-            let what = if f.apply(number).is_nan() { "not defined" } else { "infinite" };
-            cx.error(argument.place.clone(), format!("`{}` is {what} at {number}", f.name()))
-                .help(DOMAIN_HELP);
+            let what = if f.evaluate_at(number).is_nan() { "not defined" } else { "infinite" };
+            cx.report_error(argument.place.clone(), format!("`{}` is {what} at {number}", f.function_name()))
+                .add_help(DOMAIN_HELP);
             return None;
         }
         Some(Value::Scalar(s))
@@ -168,7 +180,7 @@ impl<'g> Scope<'_, 'g> {
     /// Returns the only argument of a function, a vector, in common axes. `help` is the help for a scalar
     /// argument.
     fn vector_argument(&self, call: &Call<'_>, help: &str, cx: &mut Diagnostics) -> Option<(Axes, Vec3<'g>)> {
-        let [a] = call.take(cx)?;
+        let [a] = call.take_arguments(cx)?;
         let vector = self.vector_or(a, help, cx)?;
         let (axes, v) = self.in_common_axes(vec![(a, vector)], cx)?;
         Some((axes, v[0]))
@@ -180,15 +192,15 @@ impl<'g> Scope<'_, 'g> {
         let own = self.tables.iter().map(|table| table.name.text.as_str());
         let known = Function::ALL.iter().map(|(name, _)| *name).chain(FunctionId::names()).chain(own);
         let known: Vec<&str> = known.collect();
-        let error = cx.error(callee.place.clone(), format!("unknown function `{text}`"));
+        let error = cx.report_error(callee.place.clone(), format!("unknown function `{text}`"));
         let greek = words::known_spelling(text, &known);
         match (greek, solid) {
-            (Some(name), _) => drop(error.help(format!("did you mean `{name}`?"))),
-            (_, Some(_)) => drop(error.help(format!("`{text}` is a solid, for `inertia = …`"))),
-            _ => words::suggest_meaning(error, &words::functions(), text, &known),
+            (Some(name), _) => drop(error.add_help(format!("did you mean `{name}`?"))),
+            (_, Some(_)) => drop(error.add_help(format!("`{text}` is a solid, for `inertia = …`"))),
+            _ => words::suggest_meaning(error, &words::function_synonyms(), text, &known),
         }
         if error.is_bare() {
-            error.help(
+            error.add_help(
                 "available are the elementary functions and those of vectors: `sin`, `sqrt`, `pow`, `min`, \
                  `dot`, `cross`, `norm`, …",
             );
@@ -196,7 +208,7 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the value of a table at its arguments.
-    fn lookup(
+    fn resolve_table_lookup(
         &self,
         k: usize,
         callee: &Callee,
@@ -207,36 +219,36 @@ impl<'g> Scope<'_, 'g> {
         let (found, expected) = (arguments.len(), table.variables);
         if found != expected {
             let plural = if expected == 1 { "" } else { "s" };
-            cx.error(
+            cx.report_error(
                 callee.place.clone(),
                 format!("`{}` is a table of {expected} variable{plural}, but {found} are given", callee.text),
             )
-            .help(format!("it is declared as `Table<{expected}>`"));
+            .add_help(format!("it is declared as `Table<{expected}>`"));
             return None;
         }
-        let values: Vec<Option<Expr<'g>>> = arguments.iter().map(|a| self.scalar(a, cx)).collect();
+        let values: Vec<Option<Expr<'g>>> = arguments.iter().map(|a| self.resolve_scalar(a, cx)).collect();
         let values = values.into_iter().collect::<Option<Vec<_>>>()?;
         if let Some(used) = self.records.borrow_mut().used_tables.get_mut(k) {
             *used = true;
         }
         let x = std::array::from_fn(|k| values.get(k).copied().unwrap_or(self.graph.zero()));
-        Some(Value::Scalar(self.graph.lookup(Lookup::new(k, expected), x)))
+        Some(Value::Scalar(self.graph.table_lookup(Lookup::new(k, expected), x)))
     }
 }
 
 /// Reports a power that is undefined in all states. Returns false then.
 fn check_power(place: &Place, base: Expr<'_>, exponent: Expr<'_>, cx: &mut Diagnostics) -> bool {
-    let Some(x) = base.value() else { return true };
-    let what = match exponent.value() {
-        Some(n) if x.powf(n).is_finite() => return true,
-        Some(n) if x.powf(n).is_nan() => format!("`pow` is not defined at {x} and {n}"),
+    let Some(x) = base.constant_value() else { return true };
+    let what = match exponent.constant_value() {
+        Some(n) if libm::pow(x, n).is_finite() => return true,
+        Some(n) if libm::pow(x, n).is_nan() => format!("`pow` is not defined at {x} and {n}"),
         Some(n) => format!("`pow` is infinite at {x} and {n}"),
         None if x >= 0.0 => return true,
         None => format!("powers of {x} are defined only for integer exponents"),
     };
     let help = "the first argument of `pow` is the base, the second the exponent: a base that can be \
                 negative requires an integer exponent";
-    cx.error(place.clone(), what).help(help);
+    cx.report_error(place.clone(), what).add_help(help);
     false
 }
 

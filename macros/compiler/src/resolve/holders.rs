@@ -50,7 +50,7 @@ impl<'g> Builder<'_, 'g> {
         let Some((released, _)) = self.releasing else { return (link, pose) };
         let Some(index) = released.iter().position(|open| *open == number) else { return (link, pose) };
         self.joint_frames.insert(number, Placed { link, pose: pose.clone(), kind: PlacedKind::Body });
-        self.release(index, released.len(), link, pose)
+        self.released_joint_frame(index, released.len(), link, pose)
     }
 
     /// Whether a body or a particle is fixed in a frame, neither on a body nor at a point, in a mechanism
@@ -73,7 +73,7 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the body that carries a point or a particle fixed on it; for a body, the body itself.
-    fn carrier<'b>(&'b self, name: &'b str) -> &'b str {
+    fn body_carrying<'b>(&'b self, name: &'b str) -> &'b str {
         let d = self.description;
         let has_moving_placement = |name: &str| {
             let numbers = self.moving_placements.iter().map(|(number, _)| *number);
@@ -95,7 +95,7 @@ impl<'g> Builder<'_, 'g> {
         let closing = tree::loop_closing_joints(d);
         let joints = d.joints.iter().enumerate().filter_map(|(j, joint)| {
             let holds = joint.child.body.text == body;
-            let joins = holds || self.carrier(&joint.parent.body.text) == body;
+            let joins = holds || self.body_carrying(&joint.parent.body.text) == body;
             (joins && closing.get(j) == Some(&false)).then_some((j, holds))
         });
         let own = self.scope.kinematics.places.get(body).and_then(|placed| placed.link);

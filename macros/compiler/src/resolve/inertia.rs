@@ -27,7 +27,7 @@ impl<'g> Scope<'_, 'g> {
     /// Returns an inertia about the centre of mass, in body axes, or reports an error.
     ///
     /// The left operands of a chain of sums and rotations are visited in a loop, as in `Scope::value`.
-    pub fn inertia(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Sym3<'g>> {
+    pub fn resolve_inertia(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Sym3<'g>> {
         let mut operations = Vec::new();
         let mut first = e;
         loop {
@@ -45,11 +45,11 @@ impl<'g> Scope<'_, 'g> {
         for operation in operations.into_iter().rev() {
             inertia = match operation {
                 Operation::Add(right) => {
-                    let right = self.inertia(right, cx);
+                    let right = self.resolve_inertia(right, cx);
                     inertia.zip(right).map(|(left, right)| left + right)
                 }
                 Operation::Rotate(steps) => {
-                    let rotation = self.rotation(steps, cx);
+                    let rotation = self.resolve_rotation(steps, cx);
                     inertia.zip(rotation).map(|(inertia, rotation)| rotation.sym_to_parent(inertia))
                 }
             };
@@ -61,40 +61,45 @@ impl<'g> Scope<'_, 'g> {
     fn single_inertia(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Sym3<'g>> {
         match &e.kind {
             ExprKind::Number(0.0) => Some(Sym3::zero(self.graph)),
-            ExprKind::Array(_) => self.symmetric(e, cx),
+            ExprKind::Array(_) => self.resolve_symmetric_matrix(e, cx),
             ExprKind::Method(_, method, _) => {
-                cx.error(method.place.clone(), format!("unknown method `.{}(…)` of an inertia", method.text))
-                    .suggest(&method.text, ["rotated"]);
+                cx.report_error(
+                    method.place.clone(),
+                    format!("unknown method `.{}(…)` of an inertia", method.text),
+                )
+                .suggest_name(&method.text, ["rotated"]);
                 None
             }
-            ExprKind::Call(solid, arguments) => self.solid(solid, arguments, cx),
+            ExprKind::Call(solid, arguments) => self.resolve_solid(solid, arguments, cx),
             kind => {
                 let found = match kind {
                     ExprKind::Tuple(_) => ", found a list",
                     ExprKind::Number(_) => ", found a number",
                     _ => "",
                 };
-                let error = cx.error(e.place.clone(), format!("expected an inertia{found}"));
+                let error = cx.report_error(e.place.clone(), format!("expected an inertia{found}"));
                 match kind {
                     ExprKind::Tuple(items) if items.len() == 3 => {
                         let items: Vec<String> = items.iter().map(syntax::Expr::to_source).collect();
-                        error.help(format!("write `diagonal({})`", items.join(", ")));
+                        error.add_help(format!("write `diagonal({})`", items.join(", ")));
                     }
                     ExprKind::Number(n) => {
-                        error.help(format!("write `diagonal({n}, {n}, {n})` for one moment about all axes"));
+                        error.add_help(format!(
+                            "write `diagonal({n}, {n}, {n})` for one moment about all axes"
+                        ));
                     }
-                    ExprKind::Binary(..) if e.parts().iter().any(|part| is_solid(part)) => {
-                        error.help("solids are added with `+`; twice a solid has twice the mass");
+                    ExprKind::Binary(..) if e.subexpressions().iter().any(|part| is_solid(part)) => {
+                        error.add_help("solids are added with `+`; twice a solid has twice the mass");
                     }
                     ExprKind::Binary(..) | ExprKind::Name(_) | ExprKind::Neg(_) => {
-                        error.help(
+                        error.add_help(
                             "write `diagonal(i, i, i)` for one moment `i` about all axes; in a plane only \
                              the one about its normal counts",
                         );
                     }
                     _ => {}
                 }
-                error.help(
+                error.add_help(
                     "write a solid such as `rod(m, l, y)` or `sphere(m, r)`, `diagonal(xx, yy, zz)`, or a \
                      3×3 matrix",
                 );
@@ -103,11 +108,11 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    fn symmetric(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Sym3<'g>> {
-        let m = self.matrix(e, cx)?;
+    fn resolve_symmetric_matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Sym3<'g>> {
+        let m = self.resolve_matrix(e, cx)?;
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
             if m.0[i][j] != m.0[j][i] {
-                cx.error(e.place.clone(), "an inertia matrix is symmetric").help(format!(
+                cx.report_error(e.place.clone(), "an inertia matrix is symmetric").add_help(format!(
                     "entries ({}, {}) and ({}, {}) differ",
                     i + 1,
                     j + 1,
@@ -120,18 +125,23 @@ impl<'g> Scope<'_, 'g> {
         Some(Sym3::from_upper(&m))
     }
 
-    fn solid(&self, callee: &Callee, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Sym3<'g>> {
+    fn resolve_solid(
+        &self,
+        callee: &Callee,
+        arguments: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Sym3<'g>> {
         let text = callee.text.as_str();
         let Some(Callable::Solid(solid)) = callee.id else {
             let known: Vec<&str> = Solid::names().collect();
-            let error = cx.error(callee.place.clone(), format!("unknown solid `{text}`"));
-            let synonyms = words::solids();
+            let error = cx.report_error(callee.place.clone(), format!("unknown solid `{text}`"));
+            let synonyms = words::solid_synonyms();
             words::suggest_meaning(error, &synonyms, text, &known);
-            if let Some(solid) = words::meaning(&synonyms, text, &known).and_then(Solid::of_name) {
-                error.help(format!("it is written `{}`", solid.usage()));
+            if let Some(solid) = words::meaning_of_word(&synonyms, text, &known).and_then(Solid::of_name) {
+                error.add_help(format!("it is written `{}`", solid.usage_syntax()));
             }
             if error.is_bare() {
-                error.help(
+                error.add_help(
                     "the solids are `rod`, `ring`, `disk`, `cylinder`, `tube`, `cone`, `capsule`, `sphere`, \
                      `shell`, `cuboid`, `plate` and `ellipsoid`, or `diagonal(xx, yy, zz)`",
                 );
@@ -140,8 +150,11 @@ impl<'g> Scope<'_, 'g> {
         };
         let row = solid.row();
         if arguments.len() != row.arguments.len() {
-            cx.error(callee.place.clone(), format!("`{text}` takes {} arguments", row.arguments.len()))
-                .help(format!("write `{}`", solid.usage()));
+            cx.report_error(
+                callee.place.clone(),
+                format!("`{text}` takes {} arguments", row.arguments.len()),
+            )
+            .add_help(format!("write `{}`", solid.usage_syntax()));
             return None;
         }
         if self.report_swapped(solid, arguments, cx) {
@@ -153,10 +166,14 @@ impl<'g> Scope<'_, 'g> {
                 axis = Some(self.unit_vector(e, false, cx)?);
                 continue;
             }
-            match self.scalar(e, cx) {
+            match self.resolve_scalar(e, cx) {
                 Some(s) => {
                     complete &= self.check_not_negative(s, e, cx);
-                    self.require(Rule::NotNegative, || format!("the {} of a `{text}`", argument.name), &[s]);
+                    self.record_requirement(
+                        Rule::NotNegative,
+                        || format!("the {} of a `{text}`", argument.name),
+                        &[s],
+                    );
                     numbers.push(s);
                 }
                 None => complete = false,
@@ -169,27 +186,27 @@ impl<'g> Scope<'_, 'g> {
     /// arguments are in the wrong order.
     fn report_swapped(&self, solid: Solid, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> bool {
         for (Argument { name, kind }, argument) in solid.row().arguments.iter().zip(arguments) {
-            let mut silent = Diagnostics::unread();
-            let found = match (self.value(argument, &mut silent), kind.is_direction()) {
+            let mut silent = Diagnostics::discarded_diagnostics();
+            let found = match (self.resolve_value(argument, &mut silent), kind.is_direction()) {
                 (Some(Value::Vector(_)), false) => "a vector",
                 (Some(Value::Scalar(s)), true) if !s.is_zero() => "a scalar",
                 _ => continue,
             };
-            cx.error(
+            cx.report_error(
                 argument.place.clone(),
                 format!("expected the {name} of the {}, found {found}", solid.name()),
             )
-            .help(format!("write `{}`", solid.usage()));
+            .add_help(format!("write `{}`", solid.usage_syntax()));
             return true;
         }
         false
     }
 
     fn check_not_negative(&self, s: Expr<'g>, argument: &syntax::Expr, cx: &mut Diagnostics) -> bool {
-        match s.value() {
+        match s.constant_value() {
             Some(n) if n < 0.0 => {
-                cx.error(argument.place.clone(), format!("this cannot be negative, but it is {n}"))
-                    .help("masses, sizes and moments are zero or more");
+                cx.report_error(argument.place.clone(), format!("this cannot be negative, but it is {n}"))
+                    .add_help("masses, sizes and moments are zero or more");
                 false
             }
             _ => true,
@@ -212,7 +229,7 @@ pub fn check_inertia(
     hint: &str,
     cx: &mut Diagnostics,
 ) {
-    let Some(m) = inertia.full().values() else { return };
+    let Some(m) = inertia.full_matrix().constant_entries() else { return };
     let moments = principal_moments(m);
     let scale = moments[2].abs().max(moments[0].abs());
     let list = moments.map(rounded_text).join(", ");
@@ -220,17 +237,17 @@ pub fn check_inertia(
         return;
     }
     if moments[0] < -TOLERANCE * scale {
-        cx.error(place.clone(), format!("the inertia of `{body}` is not positive definite"))
-            .help(format!("its principal moments are {list}"))
-            .help(hint);
+        cx.report_error(place.clone(), format!("the inertia of `{body}` is not positive definite"))
+            .add_help(format!("its principal moments are {list}"))
+            .add_help(hint);
     } else if moments[2] > (moments[0] + moments[1]) * (1.0 + TOLERANCE) {
-        cx.error(place.clone(), format!("the inertia of `{body}` is not physically consistent"))
-            .help(format!("its principal moments are {list}: the largest exceeds the sum of the others"))
-            .help(hint);
+        cx.report_error(place.clone(), format!("the inertia of `{body}` is not physically consistent"))
+            .add_help(format!("its principal moments are {list}: the largest exceeds the sum of the others"))
+            .add_help(hint);
     } else if mass == Some(0.0) && place.file.is_some() {
-        cx.error(place.clone(), format!("`{body}` has an inertia and no mass"))
-            .help("no real body has an inertia without mass: give it a mass, or an inertia of zero")
-            .help(hint);
+        cx.report_error(place.clone(), format!("`{body}` has an inertia and no mass"))
+            .add_help("no real body has an inertia without mass: give it a mass, or an inertia of zero")
+            .add_help(hint);
     }
 }
 
@@ -251,8 +268,8 @@ fn principal_moments(mut a: [[f64; 3]; 3]) -> [f64; 3] {
                 continue;
             }
             let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-            let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-            let c = 1.0 / t.hypot(1.0);
+            let t = theta.signum() / (theta.abs() + libm::hypot(theta, 1.0));
+            let c = 1.0 / libm::hypot(t, 1.0);
             let s = t * c;
             for k in 0..3 {
                 let (x, y) = (a[k][p], a[k][q]);

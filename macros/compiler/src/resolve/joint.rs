@@ -5,7 +5,7 @@ use super::elementary::Elementary;
 use super::scope::Scope;
 use crate::diag::{Diagnostics, Place};
 use crate::expr::eval::eval_one;
-use crate::expr::sample::{always, sample};
+use crate::expr::sample::{always_equals, sample_of_symbol};
 use crate::expr::{Expr, Graph, Vec3};
 use crate::kinematics::in_plane;
 use crate::language::elements::{CoordinateNames, DrawnAxis};
@@ -14,7 +14,7 @@ use crate::syntax::{self, Joint, JointKind};
 
 /// Returns the coordinate charts of a joint whose entries begin at `q` and `v`: one for each plain coordinate,
 /// or one for the whole of a ball or free joint.
-pub fn charts(kind: JointKind, (q, v): (InQ, InV), along: usize) -> Vec<Chart> {
+pub fn charts_of_joint(kind: JointKind, (q, v): (InQ, InV), along: usize) -> Vec<Chart> {
     match kind.row().coordinates {
         CoordinateNames::Ball => vec![Chart::Ball(q, v)],
         CoordinateNames::Free => vec![Chart::Free(q, v)],
@@ -41,16 +41,16 @@ pub fn full_name(joint: &str, coordinate: &str) -> String {
 
 impl<'g> Scope<'_, 'g> {
     /// Returns the motions of a joint in order from parent to child.
-    pub fn motions(&self, joint: &Joint, cx: &mut Diagnostics) -> Option<Vec<Elementary<'g>>> {
+    pub fn motions_of_joint(&self, joint: &Joint, cx: &mut Diagnostics) -> Option<Vec<Elementary<'g>>> {
         use Elementary::{Slide, Turn};
-        let about = self.axes(joint, &joint.about, cx);
-        let along = self.axes(joint, &joint.along, cx);
+        let about = self.resolve_joint_axes(joint, &joint.about, cx);
+        let along = self.resolve_joint_axes(joint, &joint.along, cx);
         let (about, along) = (about?, along?);
         let place = &joint.name.place;
         match joint.kind {
             JointKind::Pin => Some(vec![Turn(single_axis(&about, "about", "a Pin", place, cx)?)]),
             JointKind::Sleeve => Some(vec![Slide(single_axis(&along, "along", "a Sleeve", place, cx)?)]),
-            JointKind::Screw => self.screw(joint, &about, &along, cx),
+            JointKind::Screw => self.screw_motions(joint, &about, &along, cx),
             JointKind::Collar => {
                 let axis = common_axis(&about, &along, "a Collar", place, cx)?;
                 Some(vec![Slide(axis), Turn(axis)])
@@ -65,7 +65,7 @@ impl<'g> Scope<'_, 'g> {
                 check_independent(axes, "a Universal", joint.about.get(1), cx)?;
                 Some(axes.iter().map(|a| Turn(*a)).collect())
             }
-            JointKind::Planar => self.planar(&about, &along, place, cx),
+            JointKind::Planar => self.planar_motions(&about, &along, place, cx),
             JointKind::Stage => {
                 let axes = axis_list(&along, 2..=3, "along", "a Stage", place, cx)?;
                 check_independent(axes, "a Stage", joint.along.last(), cx)?;
@@ -77,12 +77,17 @@ impl<'g> Scope<'_, 'g> {
         }
     }
 
-    fn axes(&self, joint: &Joint, axes: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Vec<Vec3<'g>>> {
+    fn resolve_joint_axes(
+        &self,
+        joint: &Joint,
+        axes: &[syntax::Expr],
+        cx: &mut Diagnostics,
+    ) -> Option<Vec<Vec3<'g>>> {
         let found: Vec<_> = axes.iter().map(|a| self.unit_vector(a, joint.normalise_axis, cx)).collect();
         found.into_iter().collect()
     }
 
-    fn screw(
+    fn screw_motions(
         &self,
         joint: &Joint,
         about: &[Vec3<'g>],
@@ -91,12 +96,12 @@ impl<'g> Scope<'_, 'g> {
     ) -> Option<Vec<Elementary<'g>>> {
         let axis = common_axis(about, along, "a Screw", &joint.name.place, cx);
         let pitch = match (&joint.pitch, &joint.lead) {
-            (Some(pitch), None) => self.scalar(pitch, cx),
-            (None, Some(lead)) => self.scalar(lead, cx).map(|l| l * (0.5 / std::f64::consts::PI)),
+            (Some(pitch), None) => self.resolve_scalar(pitch, cx),
+            (None, Some(lead)) => self.resolve_scalar(lead, cx).map(|l| l * (0.5 / std::f64::consts::PI)),
             _ => {
                 let and = if joint.pitch.is_some() { ", not both" } else { "" };
-                cx.error(joint.name.place.clone(), format!("a Screw has a `pitch` or a `lead`{and}"))
-                    .help("`pitch` is the advance per radian, `lead` the advance per turn");
+                cx.report_error(joint.name.place.clone(), format!("a Screw has a `pitch` or a `lead`{and}"))
+                    .add_help("`pitch` is the advance per radian, `lead` the advance per turn");
                 None
             }
         };
@@ -105,7 +110,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// Returns the motions of a planar joint: two translations in the plane, followed by a rotation about its
     /// normal.
-    fn planar(
+    fn planar_motions(
         &self,
         about: &[Vec3<'g>],
         along: &[Vec3<'g>],
@@ -117,30 +122,30 @@ impl<'g> Scope<'_, 'g> {
             ([normal], []) => match in_plane(*normal) {
                 Some(directions) => directions,
                 None => {
-                    cx.error(
+                    cx.report_error(
                         place.clone(),
                         "a normal that depends on parameters does not determine the directions in the plane",
                     )
-                    .help("write `along = (first, second)` instead of `about`");
+                    .add_help("write `along = (first, second)` instead of `about`");
                     return None;
                 }
             },
             _ => {
-                cx.error(place.clone(), "a Planar joint has a normal or two directions")
-                    .help("write `about = z`, or `along = (x, y)`");
+                cx.report_error(place.clone(), "a Planar joint has a normal or two directions")
+                    .add_help("write `about = z`, or `along = (x, y)`");
                 return None;
             }
         };
         let normal = first.cross(second);
-        if !vanishes(first.dot(second)) {
-            cx.error(place.clone(), "the two directions of a Planar joint are not orthogonal");
+        if !is_always_zero(first.dot(second)) {
+            cx.report_error(place.clone(), "the two directions of a Planar joint are not orthogonal");
             return None;
         }
         if let [given] = about
-            && !(*given - normal).0.iter().all(|c| vanishes(*c))
+            && !(*given - normal).0.iter().all(|c| is_always_zero(*c))
         {
-            cx.error(place.clone(), "`about` is not the normal of the two directions in `along`")
-                .help("remove one of them");
+            cx.report_error(place.clone(), "`about` is not the normal of the two directions in `along`")
+                .add_help("remove one of them");
             return None;
         }
         // The written normal is exact, the product is rounded.
@@ -155,7 +160,7 @@ pub fn default_motions<'g>(graph: &'g Graph, joint: &Joint) -> Vec<Elementary<'g
     let default_axis = |k: usize| {
         let mut n = [2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0];
         n.rotate_left(k);
-        Vec3::numbers(graph, n)
+        Vec3::from_numbers(graph, n)
     };
     match joint.kind {
         JointKind::Pin | JointKind::Screw => vec![Turn(default_axis(0))],
@@ -171,8 +176,8 @@ pub fn default_motions<'g>(graph: &'g Graph, joint: &Joint) -> Vec<Elementary<'g
 }
 
 /// Whether an expression is zero for all values of the parameters, within rounding.
-fn vanishes(e: Expr<'_>) -> bool {
-    (0..3).all(|seed| eval_one(e, &|s| sample(s, seed)).abs() <= 1e-9)
+fn is_always_zero(e: Expr<'_>) -> bool {
+    (0..3).all(|seed| eval_one(e, &|s| sample_of_symbol(s, seed)).abs() <= 1e-9)
 }
 
 fn single_axis<'g>(
@@ -205,7 +210,7 @@ fn axis_list<'a, 'g>(
         0 => format!("missing `{key}`: {what} has {number}"),
         n => format!("{what} has {number} in `{key}`, found {n}"),
     };
-    cx.error(place.clone(), message).help(format!("write `{key} = {example}`"));
+    cx.report_error(place.clone(), message).add_help(format!("write `{key} = {example}`"));
     None
 }
 
@@ -217,13 +222,13 @@ fn check_independent(
     cx: &mut Diagnostics,
 ) -> Option<()> {
     let dependent = match axes {
-        [a, b] => a.cross(*b).0.iter().all(|c| always(*c, 0.0)),
-        [a, b, c] => always(a.cross(*b).dot(*c), 0.0),
+        [a, b] => a.cross(*b).0.iter().all(|c| always_equals(*c, 0.0)),
+        [a, b, c] => always_equals(a.cross(*b).dot(*c), 0.0),
         _ => false,
     };
     if let Some(last) = last.filter(|_| dependent) {
-        cx.error(last.place.clone(), format!("the axes of {what} are not independent"))
-            .help("the last one depends on the others; choose another direction");
+        cx.report_error(last.place.clone(), format!("the axes of {what} are not independent"))
+            .add_help("the last one depends on the others; choose another direction");
         return None;
     }
     Some(())
@@ -240,7 +245,7 @@ fn common_axis<'g>(
         ([axis], []) | ([], [axis]) => Some(*axis),
         ([a], [b]) if a == b => Some(*a),
         _ => {
-            cx.error(place.clone(), format!("{what} has one axis")).help("write `about = z`");
+            cx.report_error(place.clone(), format!("{what} has one axis")).add_help("write `about = z`");
             None
         }
     }

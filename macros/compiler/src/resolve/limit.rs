@@ -17,9 +17,10 @@ impl<'g> Builder<'_, 'g> {
                 self.check_stop(limit, cx);
                 continue;
             }
-            let Some((coordinate, angle)) = self.coordinate(&limit.on, cx) else { continue };
-            let bounds =
-                self.bounds(limit, angle == Some(true), cx).filter(|bounds| check_bounds(limit, bounds, cx));
+            let Some((coordinate, angle)) = self.resolve_limited_coordinate(&limit.on, cx) else { continue };
+            let bounds = self
+                .resolve_bounds(limit, angle == Some(true), cx)
+                .filter(|bounds| check_bounds(limit, bounds, cx));
             if let Some(bounds) = bounds {
                 let found = self.limit_of(&coordinate, bounds);
                 self.add_bounds(limit, found, &known, cx);
@@ -36,18 +37,18 @@ impl<'g> Builder<'_, 'g> {
         {
             let name = key.name();
             let message = format!("`{name}` applies to a coordinate, but this is an expression");
-            cx.error(e.place.clone(), message).help("write it in a limit of the joint");
+            cx.report_error(e.place.clone(), message).add_help("write it in a limit of the joint");
         } else if given.get(Key::Restitution).is_none() {
-            cx.error(limit.on.place.clone(), "a limit of an expression is a stop and needs a restitution").help(
+            cx.report_error(limit.on.place.clone(), "a limit of an expression is a stop and needs a restitution").add_help(
                 "add `restitution = e`, from 0 to 1: the ratio of the speeds after and before the impact on the bound",
             );
-        } else if let Some(bounds) = self.bounds(limit, false, cx) {
+        } else if let Some(bounds) = self.resolve_bounds(limit, false, cx) {
             check_bounds(limit, &bounds, cx);
         }
     }
 
     /// Returns the values of the four bounds; `None` after an error.
-    fn bounds(
+    fn resolve_bounds(
         &self,
         limit: &syntax::Limit,
         angle: bool,
@@ -60,7 +61,7 @@ impl<'g> Builder<'_, 'g> {
             // Angles in a file are in radians, without a limit on revolutions.
             let value = match angle && e.place.file.is_none() {
                 true => self.scope.plane_angle(e, cx),
-                false => self.scope.scalar(e, cx),
+                false => self.scope.resolve_scalar(e, cx),
             };
             good &= value.is_some();
             value
@@ -105,10 +106,10 @@ impl<'g> Builder<'_, 'g> {
             let own = limit.name.text == name;
             let follower = if own { other.unwrap_or(limit) } else { limit };
             let place = if limit.on.place.file.is_some() { &follower.name.place } else { &limit.on.place };
-            let error = cx.error(place.clone(), format!("the limits of `{name}` exclude every value"));
+            let error = cx.report_error(place.clone(), format!("the limits of `{name}` exclude every value"));
             match follower.name.text == name || limit.on.place.file.is_none() {
-                true => error.help("all limits of a coordinate apply, including those of a file"),
-                false => error.help(format!(
+                true => error.add_help("all limits of a coordinate apply, including those of a file"),
+                false => error.add_help(format!(
                     "`{}` follows it and has its own limits; to ignore limits, write `#[mechanism(…, limits \
                      = ignore)]`",
                     follower.name.text
@@ -122,7 +123,7 @@ impl<'g> Builder<'_, 'g> {
 /// Returns the tighter bounds of two limits of one coordinate.
 fn tighter_bounds<'g>(known: &Limit<'g>, found: &Limit<'g>) -> Limit<'g> {
     let tighter_bounds = |which: Extreme, a: Option<Value<'g>>, b: Option<Value<'g>>| match (a, b) {
-        (Some(a), Some(b)) => Some(a.extreme(which, b)),
+        (Some(a), Some(b)) => Some(a.minimum_or_maximum(which, b)),
         (a, b) => a.or(b),
     };
     Limit {
@@ -136,24 +137,27 @@ fn tighter_bounds<'g>(known: &Limit<'g>, found: &Limit<'g>) -> Limit<'g> {
 
 /// Returns the distance between the bounds of a coordinate, if both are constant.
 fn range_width(limit: &Limit<'_>) -> Option<f64> {
-    Some(limit.upper?.value()? - limit.lower?.value()?)
+    Some(limit.upper?.constant_value()? - limit.lower?.constant_value()?)
 }
 
 /// Reports bounds that no motion satisfies. Returns false then.
 fn check_bounds(limit: &syntax::Limit, bounds: &[Option<Value<'_>>; 4], cx: &mut Diagnostics) -> bool {
-    let [from, to, speed, effort] = bounds.map(|bound| bound.and_then(|bound| bound.value()));
+    let [from, to, speed, effort] = bounds.map(|bound| bound.and_then(|bound| bound.constant_value()));
     if let (Some(low), Some(high), Some(e)) = (from, to, limit.arguments.get(Key::To))
         && low > high
     {
-        cx.error(e.place.clone(), format!("`to` is {high}, less than `from`, which is {low}"))
-            .help("`from` is the lower bound, `to` the upper one");
+        cx.report_error(e.place.clone(), format!("`to` is {high}, less than `from`, which is {low}"))
+            .add_help("`from` is the lower bound, `to` the upper one");
         return false;
     }
     for (key, value) in [(Key::MaxSpeed, speed), (Key::MaxEffort, effort)] {
         let written = limit.arguments.get(key);
         if let (Some(value), Some(e)) = (value.filter(|value| *value < 0.0), written) {
-            cx.error(e.place.clone(), format!("a `{}` cannot be negative, but it is {value}", key.name()))
-                .help("it bounds both directions: write its magnitude");
+            cx.report_error(
+                e.place.clone(),
+                format!("a `{}` cannot be negative, but it is {value}", key.name()),
+            )
+            .add_help("it bounds both directions: write its magnitude");
             return false;
         }
     }

@@ -25,7 +25,7 @@ impl<'g> Builder<'_, 'g> {
             if let Some(inertia) = inertia
                 && let Some((Some(link), pose)) = self.places[k].clone()
             {
-                self.attach(link, &pose, inertia);
+                self.attach_mass(link, &pose, inertia);
             }
         }
         for particle in &self.description.particles {
@@ -37,21 +37,25 @@ impl<'g> Builder<'_, 'g> {
     fn body_inertia(&self, body: &Body, cx: &mut Diagnostics) -> Option<MassProperties<'g>> {
         let graph = self.scope.graph;
         let name = &body.name.text;
-        let mass = body.mass.as_ref().map_or(Some(graph.zero()), |e| self.scope.scalar(e, cx));
+        let mass = body.mass.as_ref().map_or(Some(graph.zero()), |e| self.scope.resolve_scalar(e, cx));
         if let Some(mass) = mass {
-            self.scope.require(Rule::Mass, || format!("the mass of `{name}`"), &[mass]);
+            self.scope.record_requirement(Rule::Mass, || format!("the mass of `{name}`"), &[mass]);
         }
         let com = body.com.as_ref().map_or(Some(Vec3::zero(graph)), |e| self.scope.own_vector(e, cx));
-        let inertia = body.inertia.as_ref().map_or(Some(Sym3::zero(graph)), |e| self.scope.inertia(e, cx));
+        let inertia =
+            body.inertia.as_ref().map_or(Some(Sym3::zero(graph)), |e| self.scope.resolve_inertia(e, cx));
         let inertia = match &body.about {
             Some(about) => self.about_center(body, about, (mass, com, inertia), cx),
             None => inertia,
         };
-        if let (Some(e), Some(m)) = (&body.mass, mass.and_then(|m| m.value()))
+        if let (Some(e), Some(m)) = (&body.mass, mass.and_then(|m| m.constant_value()))
             && m < 0.0
         {
-            cx.error(e.place.clone(), format!("the mass of `{name}` cannot be negative, but it is {m}"))
-                .help("a mass is zero or more, kg; the sign belongs to gravity");
+            cx.report_error(
+                e.place.clone(),
+                format!("the mass of `{name}` cannot be negative, but it is {m}"),
+            )
+            .add_help("a mass is zero or more, kg; the sign belongs to gravity");
         }
         let range = ValueRange::of_scalar(&self.description.scalar);
         let mut is_valid = true;
@@ -81,7 +85,7 @@ impl<'g> Builder<'_, 'g> {
                 }
                 None => "to accept the inertia unchanged, write `#[mechanism(…, inertia = trust)]`",
             };
-            check_inertia(name, mass.and_then(|m| m.value()), inertia, &e.place, hint, cx);
+            check_inertia(name, mass.and_then(|m| m.constant_value()), inertia, &e.place, hint, cx);
         }
         let found = (mass?, com?, inertia?);
         self.require_physical_inertia(name, &found);
@@ -97,46 +101,49 @@ impl<'g> Builder<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Sym3<'g>> {
         let solid = body.inertia.as_ref().and_then(|e| {
-            e.parts().into_iter().find_map(|part| match &part.kind {
+            e.subexpressions().into_iter().find_map(|part| match &part.kind {
                 ExprKind::Call(Callee { id: Some(Callable::Solid(solid)), .. }, _) => Some(*solid),
                 _ => None,
             })
         });
         if let Some(solid) = solid.filter(|solid| *solid != Solid::Diagonal) {
-            cx.error(about.place.clone(), format!("the inertia of a `{}` is about its centre", solid.name()))
-                .help(
-                    "remove `about`, and give the centre by `com`; `about` is for `diagonal(xx, yy, zz)` or \
+            cx.report_error(
+                about.place.clone(),
+                format!("the inertia of a `{}` is about its centre", solid.name()),
+            )
+            .add_help(
+                "remove `about`, and give the centre by `com`; `about` is for `diagonal(xx, yy, zz)` or \
                      a matrix",
-                );
+            );
             return None;
         }
-        let about = match about.literal() {
+        let about = match about.literal_number() {
             Some(0.0) => Some(Vec3::zero(self.scope.graph)),
             _ => self.scope.own_vector(about, cx),
         };
-        Some(inertia? - Sym3::point(mass?, com? - about?))
+        Some(inertia? - Sym3::point_mass_inertia(mass?, com? - about?))
     }
 
     /// Adds the requirements for inertial parameters that can be checked only at run time, when their
     /// parameters have values.
     fn require_physical_inertia(&self, name: &str, (mass, com, inertia): &MassProperties<'g>) {
         for c in com.0 {
-            self.scope.require(Rule::Length, || format!("the centre of mass of `{name}`"), &[c]);
+            self.scope.record_requirement(Rule::Length, || format!("the centre of mass of `{name}`"), &[c]);
         }
         let entries: Vec<Expr<'g>> =
             inertia.diagonal.iter().chain(&inertia.off).chain([mass]).copied().collect();
         let describe_inertia = || format!("the inertia of `{name}`");
         match self.description.inertias {
-            Inertias::Check => self.scope.require(Rule::Inertia, describe_inertia, &entries),
-            _ => {
-                entries.iter().for_each(|entry| self.scope.require(Rule::Finite, describe_inertia, &[*entry]))
-            }
+            Inertias::Check => self.scope.record_requirement(Rule::Inertia, describe_inertia, &entries),
+            _ => entries
+                .iter()
+                .for_each(|entry| self.scope.record_requirement(Rule::Finite, describe_inertia, &[*entry])),
         }
     }
 
     /// Adds the mass of an element with this pose on a link to that of the link.
-    fn attach(&mut self, link: LinkId, pose: &Pose<'g>, (mass, com, central): MassProperties<'g>) {
-        let added = Inertia::of_body(mass, pose.point(com), pose.rotation.sym_to_parent(central));
+    fn attach_mass(&mut self, link: LinkId, pose: &Pose<'g>, (mass, com, central): MassProperties<'g>) {
+        let added = Inertia::of_body(mass, pose.transform_point(com), pose.rotation.sym_to_parent(central));
         let sum = &mut self.model.links[link.0].inertia;
         *sum = sum.plus(&added);
     }
@@ -147,18 +154,19 @@ impl<'g> Builder<'_, 'g> {
             return;
         }
         let range = ValueRange::of_scalar(&self.description.scalar);
-        let is_infinite = |e: &Expr<'g>| e.value().is_some_and(|n| !n.is_finite() || n.abs() > range.max);
+        let is_infinite =
+            |e: &Expr<'g>| e.constant_value().is_some_and(|n| !n.is_finite() || n.abs() > range.max);
         for (k, body) in self.description.bodies.iter().enumerate() {
             let Some((Some(link), _)) = &self.places[k] else { continue };
             let i = &self.model.links[link.0].inertia;
             let all = i.moment.0.iter().chain(&i.tensor.diagonal).chain(&i.tensor.off).chain([&i.mass]);
             if all.into_iter().any(is_infinite) {
                 let name = &body.name;
-                cx.error(
+                cx.report_error(
                     name.place.clone(),
                     format!("the inertial parameters of `{}` are too large", name.text),
                 )
-                .help("mass times the square of the distance from the joint overflows in products");
+                .add_help("mass times the square of the distance from the joint overflows in products");
                 return;
             }
         }
@@ -166,23 +174,27 @@ impl<'g> Builder<'_, 'g> {
 
     fn add_particle(&mut self, particle: &Particle, cx: &mut Diagnostics) {
         let graph = self.scope.graph;
-        let mass = self.scope.scalar(&particle.mass, cx);
+        let mass = self.scope.resolve_scalar(&particle.mass, cx);
         if let Some(mass) = mass {
             ValueRange::of_scalar(&self.description.scalar).check_mass(mass, &particle.mass.place, cx);
-            self.scope.require(Rule::Mass, || format!("the mass of `{}`", particle.name.text), &[mass]);
+            self.scope.record_requirement(
+                Rule::Mass,
+                || format!("the mass of `{}`", particle.name.text),
+                &[mass],
+            );
         }
-        if let Some(m) = mass.and_then(|m| m.value()).filter(|m| *m <= 0.0) {
-            cx.error(
+        if let Some(m) = mass.and_then(|m| m.constant_value()).filter(|m| *m <= 0.0) {
+            cx.report_error(
                 particle.mass.place.clone(),
                 format!("the mass of `{}` must be positive, but it is {m}", particle.name.text),
             )
-            .help("a point without mass is a `Point`");
+            .add_help("a point without mass is a `Point`");
         }
         let placed = self.scope.kinematics.places.get(&particle.name.text).cloned();
         if let (Some(mass), Some(Placed { link: Some(link), pose, .. })) = (mass, placed) {
             let masses = (mass, Vec3::zero(graph), Sym3::zero(graph));
             self.scope.kinematics.masses.insert(particle.name.text.clone(), masses);
-            self.attach(link, &pose, masses);
+            self.attach_mass(link, &pose, masses);
         }
     }
 }

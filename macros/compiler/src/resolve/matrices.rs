@@ -1,8 +1,8 @@
 //! Physical matrices, which map vectors to vectors: projectors, rotations, cross products and inertias, with
 //! their products, transposes and rates.
 
-use super::call::{Call, flatten};
-use super::quantities::{in_links, vector};
+use super::call::{Call, flatten_slashes};
+use super::quantities::{in_links, vector_value};
 use super::resolved::ResolvedMatrix;
 use super::scope::{Allowed, Axes, Kinematics, Placed, Scope, Terms, Value};
 use crate::diag::{Diagnostics, Place};
@@ -32,10 +32,14 @@ impl<'g> Kinematics<'g> {
 impl<'g> Scope<'_, 'g> {
     /// Returns the value of a matrix expression.
     pub fn physical_matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<ResolvedMatrix<'g>> {
-        match self.value(e, cx)? {
+        match self.resolve_value(e, cx)? {
             Value::Matrix(m) => Some(m),
             other => {
-                cx.error(e.place.clone(), format!("expected a matrix, found {}", other.word())).help(
+                cx.report_error(
+                    e.place.clone(),
+                    format!("expected a matrix, found {}", other.kind_with_article()),
+                )
+                .add_help(
                     "a matrix is `projector(n)`, `skew(v)`, `outer(a, b)`, `rotation(B / A)`, `inertia(body \
                      / point)` or an expression of these",
                 );
@@ -46,7 +50,7 @@ impl<'g> Scope<'_, 'g> {
 
     /// Returns a matrix written by its rows, in the axes of the context.
     pub fn matrix_by_rows(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let entries = self.matrix(e, cx)?;
+        let entries = self.resolve_matrix(e, cx)?;
         let Some((link, pose)) = self.context.borrow().axes.clone() else {
             return self.report_no_matrix(&e.place, cx);
         };
@@ -56,8 +60,8 @@ impl<'g> Scope<'_, 'g> {
 
     /// Reports a matrix in a context that does not allow matrices.
     fn report_no_matrix<T>(&self, place: &Place, cx: &mut Diagnostics) -> Option<T> {
-        cx.error(place.clone(), "a matrix is not allowed here")
-            .help("matrices are allowed in definitions, outputs and forces: `#[define(projector(n))]`");
+        cx.report_error(place.clone(), "a matrix is not allowed here")
+            .add_help("matrices are allowed in definitions, outputs and forces: `#[define(projector(n))]`");
         None
     }
 
@@ -70,7 +74,7 @@ impl<'g> Scope<'_, 'g> {
         if self.context.borrow().axes.is_none() {
             self.report_no_matrix(call.place, cx)
         } else {
-            call.take(cx)
+            call.take_arguments(cx)
         }
     }
 
@@ -81,24 +85,24 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Resolves `projector(n)`: `n nᵀ / n·n`, the projection onto a line.
-    pub fn projector(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_projector(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [a] = self.take_matrix(call, cx)?;
-        let (link, [a]) = self.vectors([a], cx)?;
+        let (link, [a]) = self.resolve_vectors([a], cx)?;
         let square = a.dot(a);
         Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::from_fn(|i, j| a[i] * a[j] / square) }))
     }
 
     /// Resolves `skew(a)`, with `skew(a) * b = cross(a, b)`.
-    pub fn skew(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_skew(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [a] = self.take_matrix(call, cx)?;
-        let (link, [a]) = self.vectors([a], cx)?;
+        let (link, [a]) = self.resolve_vectors([a], cx)?;
         Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::skew(a) }))
     }
 
     /// Resolves a call of `outer(a, b)`: the matrix `a bᵀ`.
-    pub fn outer(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_outer_product(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [a, b] = self.take_matrix(call, cx)?;
-        let (link, [a, b]) = self.vectors([a, b], cx)?;
+        let (link, [a, b]) = self.resolve_vectors([a, b], cx)?;
         Some(Value::Matrix(ResolvedMatrix { link, entries: Mat3::from_fn(|i, j| a[i] * b[j]) }))
     }
 
@@ -110,14 +114,14 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Resolves a call of `trace(M)`.
-    pub fn trace(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_trace(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [m] = self.take_matrix(call, cx)?;
         let m = self.physical_matrix(m, cx)?.entries.0;
         Some(Value::Scalar(m[0][0] + m[1][1] + m[2][2]))
     }
 
     /// Returns the values of several vectors in the axes of one link, with the link.
-    fn vectors<const N: usize>(
+    fn resolve_vectors<const N: usize>(
         &self,
         vectors: [&syntax::Expr; N],
         cx: &mut Diagnostics,
@@ -130,11 +134,13 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `rotation(B / A)`: `Σ bₖ aₖᵀ`, which rotates the axes of A into those of B.
     pub fn physical_rotation(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [operands] = self.take_matrix(call, cx)?;
-        let Ok([b, a]) = <[_; 2]>::try_from(flatten(operands)) else { return call.reject(cx) };
+        let Ok([b, a]) = <[_; 2]>::try_from(flatten_slashes(operands)) else {
+            return call.reject_arguments(cx);
+        };
         if !self.check_allowed(Allowed::Placement, "`rotation(…)`", call.place, cx) {
             return None;
         }
-        let (link, _) = (self.frame(a, cx), self.frame(b, cx));
+        let (link, _) = (self.resolve_frame_link(a, cx), self.resolve_frame_link(b, cx));
         let link = link?;
         let (a, b) = (self.axes_of(a)?, self.axes_of(b)?);
         let kinematics = &self.kinematics;
@@ -147,11 +153,11 @@ impl<'g> Scope<'_, 'g> {
 
     /// Returns the axes of a placed body or frame.
     fn axes_of(&self, e: &syntax::Expr) -> Option<[Terms<'g>; 3]> {
-        let coordinate_axis = |k: usize| Vec3::axis(self.graph, k);
-        match e.name()? {
+        let coordinate_axis = |k: usize| Vec3::coordinate_axis(self.graph, k);
+        match e.as_name()? {
             GROUND => Some([0, 1, 2].map(|k| vec![(None, coordinate_axis(k))])),
             name => {
-                let Placed { link, pose, .. } = self.placed(name)?;
+                let Placed { link, pose, .. } = self.placement_of_element(name)?;
                 Some([0, 1, 2].map(|k| vec![(link, pose.rotation.to_parent(coordinate_axis(k)))]))
             }
         }
@@ -160,8 +166,8 @@ impl<'g> Scope<'_, 'g> {
     /// Resolves `inertia(body / point)`: the physical inertia matrix of bodies about a point.
     pub fn inertia_matrix(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [operands] = self.take_matrix(call, cx)?;
-        let Ok([bodies_written, about]) = <[_; 2]>::try_from(flatten(operands)) else {
-            return call.reject(cx);
+        let Ok([bodies_written, about]) = <[_; 2]>::try_from(flatten_slashes(operands)) else {
+            return call.reject_arguments(cx);
         };
         if !self.check_allowed(Allowed::Placement, "`inertia(…)`", call.place, cx) {
             return None;
@@ -169,7 +175,7 @@ impl<'g> Scope<'_, 'g> {
         let bodies = self.bodies_with_mass(bodies_written, cx)?;
         let about = self.current_place(about, cx)?;
         let link = bodies.first().and_then(|(placed, _)| placed.link);
-        let axis_terms = |k: usize| -> Terms<'g> { vec![(link, Vec3::axis(self.graph, k))] };
+        let axis_terms = |k: usize| -> Terms<'g> { vec![(link, Vec3::coordinate_axis(self.graph, k))] };
         let entries = Mat3::from_fn(|i, j| {
             let (i, j) = (i.min(j), i.max(j));
             bodies.iter().fold(self.graph.zero(), |sum, body| {
@@ -201,7 +207,7 @@ impl<'g> Scope<'_, 'g> {
             }
             (BinaryOp::Mul, Value::Matrix(m), Value::Vector(v)) => {
                 let v = kinematics.resolve(&in_links(v), m.link, Vec3::zero(self.graph));
-                vector(vec![(m.link, m.entries * v)])
+                vector_value(vec![(m.link, m.entries * v)])
             }
             (BinaryOp::Mul, Value::Scalar(s), Value::Matrix(m))
             | (BinaryOp::Mul, Value::Matrix(m), Value::Scalar(s)) => Value::Matrix(m.map(|entry| entry * s)),
@@ -222,8 +228,11 @@ impl<'g> Scope<'_, 'g> {
                     BinaryOp::Sub => (&right, &left),
                     _ => (&left, &right),
                 };
-                cx.error(e.place.clone(), format!("{} cannot be {what} {}", first.word(), second.word()))
-                    .help(help);
+                cx.report_error(
+                    e.place.clone(),
+                    format!("{} cannot be {what} {}", first.kind_with_article(), second.kind_with_article()),
+                )
+                .add_help(help);
                 return None;
             }
         })

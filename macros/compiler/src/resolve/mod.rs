@@ -58,4 +58,4 @@ mod tree;
 mod units;
 
 pub use build::build_model;
-pub use outline::{Outline, outline};
+pub use outline::{Outline, outline_of_description};

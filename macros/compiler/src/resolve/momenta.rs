@@ -2,8 +2,8 @@
 //! `angular_momentum((first, second) / point)`, `kinetic_energy(body)`,
 //! `moment_of_inertia(body / point, direction)`, `center_of_mass((first, second) / point)`.
 
-use super::call::{Call, flatten};
-use super::quantities::vector;
+use super::call::{Call, flatten_slashes};
+use super::quantities::vector_value;
 use super::scope::{Allowed, MassProperties, Placed, Scope, Terms, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
@@ -25,15 +25,15 @@ impl<'g> Scope<'_, 'g> {
     /// Returns the momentum, the angular momentum or the kinetic energy of bodies, for their motion relative
     /// to the ground. With the velocity `v` of the centre of mass, its position `r` relative to the point,
     /// and the central inertia `I`: `m v`, `I ω + r × m v`, `(m v·v + ω·I ω) / 2`.
-    pub fn momentum(&self, call: &Call<'_>, sum: Sum, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let (text, parts) = (call.name(), call.parts());
+    pub fn resolve_momentum(&self, call: &Call<'_>, sum: Sum, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        let (text, parts) = (call.function_name(), call.slash_operands());
         let (count, point) = if sum == Sum::AngularMomentum { (2, " / point") } else { (1, "") };
         if parts.len() != count {
             let row = call.id.row();
-            let error = cx.error(call.place.clone(), format!("`{text}` takes {}", row.takes));
+            let error = cx.report_error(call.place.clone(), format!("`{text}` takes {}", row.takes));
             match call.arguments.len() {
-                0 | 1 => error.help(row.usage),
-                _ => error.help(format!(
+                0 | 1 => error.add_help(row.usage),
+                _ => error.add_help(format!(
                     "several bodies are written in parentheses: `{text}((first, second){point})`"
                 )),
             };
@@ -54,7 +54,7 @@ impl<'g> Scope<'_, 'g> {
             let link = placed.link;
             let twist = link.map(|link| &kinematics.twists[link.0]);
             let (linear, w) = twist.map_or((zero, zero), |twist| (twist.linear, twist.angular));
-            let center = placed.pose.point(com);
+            let center = placed.pose.transform_point(com);
             let v = linear + w.cross(center);
             let spin = placed.pose.rotation.sym_to_parent(central) * w;
             energy += (v.dot(v) * mass + w.dot(spin)) * 0.5;
@@ -67,13 +67,15 @@ impl<'g> Scope<'_, 'g> {
             let r = kinematics.resolve(&offset, link, zero);
             momenta.push((link, spin + r.cross(v * mass)));
         }
-        Some(if sum == Sum::Energy { Value::Scalar(energy) } else { vector(momenta) })
+        Some(if sum == Sum::Energy { Value::Scalar(energy) } else { vector_value(momenta) })
     }
 
     /// Resolves `center_of_mass((first, second) / point)`: the vector from a point to the centre of mass of
     /// bodies.
     pub fn center_of_mass(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let Ok([bodies_written, from]) = <[_; 2]>::try_from(call.parts()) else { return call.reject(cx) };
+        let Ok([bodies_written, from]) = <[_; 2]>::try_from(call.slash_operands()) else {
+            return call.reject_arguments(cx);
+        };
         if !self.check_allowed(Allowed::Placement, "`center_of_mass(…)`", call.place, cx) {
             return None;
         }
@@ -81,36 +83,39 @@ impl<'g> Scope<'_, 'g> {
         let from = self.current_place(from, cx)?;
         let total = bodies.iter().fold(self.graph.zero(), |sum, (_, (mass, ..))| sum + *mass);
         if total.is_zero() {
-            cx.error(bodies_written.place.clone(), "a body without mass has no centre of mass")
-                .help("name bodies with a `mass`");
+            cx.report_error(bodies_written.place.clone(), "a body without mass has no centre of mass")
+                .add_help("name bodies with a `mass`");
             return None;
         }
         let kinematics = &self.kinematics;
         let mut sum = Vec::new();
         for (placed, (mass, com, _)) in bodies {
-            let pose = Pose { translation: placed.pose.point(com), rotation: placed.pose.rotation.clone() };
+            let pose = Pose {
+                translation: placed.pose.transform_point(com),
+                rotation: placed.pose.rotation.clone(),
+            };
             let offset = kinematics.position_between(&Placed { pose, ..placed }, &from);
             let share = mass / total;
             sum.extend(offset.into_iter().map(|(link, r)| (link, r * share)));
         }
-        Some(vector(sum))
+        Some(vector_value(sum))
     }
 
     /// Returns the moment `a·J a` (for one direction) or the product `a·J b` of inertia of bodies about a
     /// point. `J = I + m (r·r 1 − r rᵀ)` is the physical inertia matrix, with the position `r` of the centre
     /// of mass relative to the point (the parallel-axis theorem). Several bodies are summed.
     pub fn moment_of_inertia(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
-        let text = call.name();
+        let text = call.function_name();
         let (parts, directions) = match call.arguments {
-            [of, directions @ ..] => (flatten(of), directions),
+            [of, directions @ ..] => (flatten_slashes(of), directions),
             [] => (Vec::new(), call.arguments),
         };
         let ([of, about], [a, others @ ..]) = (parts.as_slice(), directions) else {
-            return call.reject(cx);
+            return call.reject_arguments(cx);
         };
         if others.len() > 1 {
-            cx.error(others[1].place.clone(), format!("`{text}` takes one direction or two"))
-                .help("with two it is a product of inertia");
+            cx.report_error(others[1].place.clone(), format!("`{text}` takes one direction or two"))
+                .add_help("with two it is a product of inertia");
             return None;
         }
         if !self.check_allowed(Allowed::Placement, &format!("`{text}(…)`"), call.place, cx) {
@@ -118,8 +123,8 @@ impl<'g> Scope<'_, 'g> {
         }
         let bodies = self.bodies_with_mass(of, cx)?;
         let about = self.current_place(about, cx)?;
-        let a = self.terms(a, cx)?;
-        let b = others.first().map_or_else(|| Some(a.clone()), |b| self.terms(b, cx))?;
+        let a = self.resolve_terms(a, cx)?;
+        let b = others.first().map_or_else(|| Some(a.clone()), |b| self.resolve_terms(b, cx))?;
         let sum = bodies
             .iter()
             .fold(self.graph.zero(), |sum, body| sum + self.inertia_about(body, &about, [&a, &b]));
@@ -135,7 +140,8 @@ impl<'g> Scope<'_, 'g> {
     ) -> Expr<'g> {
         let kinematics = &self.kinematics;
         let (link, zero) = (placed.link, Vec3::zero(self.graph));
-        let pose = Pose { translation: placed.pose.point(*com), rotation: placed.pose.rotation.clone() };
+        let pose =
+            Pose { translation: placed.pose.transform_point(*com), rotation: placed.pose.rotation.clone() };
         let offset = kinematics.position_between(&Placed { pose, ..placed.clone() }, about);
         let [a, b, r] = [a, b, &offset].map(|parts| kinematics.resolve(parts, link, zero));
         let central = placed.pose.rotation.sym_to_parent(*central);
@@ -153,15 +159,16 @@ impl<'g> Scope<'_, 'g> {
             return Some(vec![self.body_with_mass(e, cx)?]);
         };
         if items.is_empty() {
-            cx.error(e.place.clone(), "expected bodies, found none").help("write `(first, second)`");
+            cx.report_error(e.place.clone(), "expected bodies, found none")
+                .add_help("write `(first, second)`");
             return None;
         }
         let is_duplicate = |k: usize| {
-            items[..k].iter().any(|before| before.name().is_some_and(|n| items[k].name() == Some(n)))
+            items[..k].iter().any(|before| before.as_name().is_some_and(|n| items[k].as_name() == Some(n)))
         };
         if let Some(k) = (0..items.len()).find(|k| is_duplicate(*k)) {
-            cx.error(items[k].place.clone(), format!("`{}` is given twice", items[k].to_source()))
-                .help("name each body once");
+            cx.report_error(items[k].place.clone(), format!("`{}` is given twice", items[k].to_source()))
+                .add_help("name each body once");
             return None;
         }
         let all: Vec<_> = items.iter().map(|item| self.body_with_mass(item, cx)).collect();
@@ -175,25 +182,26 @@ impl<'g> Scope<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<(Placed<'g>, MassProperties<'g>)> {
         let ExprKind::Name(name) = &e.kind else {
-            cx.error(e.place.clone(), "expected a body").help("name a body or a particle");
+            cx.report_error(e.place.clone(), "expected a body").add_help("name a body or a particle");
             return None;
         };
         let kinematics = &self.kinematics;
-        match (self.placed(name), kinematics.masses.get(name)) {
+        match (self.placement_of_element(name), kinematics.masses.get(name)) {
             (Some(placed), Some(masses)) => Some((placed, *masses)),
             // Its inertial parameters could not be read; the error has been reported.
             (Some(_), None) if !cx.is_empty() && self.bodies.contains(name) => None,
             (Some(_), None) => {
-                cx.error(e.place.clone(), format!("`{name}` has no mass")).help("name a body or a particle");
+                cx.report_error(e.place.clone(), format!("`{name}` has no mass"))
+                    .add_help("name a body or a particle");
                 None
             }
             (None, _) => {
                 if self.is_first_report(name, cx) {
                     let known: Vec<&str> = kinematics.masses.keys().map(String::as_str).collect();
-                    let error = cx.error(e.place.clone(), format!("unknown body `{name}`"));
+                    let error = cx.report_error(e.place.clone(), format!("unknown body `{name}`"));
                     words::suggest_meaning(error, words::BODIES, name, &known);
                     if error.is_bare() {
-                        error.help("name a body or a particle");
+                        error.add_help("name a body or a particle");
                     }
                 }
                 None

@@ -35,10 +35,13 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the value of a name in an expression.
-    pub fn name(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_name(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+        if let Some(value) = self.kinematics.drive_quantities.get(name) {
+            return Some(Value::Scalar(*value));
+        }
         // Expressions of a file refer to its joints even if the language has another meaning for the name.
         if e.place.file.is_some()
-            && let Some(value) = self.coordinate(name, e, cx)
+            && let Some(value) = self.resolve_coordinate(name, e, cx)
         {
             return value;
         }
@@ -48,7 +51,7 @@ impl<'g> Scope<'_, 'g> {
             return None;
         }
         if let Some(k) = axis {
-            return Some(self.own_axes(Vec3::axis(self.graph, k)));
+            return Some(self.own_axes(Vec3::coordinate_axis(self.graph, k)));
         }
         if let Some(k) = self.parameters.iter().position(|p| p.text == name) {
             self.records.borrow_mut().used[k] = true;
@@ -61,32 +64,34 @@ impl<'g> Scope<'_, 'g> {
             return value;
         }
         if self.bodies.iter().any(|b| b == name) || name == GROUND {
-            cx.error(e.place.clone(), format!("`{name}` is a body, not a value"))
-                .help(format!("its axes are `{name}.x`, `{name}.y` and `{name}.z`"));
+            cx.report_error(e.place.clone(), format!("`{name}` is a body, not a value"))
+                .add_help(format!("its axes are `{name}.x`, `{name}.y` and `{name}.z`"));
         } else if let Some(table) = self.tables.iter().find(|table| table.name.text == name) {
             let variables = ["a", "b", "c"].get(..table.variables).unwrap_or_default().join(", ");
-            cx.error(e.place.clone(), format!("`{name}` is a table, which needs its variables"))
-                .help(format!("write `{name}({variables})`"));
+            cx.report_error(e.place.clone(), format!("`{name}` is a table, which needs its variables"))
+                .add_help(format!("write `{name}({variables})`"));
         } else if let Some(what) = self.kind_of_name(name) {
-            cx.error(e.place.clone(), format!("`{name}` is {what}, which has no value here"))
-                .help("an expression consists of parameters, numbers and directions");
+            cx.report_error(e.place.clone(), format!("`{name}` is {what}, which has no value here"))
+                .add_help("an expression consists of parameters, numbers and directions");
         } else if let Some(
             function @ (FunctionId::Momentum | FunctionId::AngularMomentum | FunctionId::KineticEnergy),
         ) = FunctionId::of_name(name)
         {
-            let error = cx.error(e.place.clone(), format!("`{name}` is a function of a body"));
-            error.help(format!("write `{name}(body)`"));
+            let error = cx.report_error(e.place.clone(), format!("`{name}` is a function of a body"));
+            error.add_help(format!("write `{name}(body)`"));
             if function == FunctionId::KineticEnergy {
-                error.help("that of the whole mechanism needs no output: it is the method `kinetic_energy`");
+                error.add_help(
+                    "that of the whole mechanism needs no output: it is the method `kinetic_energy`",
+                );
             }
         } else {
             let kinematics = &self.kinematics;
             let mut known: Vec<&str> = self.parameters.iter().map(|p| p.text.as_str()).collect();
-            if self.allowed() >= Allowed::Placement {
+            if self.allowed_quantities() >= Allowed::Placement {
                 known.extend(kinematics.coordinates.iter().map(|(name, ..)| name.as_str()));
                 known.extend(self.definitions.iter().map(|d| d.name.text.as_str()));
             }
-            if self.allowed() >= Allowed::Motion {
+            if self.allowed_quantities() >= Allowed::Motion {
                 known.extend(self.inputs.iter().map(|i| i.text.as_str()));
             }
             if !self.is_first_report(name, cx) {
@@ -95,28 +100,34 @@ impl<'g> Scope<'_, 'g> {
             let rates: Vec<&str> = kinematics.coordinates.iter().map(|(name, ..)| name.as_str()).collect();
             known.extend(names::AXES);
             known.push(names::PI);
-            let error = cx.error(e.place.clone(), format!("unknown name `{name}`"));
+            let error = cx.report_error(e.place.clone(), format!("unknown name `{name}`"));
             words::suggest_name(error, name, &known, &rates);
         }
         None
     }
 
     /// Returns the value of a member such as `body.x` or `joint.angle`.
-    pub fn member(&self, inner: &syntax::Expr, member: &Name, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_member(
+        &self,
+        inner: &syntax::Expr,
+        member: &Name,
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
         if let ExprKind::Name(joint) = &inner.kind
             && let Some(value) = self.coordinate_member(joint, member, cx)
         {
             return value;
         }
         let ExprKind::Name(body) = &inner.kind else {
-            let diagnostic = cx.error(member.place.clone(), format!("`.{}` has no value here", member.text));
+            let diagnostic =
+                cx.report_error(member.place.clone(), format!("`.{}` has no value here", member.text));
             let axis = names::AXES[axis_of_name(&member.text).unwrap_or(0)];
-            diagnostic.help(format!("a component of a vector is `dot(vector, {axis})`"));
+            diagnostic.add_help(format!("a component of a vector is `dot(vector, {axis})`"));
             return None;
         };
         if body == "self" && inner.place.file.is_none() {
-            cx.error(inner.place.clone(), "parameters are named without `self`")
-                .help(format!("write `{}`", member.text));
+            cx.report_error(inner.place.clone(), "parameters are named without `self`")
+                .add_help(format!("write `{}`", member.text));
             return None;
         }
         if body != GROUND && !self.bodies.contains(body) {
@@ -124,8 +135,9 @@ impl<'g> Scope<'_, 'g> {
                 return None;
             }
             if let Some(what) = self.kind_of_name(body) {
-                cx.error(inner.place.clone(), format!("`{body}` is {what} and has no axes"))
-                    .help("write `x`, `y`, `z` for the axes available here, or `body.x` for those of a body");
+                cx.report_error(inner.place.clone(), format!("`{body}` is {what} and has no axes")).add_help(
+                    "write `x`, `y`, `z` for the axes available here, or `body.x` for those of a body",
+                );
                 return None;
             }
             let known = self.bodies.iter().map(String::as_str).chain([GROUND]);
@@ -133,26 +145,26 @@ impl<'g> Scope<'_, 'g> {
             if !self.is_first_report(body, cx) {
                 return None;
             }
-            let error = cx.error(inner.place.clone(), format!("unknown body `{body}`"));
-            if words::meaning(words::OWN, body, &[]).is_some() {
-                error.help("without a body, `x`, `y` and `z` are the axes of the current frame");
+            let error = cx.report_error(inner.place.clone(), format!("unknown body `{body}`"));
+            if words::meaning_of_word(words::OWN, body, &[]).is_some() {
+                error.add_help("without a body, `x`, `y` and `z` are the axes of the current frame");
                 return None;
             }
             words::suggest_meaning(error, words::BODIES, body, &known);
             return None;
         }
         let Some(k) = axis_of_name(&member.text) else {
-            let meaning = words::meaning(words::MEMBERS, &member.text, &[]);
+            let meaning = words::meaning_of_word(words::MEMBERS, &member.text, &[]);
             // The ground does not rotate.
             let meaning =
                 meaning.filter(|meaning| body != GROUND || !meaning.contains(FunctionId::Omega.name()));
             let meaning =
                 meaning.unwrap_or("its axes are `x`, `y` and `z`, and `body.at(vector)` is a point");
             let help = meaning.replace("NAME", body);
-            cx.error(member.place.clone(), format!("a body has no `{}`", member.text)).help(help);
+            cx.report_error(member.place.clone(), format!("a body has no `{}`", member.text)).add_help(help);
             return None;
         };
-        self.named_axes(body, Vec3::axis(self.graph, k), &inner.place, cx)
+        self.named_axes(body, Vec3::coordinate_axis(self.graph, k), &inner.place, cx)
     }
 
     /// Returns a vector given in the axes `x`, `y`, `z` of the context.
@@ -177,10 +189,10 @@ impl<'g> Scope<'_, 'g> {
         if name == GROUND {
             return Some(Value::Vector(vec![(Axes::Link(None), v)]));
         }
-        match self.placed(name) {
+        match self.placement_of_element(name) {
             Some(p) => Some(Value::Vector(vec![(Axes::Link(p.link), p.pose.rotation.to_parent(v))])),
             None => {
-                cx.error(place.clone(), format!("`{name}` has no placement"));
+                cx.report_error(place.clone(), format!("`{name}` has no placement"));
                 None
             }
         }
@@ -201,7 +213,7 @@ impl<'g> Scope<'_, 'g> {
             let here = self.check_allowed(Allowed::Placement, "time", &e.place, cx);
             return Some(here.then(|| Value::Scalar(Quantity::Time.expr(self.graph))));
         }
-        if let Some(value) = self.coordinate(name, e, cx) {
+        if let Some(value) = self.resolve_coordinate(name, e, cx) {
             return Some(value);
         }
         if let Some(k) = self.inputs.iter().position(|i| i.text == name) {
@@ -209,18 +221,23 @@ impl<'g> Scope<'_, 'g> {
             return Some(here.then(|| Value::Scalar(Quantity::Input(self.driven + k).expr(self.graph))));
         }
         let definition = self.definitions.iter().find(|d| d.name.text == name)?;
-        Some(self.definition(definition, e, cx))
+        Some(self.resolve_definition(definition, e, cx))
     }
 
     /// Returns the value of a coordinate. The outer `None` means that no coordinate has the name.
-    fn coordinate(&self, name: &str, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Option<Value<'g>>> {
+    fn resolve_coordinate(
+        &self,
+        name: &str,
+        e: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Option<Value<'g>>> {
         let found = self.kinematics.coordinates.iter().find(|(n, ..)| n == name).map(|(_, c, _)| *c);
         let c = found?;
         let here = self.check_allowed(Allowed::Placement, &format!("the coordinate `{name}`"), &e.place, cx);
         Some(here.then(|| Value::Scalar(position_in(self.graph, &c))))
     }
 
-    fn definition(
+    fn resolve_definition(
         &self,
         d: &syntax::Definition,
         e: &syntax::Expr,
@@ -241,7 +258,7 @@ impl<'g> Scope<'_, 'g> {
             return known.clone();
         }
         let before = cx.len();
-        let value = self.define(d, e, cx);
+        let value = self.evaluate_definition(d, e, cx);
         if value.is_none() && cx.is_read() && cx.len() > before {
             self.records.borrow_mut().reported_definitions.insert(name.clone());
         }
@@ -249,15 +266,21 @@ impl<'g> Scope<'_, 'g> {
         value
     }
 
-    fn define(&self, d: &syntax::Definition, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    fn evaluate_definition(
+        &self,
+        d: &syntax::Definition,
+        e: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
         let name = &d.name.text;
         if self.context.borrow().defining.contains(name) {
-            cx.error(d.name.place.clone(), format!("the definition of `{name}` depends on itself"))
-                .help("a definition is an expression of other quantities");
+            cx.report_error(d.name.place.clone(), format!("the definition of `{name}` depends on itself"))
+                .add_help("a definition is an expression of other quantities");
             return None;
         }
         if self.context.borrow().defining.len() > 64 {
-            cx.error(d.name.place.clone(), "definitions are nested too deeply").help("expand some of them");
+            cx.report_error(d.name.place.clone(), "definitions are nested too deeply")
+                .add_help("expand some of them");
             return None;
         }
         // Unqualified directions in a definition are those of the ground in all its uses.
@@ -266,21 +289,27 @@ impl<'g> Scope<'_, 'g> {
         context.locals.clear();
         context.compared.clear();
         context.axes = context.axes.map(|_| (None, Pose::identity(self.graph)));
-        let value = self.in_context(context, |scope| scope.value(&d.value, cx))?;
-        if value.rank() == d.rank {
+        let value = self.in_context(context, |scope| scope.resolve_value(&d.value, cx))?;
+        if value.declared_rank() == d.rank {
             return Some(value);
         }
         if self.speeds.iter().any(|speed| speed.text == *name) {
-            cx.error(d.value.place.clone(), format!("a speed is a scalar, and this is {}", value.word()))
-                .help(
-                    "take a component of it, such as `dot(omega(body / ground), body.x)`, and declare a \
+            cx.report_error(
+                d.value.place.clone(),
+                format!("a speed is a scalar, and this is {}", value.kind_with_article()),
+            )
+            .add_help(
+                "take a component of it, such as `dot(omega(body / ground), body.x)`, and declare a \
                      speed for each",
-                );
+            );
             return None;
         }
-        let (is, meant) = (value.word(), value.rank().kind());
-        cx.error(e.place.clone(), format!("`{name}` is {is}, but it is declared as a {}", d.rank.kind()))
-            .help(format!("declare it as a `{meant}`"));
+        let (is, meant) = (value.kind_with_article(), value.declared_rank().element_type_name());
+        cx.report_error(
+            e.place.clone(),
+            format!("`{name}` is {is}, but it is declared as a {}", d.rank.element_type_name()),
+        )
+        .add_help(format!("declare it as a `{meant}`"));
         None
     }
 
@@ -300,28 +329,31 @@ impl<'g> Scope<'_, 'g> {
 
     /// Reports a quantity that the context does not allow. Returns false then.
     pub fn check_allowed(&self, needed: Allowed, what: &str, place: &Place, cx: &mut Diagnostics) -> bool {
-        if self.allowed() >= needed {
+        if self.allowed_quantities() >= needed {
             return true;
         }
         if needed == Allowed::Reaction {
-            cx.error(place.clone(), format!("{what} is not allowed here")).help(
+            cx.report_error(place.clone(), format!("{what} is not allowed here")).add_help(
                 "forces of joints and contacts are allowed in outputs: `#[output(reaction_force(joint))]`",
             );
             return false;
         }
         let motion = matches!(needed, Allowed::Motion | Allowed::Acceleration);
-        if self.allowed() == Allowed::Placement && motion && self.records.borrow().in_holonomic_constraint {
-            cx.error(place.clone(), format!("{what} is not allowed here"))
-                .help("a constraint on velocities is a `Nonholonomic`");
+        if self.allowed_quantities() == Allowed::Placement
+            && motion
+            && self.records.borrow().in_holonomic_constraint
+        {
+            cx.report_error(place.clone(), format!("{what} is not allowed here"))
+                .add_help("a constraint on velocities is a `Nonholonomic`");
             return false;
         }
-        let only = match self.allowed() {
+        let only = match self.allowed_quantities() {
             Allowed::Constant => "only numbers and parameters",
             Allowed::Placement => "only numbers, parameters, coordinates and time",
             _ => "no accelerations",
         };
-        cx.error(place.clone(), format!("{what} is not allowed here"))
-            .help(format!("this expression allows {only}"));
+        cx.report_error(place.clone(), format!("{what} is not allowed here"))
+            .add_help(format!("this expression allows {only}"));
         false
     }
 }

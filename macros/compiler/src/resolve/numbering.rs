@@ -2,7 +2,7 @@
 
 use super::builder::{Builder, JointCoordinates};
 use super::holders;
-use super::joint::{charts, full_name, own_coordinate};
+use super::joint::{charts_of_joint, full_name, own_coordinate};
 use super::reaction::RELEASED;
 use super::{closed_form, tree};
 use crate::diag::Diagnostics;
@@ -20,7 +20,7 @@ impl<'g> Builder<'_, 'g> {
             let (q, v) = self.model.next_coordinate();
             let mut plain = Vec::new();
             if joint.mimic.is_none() && !closing[j] && self.solving_loop(j).is_none() {
-                self.model.charts.extend(charts(joint.kind, (q, v), joint.along.len()));
+                self.model.charts.extend(charts_of_joint(joint.kind, (q, v), joint.along.len()));
                 let (names_q, names_v) = joint.kind.coordinate_names(joint.along.len());
                 for name in &names_q {
                     self.model.configuration.push(full_name(&joint.name.text, name));
@@ -52,8 +52,11 @@ impl<'g> Builder<'_, 'g> {
                     self.coordinates[k].plain.push((joint.name.text.clone(), coordinate, angle));
                 }
                 _ => {
-                    cx.error(mimic.joint.place.clone(), format!("`{}` cannot be followed", mimic.joint.text))
-                        .help("a joint that others follow has one coordinate");
+                    cx.report_error(
+                        mimic.joint.place.clone(),
+                        format!("`{}` cannot be followed", mimic.joint.text),
+                    )
+                    .add_help("a joint that others follow has one coordinate");
                 }
             }
         }

@@ -2,7 +2,7 @@
 //! that one error is not reported again at every use of the mechanism. The outline depends only on the
 //! description and checks nothing.
 
-use super::carriers::expressions;
+use super::carriers::position_expressions;
 use super::joint::full_name;
 use crate::diag::Diagnostics;
 use crate::language::names::TIME;
@@ -53,27 +53,28 @@ pub struct OutlinedOutput {
 }
 
 /// Returns the outline of a description that may contain errors.
-pub fn outline(d: &Description) -> Outline {
-    let (configuration, velocities, inputs) = entries(d);
+pub fn outline_of_description(d: &Description) -> Outline {
+    let (configuration, velocities, inputs) = entry_names(d);
     let names_in_expression = |e| names_of(d, e);
     let rotations = d.frames.iter().flat_map(|f| f.rotations.iter().chain([&f.start]));
     // Unused definitions are ignored.
-    let used =
-        expressions(d).into_iter().filter(|e| !d.definitions.iter().any(|d| std::ptr::eq(&d.value, *e)));
+    let used = position_expressions(d)
+        .into_iter()
+        .filter(|e| !d.definitions.iter().any(|d| std::ptr::eq(&d.value, *e)));
     Outline {
         time: used.chain(rotations).any(|e| names_in_expression(e).contains(TIME)),
         velocity_inputs: d.actions.iter().any(|action| {
-            laws(action).any(|e| {
-                let uses = uses(d, e);
+            laws_of_action(action).any(|e| {
+                let uses = used_quantities(d, e);
                 uses.inputs && (uses.velocities || names_in_expression(e).contains("speed"))
             })
         }),
         constrained: !d.constraints.is_empty() || super::tree::loop_closing_joints(d).contains(&true),
         slipping: d.constraints.iter().any(|c| matches!(c.kind, ConstraintKind::Slipping)),
-        diagrams: d.outputs.iter().filter_map(diagram).collect(),
-        outputs: d.outputs.iter().filter_map(|output| outlined(d, output)).collect(),
-        frames: frames(d),
-        bodies: bodies(d),
+        diagrams: d.outputs.iter().filter_map(diagram_of_output).collect(),
+        outputs: d.outputs.iter().filter_map(|output| outline_of_output(d, output)).collect(),
+        frames: frame_names(d),
+        bodies: unwelded_bodies(d),
         configuration,
         velocities,
         inputs,
@@ -81,7 +82,7 @@ pub fn outline(d: &Description) -> Outline {
 }
 
 /// Returns the names of the entries of `q`, `v` and `u`.
-fn entries(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
+fn entry_names(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
     let (mut q, mut v, mut u): (Vec<String>, Vec<String>, Vec<String>) = Default::default();
     let closing = super::tree::loop_closing_joints(d);
     let solved = super::closed_form::find_solved_loops(d, &closing, &mut Diagnostics::new());
@@ -98,20 +99,20 @@ fn entries(d: &Description) -> (Vec<String>, Vec<String>, Vec<String>) {
         v.extend(names_v.iter().map(|n| full_name(&joint.name.text, n)));
         u.extend(joint.driven.then(|| joint.name.text.clone()));
     }
-    u.extend(super::drive::inputs(d).map(|drive| drive.name.text.clone()));
+    u.extend(super::drive::input_drives(d).map(|drive| drive.name.text.clone()));
     u.extend(d.inputs.iter().map(|i| i.text.clone()));
     (q, v, u)
 }
 
 /// Returns the names of all elements with a frame, in the order of the model.
-fn frames(d: &Description) -> Vec<String> {
+fn frame_names(d: &Description) -> Vec<String> {
     let bodies = d.bodies.iter().map(|b| &b.name).chain(d.particles.iter().map(|p| &p.name));
     let names = bodies.chain(d.points.iter().map(|p| &p.name)).map(|name| name.text.clone());
     d.ground_frame.then(|| GROUND.to_string()).into_iter().chain(names).collect()
 }
 
 /// Returns the names of the bodies and particles that are not welded to others.
-fn bodies(d: &Description) -> Vec<String> {
+fn unwelded_bodies(d: &Description) -> Vec<String> {
     let particles = d.particles.iter().filter(|p| p.at.is_none()).map(|p| &p.name);
     let is_welded_child = |name: &str| {
         d.joints.iter().any(|joint| joint.kind == JointKind::Weld && joint.child.body.text == name)
@@ -120,7 +121,7 @@ fn bodies(d: &Description) -> Vec<String> {
     all.filter(|name| !is_welded_child(name)).collect()
 }
 
-fn outlined(d: &Description, output: &Definition) -> Option<OutlinedOutput> {
+fn outline_of_output(d: &Description, output: &Definition) -> Option<OutlinedOutput> {
     let size = match output.rank {
         Rank::Scalar => 1,
         Rank::Vector => 3,
@@ -142,29 +143,29 @@ fn outlined(d: &Description, output: &Definition) -> Option<OutlinedOutput> {
     Some(OutlinedOutput {
         name: output.name.text.clone(),
         size,
-        uses: uses(d, &output.value),
+        uses: used_quantities(d, &output.value),
         has_contact_forces,
     })
 }
 
-fn diagram(output: &Definition) -> Option<(String, Diagram)> {
+fn diagram_of_output(output: &Definition) -> Option<(String, Diagram)> {
     let is_one = output.rank == Rank::FreeBody;
-    let body = output.value.name().unwrap_or_default().to_string();
+    let body = output.value.as_name().unwrap_or_default().to_string();
     is_one.then(|| (output.name.text.clone(), Diagram { body, actions: Vec::new(), released: Vec::new() }))
 }
 
 /// Returns the value or the law of a force element.
-fn laws(action: &Action) -> impl Iterator<Item = &Expr> {
-    action.law().map(|(_, e)| e).into_iter().chain(action.get(Key::Value))
+fn laws_of_action(action: &Action) -> impl Iterator<Item = &Expr> {
+    action.written_law().map(|(_, e)| e).into_iter().chain(action.get(Key::Value))
 }
 
 /// Returns the quantities on which an expression depends, according to the table of functions.
-fn uses(d: &Description, e: &Expr) -> Uses {
-    let has_inputs = || !entries(d).2.is_empty();
+fn used_quantities(d: &Description, e: &Expr) -> Uses {
+    let has_inputs = || !entry_names(d).2.is_empty();
     let mut uses = Uses::default();
     for part in with_definitions(d, e) {
         match &part.kind {
-            ExprKind::Call(function, arguments) => match dependence(function) {
+            ExprKind::Call(function, arguments) => match dependence_of_call(function) {
                 Dependence::Arguments => {}
                 Dependence::Motion => uses.velocities = true,
                 Dependence::Acceleration => uses.accelerations = true,
@@ -190,7 +191,7 @@ fn uses(d: &Description, e: &Expr) -> Uses {
 }
 
 /// Returns the quantities on which the value of a call depends, besides those of its arguments.
-fn dependence(callee: &Callee) -> Dependence {
+fn dependence_of_call(callee: &Callee) -> Dependence {
     match callee.id {
         Some(Callable::Function(function)) => function.row().depends_on,
         _ => Dependence::Arguments,
@@ -199,14 +200,16 @@ fn dependence(callee: &Callee) -> Dependence {
 
 /// Whether an expression is the name of a contact.
 fn is_contact_name(d: &Description, e: &Expr) -> bool {
-    d.contacts.iter().any(|contact| !contact.is_compliant() && e.name() == Some(contact.name.text.as_str()))
+    d.contacts
+        .iter()
+        .any(|contact| !contact.is_compliant() && e.as_name() == Some(contact.name.text.as_str()))
 }
 
 /// Whether an expression contains a function of the velocities.
 fn contains_motion(d: &Description, e: &Expr) -> bool {
     let is_motion = |part: &&Expr| match &part.kind {
         ExprKind::Call(function, _) => {
-            matches!(dependence(function), Dependence::Motion | Dependence::Rate)
+            matches!(dependence_of_call(function), Dependence::Motion | Dependence::Rate)
         }
         _ => false,
     };
@@ -215,19 +218,19 @@ fn contains_motion(d: &Description, e: &Expr) -> bool {
 
 /// Returns all names in an expression, including those in its definitions.
 fn names_of<'a>(d: &'a Description, e: &'a Expr) -> BTreeSet<&'a str> {
-    with_definitions(d, e).into_iter().filter_map(Expr::name).collect()
+    with_definitions(d, e).into_iter().filter_map(Expr::as_name).collect()
 }
 
 /// Returns the subexpressions of an expression and of the definitions that it uses.
 fn with_definitions<'a>(d: &'a Description, e: &'a Expr) -> Vec<&'a Expr> {
-    let mut parts = e.parts();
+    let mut parts = e.subexpressions();
     let mut open: Vec<&Definition> = d.definitions.iter().collect();
     let mut next = 0;
     while let Some(part) = parts.get(next) {
         next += 1;
-        let Some(name) = part.name() else { continue };
+        let Some(name) = part.as_name() else { continue };
         if let Some(k) = open.iter().position(|definition| definition.name.text == name) {
-            parts.extend(open.swap_remove(k).value.parts());
+            parts.extend(open.swap_remove(k).value.subexpressions());
         }
     }
     parts

@@ -17,13 +17,13 @@ impl<'g> Builder<'_, 'g> {
                 self.model.outputs.extend(found);
                 continue;
             }
-            if let Some(values) = self.output(output, cx) {
+            if let Some(values) = self.resolve_output(output, cx) {
                 if !contact::has_consistent_forces(&values) {
-                    cx.error(
+                    cx.report_error(
                         output.value.place.clone(),
                         "a contact force together with a reaction or an acceleration",
                     )
-                    .help(
+                    .add_help(
                         "reactions and accelerations are computed without contacts: declare a separate \
                          output",
                     );
@@ -38,21 +38,20 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    fn output(&self, output: &Definition, cx: &mut Diagnostics) -> Option<Vec<Expr<'g>>> {
+    fn resolve_output(&self, output: &Definition, cx: &mut Diagnostics) -> Option<Vec<Expr<'g>>> {
         let frame = Some((None, Pose::identity(self.scope.graph)));
         let allowed = if output.rank == Rank::Matrix { Allowed::Acceleration } else { Allowed::Reaction };
         let context = Context::new(allowed, frame);
         if output.rank == Rank::Scalar {
-            return match self.scope.in_context(context, |scope| scope.value(&output.value, cx))? {
+            return match self.scope.in_context(context, |scope| scope.resolve_value(&output.value, cx))? {
                 Value::Scalar(s) => Some(vec![s]),
                 other => {
-                    let what = other.word();
-                    cx.error(output.value.place.clone(), format!("expected a scalar, found {what}")).help(
-                        match other {
+                    let what = other.kind_with_article();
+                    cx.report_error(output.value.place.clone(), format!("expected a scalar, found {what}"))
+                        .add_help(match other {
                             Value::Matrix(_) => "declare it as a `Matrix`, or take an entry, `dot(x, M * y)`",
                             _ => "declare it as a `Vector`, or take a component, `dot(v, x)`",
-                        },
-                    );
+                        });
                     None
                 }
             };
@@ -62,7 +61,7 @@ impl<'g> Builder<'_, 'g> {
             let (link, pose) = self.output_axes(output, cx)?;
             return Some(self.scope.kinematics.matrix_entries(found?, link, &pose.rotation));
         }
-        let terms = self.scope.in_context(context, |scope| scope.terms(&output.value, cx));
+        let terms = self.scope.in_context(context, |scope| scope.resolve_terms(&output.value, cx));
         let (link, pose) = self.output_axes(output, cx)?;
         let v = self.scope.kinematics.resolve(&terms?, link, Vec3::zero(self.scope.graph));
         Some(pose.rotation.to_child(v).0.to_vec())
@@ -83,12 +82,13 @@ impl<'g> Builder<'_, 'g> {
                 let found = kinematics.places.get(name).map(|p| (p.link, p.pose.clone()));
                 if found.is_none() {
                     let known: Vec<&str> = kinematics.places.keys().map(String::as_str).collect();
-                    cx.error(e.place.clone(), format!("unknown frame `{name}`")).suggest(name, known);
+                    cx.report_error(e.place.clone(), format!("unknown frame `{name}`"))
+                        .suggest_name(name, known);
                 }
                 found
             }
             _ => {
-                cx.error(e.place.clone(), "expected a body or a frame");
+                cx.report_error(e.place.clone(), "expected a body or a frame");
                 None
             }
         }

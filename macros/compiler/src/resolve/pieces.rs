@@ -7,8 +7,8 @@
 use super::scope::Scope;
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval_one;
-use crate::expr::replace::{replace, replace_part};
-use crate::expr::sample::sample;
+use crate::expr::replace::{replace_part, substitute_symbols};
+use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Extreme, Symbol};
 use crate::kinematics::symbols_in;
 use crate::language::Callable;
@@ -29,27 +29,28 @@ struct PiecewiseLaw<'g> {
 }
 
 impl<'g> PiecewiseLaw<'g> {
-    fn substitute(&self, piece: usize, x: Expr<'g>) -> Expr<'g> {
-        replace(self.pieces[piece], &|s| (s == self.symbol).then_some(x))
+    fn substitute_in_piece(&self, piece: usize, x: Expr<'g>) -> Expr<'g> {
+        substitute_symbols(self.pieces[piece], &|s| (s == self.symbol).then_some(x))
     }
 
-    fn value(&self) -> Expr<'g> {
+    fn piecewise_value(&self) -> Expr<'g> {
         let [below, above] =
-            [Extreme::Min, Extreme::Max].map(|side| self.compared.extreme(side, self.border));
-        let (first, second) = (self.substitute(0, self.border), self.substitute(1, self.border));
+            [Extreme::Min, Extreme::Max].map(|side| self.compared.minimum_or_maximum(side, self.border));
+        let (first, second) =
+            (self.substitute_in_piece(0, self.border), self.substitute_in_piece(1, self.border));
         // Both equal the common value of the pieces.
-        let common = if second.value().is_some() { second } else { first };
-        self.substitute(0, below) + self.substitute(1, above) - common
+        let common = if second.constant_value().is_some() { second } else { first };
+        self.substitute_in_piece(0, below) + self.substitute_in_piece(1, above) - common
     }
 
     /// Returns the values of both pieces at the border if they differ for any sample, and `None` otherwise. A
     /// sample is used only if the `nested_borders` are ordered like this border. Returns `Err` if no sample
     /// can be used.
-    fn gap(&self, nested_borders: &[(bool, Expr<'g>)]) -> Result<Option<[f64; 2]>, ()> {
-        let at_border = [0, 1].map(|piece| self.substitute(piece, self.border));
+    fn gap_at_border(&self, nested_borders: &[(bool, Expr<'g>)]) -> Result<Option<[f64; 2]>, ()> {
+        let at_border = [0, 1].map(|piece| self.substitute_in_piece(piece, self.border));
         let mut tried = false;
         for (seed, size) in (0_u64..).zip(SIZES) {
-            let value_at_sample_point = |e: Expr<'g>| eval_one(e, &|s| size * sample(s, seed));
+            let value_at_sample_point = |e: Expr<'g>| eval_one(e, &|s| size * sample_of_symbol(s, seed));
             let border = value_at_sample_point(self.border);
             let in_order =
                 |(is_above, other): &(bool, Expr<'g>)| (value_at_sample_point(*other) >= border) == *is_above;
@@ -86,48 +87,49 @@ impl<'g> Scope<'_, 'g> {
 
     /// Resolves a piecewise law. The arguments are the compared expression, the border, the piece below and
     /// the piece above.
-    pub fn pieces(&self, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Expr<'g>> {
+    pub fn resolve_pieces(&self, arguments: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Expr<'g>> {
         let [left, right, below, above] = arguments else { return None };
-        let compared = (self.scalar(left, cx), self.scalar(right, cx));
+        let compared = (self.resolve_scalar(left, cx), self.resolve_scalar(right, cx));
         let (x, border) = (compared.0?, compared.1?);
         let depends_on_variables = |e: Expr<'g>| {
             symbols_in(&[e]).into_iter().any(|s| !matches!(Quantity::from_symbol(s), Quantity::Parameter(_)))
         };
         // The border is the constant operand.
-        let is_swapped = !depends_on_variables(x) && (depends_on_variables(border) || x.value().is_some());
+        let is_swapped =
+            !depends_on_variables(x) && (depends_on_variables(border) || x.constant_value().is_some());
         let (written, compared, border, pieces) = match is_swapped {
             true => (right, border, x, [above, below]),
             false => (left, x, border, [below, above]),
         };
-        if compared.value().is_some() {
-            cx.error(left.place.join(&right.place), "this comparison of two numbers is constant")
-                .help("keep only the piece that applies");
+        if compared.constant_value().is_some() {
+            cx.report_error(left.place.extend_to(&right.place), "this comparison of two numbers is constant")
+                .add_help("keep only the piece that applies");
             return None;
         }
         let depth = self.context.borrow().compared.len();
         let symbol = Quantity::Deciding(depth).symbol();
         self.context.borrow_mut().compared.push((written.clone(), self.graph.symbol(symbol)));
-        let read = pieces.map(|piece| self.scalar(piece, cx));
+        let read = pieces.map(|piece| self.resolve_scalar(piece, cx));
         self.context.borrow_mut().compared.pop();
         // Definitions contain the compared expression in resolved form.
         let by_symbol = |e: Expr<'g>| replace_part(e, compared, self.graph.symbol(symbol));
         let pieces_read = [by_symbol(read[0]?), by_symbol(read[1]?)];
         if by_symbol(border).id() != border.id() {
-            cx.error(
-                left.place.join(&right.place),
+            cx.report_error(
+                left.place.extend_to(&right.place),
                 "the boundary between the pieces depends on the compared quantity",
             )
-            .help("solve the comparison: the compared quantity on one side, the boundary on the other");
+            .add_help("solve the comparison: the compared quantity on one side, the boundary on the other");
             return None;
         }
         let law = PiecewiseLaw { symbol, compared, border, pieces: pieces_read };
-        let nested_borders = self.borders(written, pieces, cx);
-        self.check_continuous(&law, &nested_borders, left, right, cx).then(|| law.value())
+        let nested_borders = self.borders_of_nested_laws(written, pieces, cx);
+        self.check_continuous(&law, &nested_borders, left, right, cx).then(|| law.piecewise_value())
     }
 
     /// Returns the borders of nested piecewise laws with the same compared expression. The flag is false for
     /// the borders in the lower piece.
-    fn borders(
+    fn borders_of_nested_laws(
         &self,
         written: &syntax::Expr,
         pieces: [&syntax::Expr; 2],
@@ -135,14 +137,14 @@ impl<'g> Scope<'_, 'g> {
     ) -> Vec<(bool, Expr<'g>)> {
         let mut all = Vec::new();
         for (is_above, piece) in [false, true].into_iter().zip(pieces) {
-            for part in piece.parts() {
+            for part in piece.subexpressions() {
                 if let ExprKind::Call(name, arguments) = &part.kind
                     && let [a, b, ..] = arguments.as_slice()
                     && name.id == Some(Callable::If)
                 {
                     let border = if a.has_same_text(written) { b } else { a };
                     if a.has_same_text(written) != b.has_same_text(written) {
-                        all.extend(self.scalar(border, cx).map(|border| (is_above, border)));
+                        all.extend(self.resolve_scalar(border, cx).map(|border| (is_above, border)));
                     }
                 }
             }
@@ -158,26 +160,29 @@ impl<'g> Scope<'_, 'g> {
         right: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> bool {
-        let place = left.place.join(&right.place);
+        let place = left.place.extend_to(&right.place);
         let (a, b) = (left.to_source(), right.to_source());
-        match law.gap(nested_borders) {
+        match law.gap_at_border(nested_borders) {
             Ok(None) => true,
             Ok(Some([first, second])) => {
                 let is_constant_at_border =
-                    |piece: usize| law.substitute(piece, law.border).value().is_some();
+                    |piece: usize| law.substitute_in_piece(piece, law.border).constant_value().is_some();
                 let values = match is_constant_at_border(0) && is_constant_at_border(1) {
                     true => format!(": they are {first} and {second} there"),
                     false => String::new(),
                 };
-                cx.error(place, format!("the pieces differ where `{a}` is `{b}`{values}")).help(
+                cx.report_error(place, format!("the pieces differ where `{a}` is `{b}`{values}")).add_help(
                     "integration requires continuous laws: give both pieces the same value there, or blend \
                      them over a short range, as `tanh` does",
                 );
                 false
             }
             Err(()) => {
-                cx.error(place, format!("cannot determine whether the pieces agree where `{a}` is `{b}`"))
-                    .help("both pieces must be defined there, and the boundaries must increase");
+                cx.report_error(
+                    place,
+                    format!("cannot determine whether the pieces agree where `{a}` is `{b}`"),
+                )
+                .add_help("both pieces must be defined there, and the boundaries must increase");
                 false
             }
         }

@@ -50,9 +50,9 @@ impl<'a, 'g> Builder<'a, 'g> {
         for (j, child) in &order.joints {
             if let Some(body) = d.bodies.get(*child).filter(|b| b.at.is_some() || b.frame.is_some()) {
                 let (name, joint) = (&body.name, &d.joints[*j].name);
-                cx.error(name.place.clone(), format!("`{}` is placed twice", name.text))
-                    .note(format!("the joint `{}` places it as well", joint.text))
-                    .help("a body is placed by a joint, or by `at` and `frame`");
+                cx.report_error(name.place.clone(), format!("`{}` is placed twice", name.text))
+                    .add_note(format!("the joint `{}` places it as well", joint.text))
+                    .add_help("a body is placed by a joint, or by `at` and `frame`");
             }
         }
         let mut waiting: Vec<Item> = (0..order.joints.len()).map(Item::Joint).collect();
@@ -81,7 +81,7 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the names on which the placement of an element depends.
-    fn dependencies(&self, item: Item, order: &Order) -> Vec<String> {
+    fn placement_dependencies(&self, item: Item, order: &Order) -> Vec<String> {
         let d = self.description;
         let mut names = Vec::new();
         let mut expression = |e: &Option<Expr>| e.iter().for_each(|e| collect_names(e, &mut names));
@@ -112,7 +112,7 @@ impl<'a, 'g> Builder<'a, 'g> {
 
     fn is_ready(&self, item: Item, order: &Order) -> bool {
         let kinematics = &self.scope.kinematics;
-        self.dependencies(item, order)
+        self.placement_dependencies(item, order)
             .iter()
             .all(|name| !self.placeable.contains(name) || kinematics.places.contains_key(name))
     }
@@ -141,7 +141,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         }
         // From an element to one for which it waits, until the path is a cycle.
         let next_waiting_dependency = |index: usize| {
-            let needs = self.dependencies(waiting[index], order);
+            let needs = self.placement_dependencies(waiting[index], order);
             (0..waiting.len()).find(|k| needs.contains(&self.placed_name(waiting[*k], order)))
         };
         let mut path: Vec<usize> = vec![0];
@@ -155,13 +155,15 @@ impl<'a, 'g> Builder<'a, 'g> {
         path.sort_unstable();
         let names: Vec<&Name> = path.iter().map(|k| self.item_name(waiting[*k], order)).collect();
         let Some((first, others)) = names.split_first() else { return };
-        let error =
-            cx.error(first.place.clone(), format!("the placement of `{}` depends on itself", first.text));
+        let error = cx.report_error(
+            first.place.clone(),
+            format!("the placement of `{}` depends on itself", first.text),
+        );
         if !others.is_empty() {
             let list: Vec<String> = others.iter().map(|name| format!("`{}`", name.text)).collect();
-            error.note(format!("the cycle passes through {}", all_of(&list)));
+            error.add_note(format!("the cycle passes through {}", all_of(&list)));
         }
-        error.help("its definition is circular: start from the ground or from a body with a joint");
+        error.add_help("its definition is circular: start from the ground or from a body with a joint");
     }
 
     /// Returns the name of the element that an item places.
@@ -186,7 +188,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             if let Some(k) = body {
                 self.places[k] = Some((link, pose.clone()));
             }
-            self.register(&name, link, pose, kind);
+            self.register_placement(&name, link, pose, kind);
         }
     }
 
@@ -202,21 +204,21 @@ impl<'a, 'g> Builder<'a, 'g> {
                     self.frame_place(k, cx).unwrap_or_else(|| (None, self.substitute_pose(true)));
                 let (start, (link, pose)) = (link, self.link_if_moving(link, pose));
                 self.frame_links.extend(link.filter(|_| link != start));
-                self.register(&d.frames[k].name.text, link, pose, PlacedKind::Frame);
+                self.register_placement(&d.frames[k].name.text, link, pose, PlacedKind::Frame);
             }
             Item::Point(k) => {
                 let p = &d.points[k];
                 let frame = match &p.on {
-                    Some(on) => self.scope.place(on, cx),
-                    None => Some(self.ground()),
+                    Some(on) => self.scope.resolve_placement(on, cx),
+                    None => Some(self.ground_placement()),
                 };
                 let place = frame.and_then(|frame| match &p.at {
-                    Some(at) => self.offset(frame, at, false, cx),
+                    Some(at) => self.placement_at_offset(frame, at, false, cx),
                     None => Some((frame.link, frame.pose)),
                 });
                 let (link, pose) = place.unwrap_or_else(|| (None, self.substitute_pose(true)));
                 let (link, pose) = self.link_if_moving(link, pose);
-                self.register(&p.name.text, link, pose, PlacedKind::Point);
+                self.register_placement(&p.name.text, link, pose, PlacedKind::Point);
             }
             Item::Body(k) => self.place_body(k, cx),
             Item::Particle(k) => {
@@ -226,12 +228,12 @@ impl<'a, 'g> Builder<'a, 'g> {
                 let (link, pose) =
                     self.place_at(at, free, cx).unwrap_or_else(|| (None, self.substitute_pose(true)));
                 let (link, pose) = self.link_of_place(holders::particle_placement(d, k), link, pose);
-                self.register(&p.name.text, link, pose, PlacedKind::Point);
+                self.register_placement(&p.name.text, link, pose, PlacedKind::Point);
             }
         }
     }
 
-    fn ground(&self) -> Placed<'g> {
+    fn ground_placement(&self) -> Placed<'g> {
         Placed { link: None, pose: Pose::identity(self.scope.graph), kind: PlacedKind::Body }
     }
 
@@ -257,29 +259,31 @@ impl<'a, 'g> Builder<'a, 'g> {
             _ => Some(Rotation::identity(self.scope.graph)),
         };
         let context = Context::new(Allowed::Placement, None);
-        let rotation = self.scope.in_context(context, |scope| scope.rotation(steps, cx));
-        let (start, rotation) = (start?, first?.then(&rotation?));
-        let pose =
-            Pose { rotation: start.pose.rotation.then(&rotation), translation: start.pose.translation };
+        let rotation = self.scope.in_context(context, |scope| scope.resolve_rotation(steps, cx));
+        let (start, rotation) = (start?, first?.compose_with(&rotation?));
+        let pose = Pose {
+            rotation: start.pose.rotation.compose_with(&rotation),
+            translation: start.pose.translation,
+        };
         Some((start.link, pose))
     }
 
     /// Returns the placement of the body or frame with this name.
     fn axes_of(&self, e: &Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         let ExprKind::Name(name) = &e.kind else {
-            cx.error(e.place.clone(), "expected a body or a frame")
-                .help("write `#[frame(ground, z(angle))]`");
+            cx.report_error(e.place.clone(), "expected a body or a frame")
+                .add_help("write `#[frame(ground, z(angle))]`");
             return None;
         };
         if name == GROUND {
-            return Some(self.ground());
+            return Some(self.ground_placement());
         }
         let kinematics = &self.scope.kinematics;
         match kinematics.places.get(name) {
             Some(p) if p.kind != PlacedKind::Point => Some(p.clone()),
             Some(_) => {
-                cx.error(e.place.clone(), format!("`{name}` is a point, which has no axes"))
-                    .help("name a body or a frame");
+                cx.report_error(e.place.clone(), format!("`{name}` is a point, which has no axes"))
+                    .add_help("name a body or a frame");
                 None
             }
             None => {
@@ -287,10 +291,10 @@ impl<'a, 'g> Builder<'a, 'g> {
                     return None;
                 }
                 let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
-                let error = cx.error(e.place.clone(), format!("unknown body or frame `{name}`"));
+                let error = cx.report_error(e.place.clone(), format!("unknown body or frame `{name}`"));
                 words::suggest_meaning(error, words::BODIES, name, &known);
                 if error.is_bare() {
-                    error.help(
+                    error.add_help(
                         "a frame starts with the axes of a body or another frame: `#[frame(ground, \
                          z(angle))]`",
                     );
@@ -304,7 +308,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         let body = &self.description.bodies[k];
         let axes = match &body.frame {
             Some(frame) => self.axes_of(frame, cx),
-            None => Some(self.ground()),
+            None => Some(self.ground_placement()),
         };
         let origin = match &body.at {
             Some(at) => self.place_at(at, true, cx),
@@ -313,14 +317,14 @@ impl<'a, 'g> Builder<'a, 'g> {
         let (link, pose) = match (axes, origin) {
             (Some(axes), Some((link, mut pose))) => {
                 // The axes are relative to the link in which the origin is given.
-                pose.rotation = self.rotation_between(link, axes.link).then(&axes.pose.rotation);
+                pose.rotation = self.rotation_between(link, axes.link).compose_with(&axes.pose.rotation);
                 (link, pose)
             }
             _ => (None, self.substitute_pose(true)),
         };
         let (link, pose) = self.link_of_place(holders::body_placement(self.description, k), link, pose);
         self.places[k] = Some((link, pose.clone()));
-        self.register(&body.name.text, link, pose, PlacedKind::Body);
+        self.register_placement(&body.name.text, link, pose, PlacedKind::Body);
     }
 
     /// Returns the orientation of link `link` in link `base`.
@@ -332,12 +336,12 @@ impl<'a, 'g> Builder<'a, 'g> {
                 steps.push(kinematics.joints[l.0].rotation.clone());
                 current = kinematics.joints[l.0].parent;
             }
-            steps.iter().rev().fold(Rotation::identity(self.scope.graph), |r, step| r.then(step))
+            steps.iter().rev().fold(Rotation::identity(self.scope.graph), |r, step| r.compose_with(step))
         };
         if base == link {
             return Rotation::identity(self.scope.graph);
         }
-        to_ground(base).inverse().then(&to_ground(link))
+        to_ground(base).inverse().compose_with(&to_ground(link))
     }
 
     /// Returns a placement by its name, by `place.at(vector)`, or by a vector from the ground's origin. See
@@ -346,27 +350,30 @@ impl<'a, 'g> Builder<'a, 'g> {
         let is_placeable = |name: &String| name == GROUND || self.placeable.contains(name);
         match &e.kind {
             ExprKind::Name(name) if is_placeable(name) => {
-                let place = self.scope.place(e, cx)?;
+                let place = self.scope.resolve_placement(e, cx)?;
                 Some((place.link, place.pose))
             }
             ExprKind::Method(base, method, arguments)
                 if method.id == Some(Method::At) && arguments.len() == 1 =>
             {
-                let frame = self.scope.place(base, cx)?;
-                self.offset(frame, &arguments[0], free, cx)
+                let frame = self.scope.resolve_placement(base, cx)?;
+                self.placement_at_offset(frame, &arguments[0], free, cx)
             }
             ExprKind::Method(_, method, _) => {
-                cx.error(method.place.clone(), format!("unknown method `.{}(…)` of a point", method.text))
-                    .suggest(&method.text, ["at"]);
+                cx.report_error(
+                    method.place.clone(),
+                    format!("unknown method `.{}(…)` of a point", method.text),
+                )
+                .suggest_name(&method.text, ["at"]);
                 None
             }
-            _ => self.offset(self.ground(), e, free, cx),
+            _ => self.placement_at_offset(self.ground_placement(), e, free, cx),
         }
     }
 
     /// Returns the placement at a vector from another one, with the same axes. If `free` is set, the axes are
     /// irrelevant and may differ.
-    fn offset(
+    fn placement_at_offset(
         &self,
         frame: Placed<'g>,
         at: &Expr,
@@ -374,7 +381,7 @@ impl<'a, 'g> Builder<'a, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<(Option<LinkId>, Pose<'g>)> {
         let context = Context::new(Allowed::Placement, Some((frame.link, frame.pose.clone())));
-        let terms = self.scope.in_context(context, |scope| scope.terms(at, cx))?;
+        let terms = self.scope.in_context(context, |scope| scope.resolve_terms(at, cx))?;
         let kinematics = &self.scope.kinematics;
         let zero = Vec3::zero(self.scope.graph);
         // A constant vector in the axes of a frame that rotates about the base point is placed in that frame.
@@ -407,5 +414,5 @@ impl<'a, 'g> Builder<'a, 'g> {
 
 /// Collects all names in an expression, including the bases of members and methods.
 fn collect_names(e: &Expr, names: &mut Vec<String>) {
-    names.extend(e.parts().into_iter().filter_map(Expr::name).map(str::to_string));
+    names.extend(e.subexpressions().into_iter().filter_map(Expr::as_name).map(str::to_string));
 }

@@ -6,7 +6,7 @@ use super::element_forces::Forces;
 use super::scope::{Allowed, ElementPower, Scope, Value};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
-use crate::kinematics::{position_in, rate, symbols_in, time_derivative, velocity_gradient};
+use crate::kinematics::{coordinate_velocity, position_in, symbols_in, time_derivative, velocity_gradient};
 use crate::language::{Callable, FunctionId};
 use crate::mechanism::{Direction, Input, LinkId, Quantity};
 use crate::syntax::{self, Description, Name};
@@ -14,10 +14,10 @@ use crate::syntax::{self, Description, Name};
 /// Whether an output or a definition contains the power of an element.
 pub fn is_power_used(d: &Description, element: &Name) -> bool {
     let mentions_power_of_element = |e: &syntax::Expr| {
-        e.parts().iter().any(|part| match &part.kind {
+        e.subexpressions().iter().any(|part| match &part.kind {
             syntax::ExprKind::Call(function, arguments) => {
                 function.id == Some(Callable::Function(FunctionId::Power))
-                    && arguments.iter().any(|a| a.name() == Some(element.text.as_str()))
+                    && arguments.iter().any(|a| a.as_name() == Some(element.text.as_str()))
             }
             _ => false,
         })
@@ -36,15 +36,16 @@ impl<'g> Builder<'_, 'g> {
         }
         let mut power = m.graph.zero();
         for spring in &forces.springs {
-            power +=
-                -(spring.stiffness * (position_in(m.graph, &spring.on) - spring.free) * rate(m, &spring.on));
+            power += -(spring.stiffness
+                * (position_in(m.graph, &spring.on) - spring.free)
+                * coordinate_velocity(m, &spring.on));
         }
         for dashpot in &forces.dashpots {
-            power += -(dashpot.damping * rate(m, &dashpot.on).square());
+            power += -(dashpot.damping * coordinate_velocity(m, &dashpot.on).square());
         }
         for dry in &forces.frictions {
-            let speed = rate(m, &dry.on);
-            power += -(dry.friction * (speed / m.friction_speed).call(Function::Tanh) * speed);
+            let speed = coordinate_velocity(m, &dry.on);
+            power += -(dry.friction * (speed / m.friction_speed).apply_function(Function::Tanh) * speed);
         }
         for load in &forces.loads {
             power += load.force * load.rate;
@@ -54,7 +55,7 @@ impl<'g> Builder<'_, 'g> {
             return Err("its energy depends on time");
         }
         for energy in energies {
-            power += -time_derivative(m.space(), *energy);
+            power += -time_derivative(m.configuration_space(), *energy);
         }
         for function in &forces.dissipations {
             for (k, d) in velocity_gradient(*function) {
@@ -74,7 +75,7 @@ impl<'g> Builder<'_, 'g> {
             }
             let by_force =
                 constraint.friction.iter().fold(g.zero(), |sum, term| sum + term.share * term.rate);
-            let normal = Quantity::Reaction(Quantity::MULTIPLIERS + k).expr(g).call(Function::Abs);
+            let normal = Quantity::Reaction(Quantity::MULTIPLIERS + k).expr(g).apply_function(Function::Abs);
             let kinematics = &mut self.scope.kinematics;
             let contact = constraint.name.split('.').next().unwrap_or(&constraint.name);
             kinematics.powers.insert(contact.to_string(), Ok(normal * by_force));
@@ -88,18 +89,22 @@ impl<'g> Builder<'_, 'g> {
         let u = Quantity::Input(k).expr(m.graph);
         match &m.inputs[k].1 {
             Input::Named => m.graph.zero(),
-            Input::Coordinate(c) => u * rate(m, c),
-            Input::Sum(all, _) => all.iter().fold(m.graph.zero(), |sum, c| sum + u * rate(m, c)),
+            Input::Coordinate(c) => u * coordinate_velocity(m, c),
+            Input::Sum(all, _) => {
+                all.iter().fold(m.graph.zero(), |sum, c| sum + u * coordinate_velocity(m, c))
+            }
             Input::Force { link, point, along } => {
-                let (linear, angular) = self.twist(*link);
+                let (linear, angular) = self.twist_of_link(*link);
                 u * (linear + angular.cross(*point)).dot(self.in_axes_of(*link, along))
             }
-            Input::Torque { link, about } => u * self.twist(*link).1.dot(self.in_axes_of(*link, about)),
+            Input::Torque { link, about } => {
+                u * self.twist_of_link(*link).1.dot(self.in_axes_of(*link, about))
+            }
         }
     }
 
     /// Returns the velocity of a link's origin and its angular velocity, in the axes of the link.
-    fn twist(&self, link: LinkId) -> (Vec3<'g>, Vec3<'g>) {
+    fn twist_of_link(&self, link: LinkId) -> (Vec3<'g>, Vec3<'g>) {
         let kinematics = &self.scope.kinematics;
         let twist = &kinematics.twists[link.0];
         (twist.linear, twist.angular)
@@ -114,11 +119,11 @@ impl<'g> Builder<'_, 'g> {
 impl<'g> Scope<'_, 'g> {
     /// Resolves `power(element)`: the power, in W, that a force element, an input or a contact supplies to
     /// the bodies. Negative power is dissipated or stored.
-    pub fn power(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_power(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let element_names = || self.actions.iter().map(String::as_str);
-        let [e] = call.take(cx)?;
-        let Some(name) = e.name() else {
-            cx.error(e.place.clone(), "expected a force element").suggest("", element_names());
+        let [e] = call.take_arguments(cx)?;
+        let Some(name) = e.as_name() else {
+            cx.report_error(e.place.clone(), "expected a force element").suggest_name("", element_names());
             return None;
         };
         if !self.check_allowed(Allowed::Reaction, "the power of an element", call.place, cx) {
@@ -127,17 +132,19 @@ impl<'g> Scope<'_, 'g> {
         match self.kinematics.powers.get(name) {
             Some(Ok(power)) => Some(Value::Scalar(*power)),
             Some(Err(why)) => {
-                cx.error(e.place.clone(), format!("the power of `{name}` is not available: {why}"))
-                    .help("write it as a product of a force and a rate");
+                cx.report_error(e.place.clone(), format!("the power of `{name}` is not available: {why}"))
+                    .add_help("write it as a product of a force and a rate");
                 None
             }
             None => {
                 // An element with an error has no power; the error has been reported.
                 if !self.actions.iter().any(|action| action == name) && self.is_first_report(name, cx) {
-                    let error = cx.error(e.place.clone(), format!("unknown force element `{name}`"));
-                    error.suggest(name, element_names());
+                    let error = cx.report_error(e.place.clone(), format!("unknown force element `{name}`"));
+                    error.suggest_name(name, element_names());
                     if error.is_bare() {
-                        error.help("name a field such as a `Spring`, a `Dashpot`, a `Force` or a `Torque`");
+                        error.add_help(
+                            "name a field such as a `Spring`, a `Dashpot`, a `Force` or a `Torque`",
+                        );
                     }
                 }
                 None

@@ -5,20 +5,20 @@ use super::call::Call;
 use super::scope::{Allowed, Axes, Context, Kinematics, Placed, PlacedKind, Scope, Terms, Value};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Graph, Vec3};
-use crate::kinematics::unit;
+use crate::kinematics::normalised_or_zero;
 use crate::language::{FunctionId, Method};
 use crate::mechanism::{LinkId, Pose};
 use crate::syntax::{self, BinaryOp, ExprKind, GROUND, words};
 
 impl<'g> Scope<'_, 'g> {
     /// Returns a vector as a sum over the axes of links. All links must be resolved.
-    pub fn terms(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Terms<'g>> {
-        self.vector(e, cx).map(in_links)
+    pub fn resolve_terms(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Terms<'g>> {
+        self.resolve_vector(e, cx).map(in_links)
     }
 
     /// Resolves several vectors and expresses them in common axes.
     pub fn common_axes(&self, e: &[&syntax::Expr], cx: &mut Diagnostics) -> Option<(Axes, Vec<Vec3<'g>>)> {
-        let all: Vec<_> = e.iter().map(|e| Some((*e, self.vector(e, cx)?))).collect();
+        let all: Vec<_> = e.iter().map(|e| Some((*e, self.resolve_vector(e, cx)?))).collect();
         self.in_common_axes(all.into_iter().collect::<Option<_>>()?, cx)
     }
 
@@ -43,8 +43,8 @@ impl<'g> Scope<'_, 'g> {
     pub fn rate_of(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [argument] = call.arguments else {
             let first = call.arguments.first().map_or("coordinate".to_string(), syntax::Expr::to_source);
-            cx.error(call.place.clone(), "`rate` takes one coordinate")
-                .help(format!("write `rate({first})`"));
+            cx.report_error(call.place.clone(), "`rate` takes one coordinate")
+                .add_help(format!("write `rate({first})`"));
             return None;
         };
         let name = match &argument.kind {
@@ -56,7 +56,7 @@ impl<'g> Scope<'_, 'g> {
             _ => String::new(),
         };
         if let ExprKind::Binary(BinaryOp::Div, vector, frame, _) = &argument.kind
-            && let Some(name) = frame.name()
+            && let Some(name) = frame.as_name()
             && (name == GROUND || self.bodies.iter().any(|body| body == name))
         {
             return self.rate_in(call.place, vector, frame, cx);
@@ -71,10 +71,10 @@ impl<'g> Scope<'_, 'g> {
             }
             let known = kinematics.coordinates.iter().map(|(n, ..)| n.as_str());
             let known: Vec<&str> = known.collect();
-            let error = cx.error(argument.place.clone(), "`rate` takes a coordinate");
-            error.suggest(&name, known);
+            let error = cx.report_error(argument.place.clone(), "`rate` takes a coordinate");
+            error.suggest_name(&name, known);
             if error.is_bare() {
-                error.help(
+                error.add_help(
                     "a coordinate is a joint with one degree of freedom, `joint.x` of one with several, or a \
                      `Coordinate`",
                 );
@@ -88,15 +88,15 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Resolves `angle(a, b)` in 0…π, or `angle(a, b, n)`, signed about `n`, in −π…π.
-    pub fn angle(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_angle(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let all: Vec<&syntax::Expr> = call.arguments.iter().collect();
         if !(2..=3).contains(&all.len()) {
-            return call.reject(cx);
+            return call.reject_arguments(cx);
         }
         let (_, v) = self.common_axes(&all, cx)?;
         let normal = v[0].cross(v[1]);
         let sine = match v.get(2) {
-            Some(n) => normal.dot(unit(*n)),
+            Some(n) => normal.dot(normalised_or_zero(*n)),
             None => normal.length(),
         };
         Some(Value::Scalar(sine.atan2(v[0].dot(v[1]))))
@@ -104,16 +104,19 @@ impl<'g> Scope<'_, 'g> {
 
     /// Returns the placement of an element with a position: a body, a point, a particle, `body.at(vector)` or
     /// the ground.
-    pub fn place(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
+    pub fn resolve_placement(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Placed<'g>> {
         match &e.kind {
             ExprKind::Name(name) if name == GROUND => {
                 Some(Placed { link: None, pose: Pose::identity(self.graph), kind: PlacedKind::Body })
             }
-            ExprKind::Name(name) => match self.placed(name) {
+            ExprKind::Name(name) => match self.placement_of_element(name) {
                 Some(p) if p.kind != PlacedKind::Frame => Some(p),
                 Some(_) => {
-                    cx.error(e.place.clone(), format!("`{name}` is a frame, which has axes but no position"))
-                        .help("name a body, a particle or a point");
+                    cx.report_error(
+                        e.place.clone(),
+                        format!("`{name}` is a frame, which has axes but no position"),
+                    )
+                    .add_help("name a body, a particle or a point");
                     None
                 }
                 None => {
@@ -124,15 +127,16 @@ impl<'g> Scope<'_, 'g> {
             ExprKind::Method(base, method, arguments)
                 if method.id == Some(Method::At) && arguments.len() == 1 =>
             {
-                let base = self.place(base, cx)?;
+                let base = self.resolve_placement(base, cx)?;
                 let context = Context::new(Allowed::Constant, None);
                 let offset = self.in_context(context, |scope| scope.own_vector(&arguments[0], cx))?;
-                let pose = Pose { translation: base.pose.point(offset), rotation: base.pose.rotation };
+                let pose =
+                    Pose { translation: base.pose.transform_point(offset), rotation: base.pose.rotation };
                 Some(Placed { link: base.link, pose, kind: PlacedKind::Point })
             }
             _ => {
-                cx.error(e.place.clone(), "expected a point")
-                    .help("name a body, a particle or a point, or write `body.at(length * x)`");
+                cx.report_error(e.place.clone(), "expected a point")
+                    .add_help("name a body, a particle or a point, or write `body.at(length * x)`");
                 None
             }
         }
@@ -140,8 +144,8 @@ impl<'g> Scope<'_, 'g> {
 
     fn unknown_place(&self, name: &str, place: &Place, cx: &mut Diagnostics) {
         if let Some(what) = self.kind_of_name(name).filter(|w| *w != "a body") {
-            cx.error(place.clone(), format!("`{name}` is {what}, which has no position"))
-                .help("name a body, a particle or a point");
+            cx.report_error(place.clone(), format!("`{name}` is {what}, which has no position"))
+                .add_help("name a body, a particle or a point");
             return;
         }
         if !self.is_first_report(name, cx) {
@@ -149,10 +153,10 @@ impl<'g> Scope<'_, 'g> {
         }
         let kinematics = &self.kinematics;
         let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
-        let error = cx.error(place.clone(), format!("unknown point `{name}`"));
+        let error = cx.report_error(place.clone(), format!("unknown point `{name}`"));
         words::suggest_meaning(error, words::BODIES, name, &known);
         if error.is_bare() {
-            error.help("name a body, a particle or a point, or write `body.at(length * x)`");
+            error.add_help("name a body, a particle or a point, or write `body.at(length * x)`");
         }
     }
 
@@ -167,29 +171,29 @@ impl<'g> Scope<'_, 'g> {
                 let base = self.current_place(base, cx)?;
                 let axes = Some((base.link, base.pose.clone()));
                 let context = Context::new(Allowed::Placement, axes);
-                let offset = self.in_context(context, |scope| scope.terms(&arguments[0], cx))?;
+                let offset = self.in_context(context, |scope| scope.resolve_terms(&arguments[0], cx))?;
                 let offset = self.kinematics.resolve(&offset, base.link, Vec3::zero(self.graph));
                 let pose = Pose { translation: base.pose.translation + offset, rotation: base.pose.rotation };
                 Some(Placed { link: base.link, pose, kind: PlacedKind::Point })
             }
-            _ => self.place(e, cx),
+            _ => self.resolve_placement(e, cx),
         }
     }
 
     /// Returns the link of an element with axes: a body or a frame.
-    pub fn frame(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Option<LinkId>> {
+    pub fn resolve_frame_link(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Option<LinkId>> {
         let ExprKind::Name(name) = &e.kind else {
-            cx.error(e.place.clone(), "expected a frame").help("name a body or a frame");
+            cx.report_error(e.place.clone(), "expected a frame").add_help("name a body or a frame");
             return None;
         };
         if name == GROUND {
             return Some(None);
         }
-        match self.placed(name) {
+        match self.placement_of_element(name) {
             Some(p) if p.kind != PlacedKind::Point => Some(p.link),
             Some(_) => {
-                cx.error(e.place.clone(), format!("`{name}` is a point, which has no axes"))
-                    .help("name a body or a frame");
+                cx.report_error(e.place.clone(), format!("`{name}` is a point, which has no axes"))
+                    .add_help("name a body or a frame");
                 None
             }
             None => {
@@ -198,10 +202,10 @@ impl<'g> Scope<'_, 'g> {
                 }
                 let kinematics = &self.kinematics;
                 let known: Vec<&str> = kinematics.places.keys().map(String::as_str).chain([GROUND]).collect();
-                let error = cx.error(e.place.clone(), format!("unknown frame `{name}`"));
+                let error = cx.report_error(e.place.clone(), format!("unknown frame `{name}`"));
                 words::suggest_meaning(error, words::BODIES, name, &known);
                 if error.is_bare() {
-                    error.help("name a body or a frame");
+                    error.add_help("name a body or a frame");
                 }
                 None
             }
@@ -215,14 +219,14 @@ impl<'g> Scope<'_, 'g> {
         allowed: Allowed,
         cx: &mut Diagnostics,
     ) -> Option<[&'e syntax::Expr; N]> {
-        let (text, parts) = (call.name(), call.parts());
+        let (text, parts) = (call.function_name(), call.slash_operands());
         let of_point = matches!(call.id, FunctionId::Velocity | FunctionId::Acceleration);
         let message = match of_point && parts.len() == 2 {
             true => format!("`{text}` needs the frame with respect to which it is taken"),
             false => format!("`{text}` is written with slashes"),
         };
         let Ok(parts) = parts.try_into() else {
-            cx.error(call.place.clone(), message).help(call.id.row().usage);
+            cx.report_error(call.place.clone(), message).add_help(call.id.row().usage);
             return None;
         };
         self.check_allowed(allowed, &format!("`{text}(…)`"), call.place, cx).then_some(parts)
@@ -232,7 +236,7 @@ impl<'g> Scope<'_, 'g> {
     pub fn relative_position(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [y, x] = self.slash_operands(call, Allowed::Placement, cx)?;
         let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
-        Some(vector(self.kinematics.position_between(&y?, &x?)))
+        Some(vector_value(self.kinematics.position_between(&y?, &x?)))
     }
 
     /// Resolves `v(y / x / A)`: the velocity of `y` relative to `x` in a frame A that rotates with `ω`:
@@ -240,8 +244,8 @@ impl<'g> Scope<'_, 'g> {
     pub fn relative_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [y, x, frame] = self.slash_operands(call, Allowed::Motion, cx)?;
         let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
-        let frame = self.frame(frame, cx);
-        Some(vector(self.kinematics.velocity_in(&y?, &x?, frame?, self.graph)))
+        let frame = self.resolve_frame_link(frame, cx);
+        Some(vector_value(self.kinematics.velocity_in(&y?, &x?, frame?, self.graph)))
     }
 
     /// Resolves `a(y / x / A)`: the acceleration of `y` relative to `x` in a frame A that rotates with `ω`
@@ -249,22 +253,22 @@ impl<'g> Scope<'_, 'g> {
     pub fn relative_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let [y, x, frame] = self.slash_operands(call, Allowed::Acceleration, cx)?;
         let (y, x) = (self.current_place(y, cx), self.current_place(x, cx));
-        let frame = self.frame(frame, cx);
-        Some(vector(self.kinematics.acceleration_in(&y?, &x?, frame?, self.graph)))
+        let frame = self.resolve_frame_link(frame, cx);
+        Some(vector_value(self.kinematics.acceleration_in(&y?, &x?, frame?, self.graph)))
     }
 
     /// Resolves `omega(B / A)`, the angular velocity of B relative to A.
     pub fn angular_velocity(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let frames: [_; 2] = self.slash_operands(call, Allowed::Motion, cx)?;
-        let [b, a] = frames.map(|e| self.frame(e, cx));
-        Some(vector(self.kinematics.angular_velocity_in(b?, a?, self.graph)))
+        let [b, a] = frames.map(|e| self.resolve_frame_link(e, cx));
+        Some(vector_value(self.kinematics.angular_velocity_in(b?, a?, self.graph)))
     }
 
     /// Resolves `alpha(B / A / C)`, the angular acceleration of B relative to A in C.
     pub fn angular_acceleration(&self, call: &Call<'_>, cx: &mut Diagnostics) -> Option<Value<'g>> {
         let frames: [_; 3] = self.slash_operands(call, Allowed::Acceleration, cx)?;
-        let [b, a, c] = frames.map(|e| self.frame(e, cx));
-        Some(vector(self.kinematics.angular_acceleration_in(b?, a?, c?, self.graph)))
+        let [b, a, c] = frames.map(|e| self.resolve_frame_link(e, cx));
+        Some(vector_value(self.kinematics.angular_acceleration_in(b?, a?, c?, self.graph)))
     }
 }
 
@@ -277,8 +281,8 @@ impl<'g> Kinematics<'g> {
         frame: Option<LinkId>,
         graph: &'g Graph,
     ) -> Terms<'g> {
-        let mut v = self.velocity(y);
-        v.extend(negated(self.velocity(x)));
+        let mut v = self.velocity_of_point(y);
+        v.extend(negate_terms(self.velocity_of_point(x)));
         if let Some(l) = frame {
             let r = self.resolve(&self.position_between(y, x), frame, Vec3::zero(graph));
             v.push((frame, -self.twists[l.0].angular.cross(r)));
@@ -294,8 +298,8 @@ impl<'g> Kinematics<'g> {
         frame: Option<LinkId>,
         graph: &'g Graph,
     ) -> Terms<'g> {
-        let mut a = self.acceleration(y);
-        a.extend(negated(self.acceleration(x)));
+        let mut a = self.acceleration_of_point(y);
+        a.extend(negate_terms(self.acceleration_of_point(x)));
         if let Some(l) = frame {
             let zero = Vec3::zero(graph);
             let (w, dw) = (self.twists[l.0].angular, self.accelerations[l.0].angular);
@@ -341,11 +345,11 @@ impl<'g> Kinematics<'g> {
     }
 }
 
-fn negated<'g>(terms: Terms<'g>) -> Terms<'g> {
+fn negate_terms<'g>(terms: Terms<'g>) -> Terms<'g> {
     terms.into_iter().map(|(l, v)| (l, -v)).collect()
 }
 
-pub(super) fn vector<'g>(terms: Terms<'g>) -> Value<'g> {
+pub(super) fn vector_value<'g>(terms: Terms<'g>) -> Value<'g> {
     Value::Vector(terms.into_iter().map(|(link, v)| (Axes::Link(link), v)).collect())
 }
 

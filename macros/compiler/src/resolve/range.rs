@@ -28,15 +28,15 @@ impl ValueRange {
 
     /// Reports a constant mass or moment outside the range. Returns false then.
     pub fn check_mass(&self, e: Expr<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
-        let Some(n) = e.value().filter(|n| *n != 0.0) else { return true };
+        let Some(n) = e.constant_value().filter(|n| *n != 0.0) else { return true };
         if n.abs() > self.max {
-            cx.error(place.clone(), format!("this number is too large for `{}`: {n:e}", self.name))
-                .help(format!("products of it overflow; write at most {:e}", self.max));
+            cx.report_error(place.clone(), format!("this number is too large for `{}`: {n:e}", self.name))
+                .add_help(format!("products of it overflow; write at most {:e}", self.max));
             return false;
         }
         if n.abs() < self.min_nonzero {
-            cx.error(place.clone(), format!("this number is too small for `{}`: {n:e}", self.name))
-                .help(format!("division by it overflows; write 0, or more than {:e}", self.min_nonzero));
+            cx.report_error(place.clone(), format!("this number is too small for `{}`: {n:e}", self.name))
+                .add_help(format!("division by it overflows; write 0, or more than {:e}", self.min_nonzero));
             return false;
         }
         true
@@ -44,9 +44,9 @@ impl ValueRange {
 
     /// Reports a constant length outside the range. Returns false then.
     pub fn check_length(&self, e: Expr<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
-        let Some(n) = e.value().filter(|n| n.abs() > self.length) else { return true };
-        cx.error(place.clone(), format!("this length is too large for `{}`: {n:e}", self.name))
-            .help(format!("its square overflows; write at most {:e} m", self.length));
+        let Some(n) = e.constant_value().filter(|n| n.abs() > self.length) else { return true };
+        cx.report_error(place.clone(), format!("this length is too large for `{}`: {n:e}", self.name))
+            .add_help(format!("its square overflows; write at most {:e} m", self.length));
         false
     }
 }

@@ -47,7 +47,7 @@ impl<'g> Builder<'_, 'g> {
 
     /// Returns the joint's frame on the parent, moved by the coordinates of the released joint number `index`
     /// of `count`.
-    pub fn release(
+    pub fn released_joint_frame(
         &mut self,
         index: usize,
         count: usize,
@@ -58,7 +58,7 @@ impl<'g> Builder<'_, 'g> {
         let following = RELEASED * (count - index);
         let (q, v) = (InQ(self.model.nq() - following), InV(self.model.nv() - following));
         for k in 0..RELEASED {
-            let (axis, coordinate) = (Vec3::axis(g, k % 3), own_coordinate(q + k, v + k));
+            let (axis, coordinate) = (Vec3::coordinate_axis(g, k % 3), own_coordinate(q + k, v + k));
             let motion = match k {
                 0..3 => Motion::Slide { axis, coordinate },
                 _ => Motion::Turn { axis, coordinate },
@@ -74,28 +74,34 @@ impl<'g> Builder<'_, 'g> {
 impl<'g> Scope<'_, 'g> {
     /// Resolves `reaction_force(joint)` or `reaction_torque(joint)`, whose components begin at `offset`: the
     /// load of the parent on the child at the origin of the joint's frame.
-    pub fn reaction(&self, call: &Call<'_>, offset: usize, cx: &mut Diagnostics) -> Option<Value<'g>> {
+    pub fn resolve_reaction(
+        &self,
+        call: &Call<'_>,
+        offset: usize,
+        cx: &mut Diagnostics,
+    ) -> Option<Value<'g>> {
         let kinematics = &self.kinematics;
         let joint_names = || kinematics.transmissions.keys().map(String::as_str);
         let name = match call.arguments {
             [e] => match &e.kind {
                 ExprKind::Name(name) => name,
                 _ => {
-                    cx.error(e.place.clone(), "expected a joint").suggest("", joint_names());
+                    cx.report_error(e.place.clone(), "expected a joint").suggest_name("", joint_names());
                     return None;
                 }
             },
-            _ => return call.reject(cx),
+            _ => return call.reject_arguments(cx),
         };
         if !self.check_allowed(Allowed::Reaction, "a reaction", call.place, cx) {
             return None;
         }
         let Some((j, link, rotation)) = kinematics.transmissions.get(name) else {
             if self.is_first_report(name, cx) {
-                let error = cx.error(call.arguments[0].place.clone(), format!("unknown joint `{name}`"));
-                error.suggest(name, joint_names());
+                let error =
+                    cx.report_error(call.arguments[0].place.clone(), format!("unknown joint `{name}`"));
+                error.suggest_name(name, joint_names());
                 if error.is_bare() {
-                    error.help(format!("name the joint, as in `{}(hinge)`", call.name()));
+                    error.add_help(format!("name the joint, as in `{}(hinge)`", call.function_name()));
                 }
             }
             return None;

@@ -9,7 +9,7 @@ use crate::mechanism::{Quantity, Requirement, Rule};
 
 impl<'g> Scope<'_, 'g> {
     /// Records a condition on values, if the values depend on parameters and on nothing else.
-    pub fn require(&self, rule: Rule, figure: impl FnOnce() -> String, values: &[Expr<'g>]) {
+    pub fn record_requirement(&self, rule: Rule, figure: impl FnOnce() -> String, values: &[Expr<'g>]) {
         let parameter_of_symbol = |symbol| match Quantity::from_symbol(symbol) {
             Quantity::Parameter(k) => Some(k),
             _ => None,
@@ -19,7 +19,7 @@ impl<'g> Scope<'_, 'g> {
         let Some(parameters) = parameters.filter(|all| !all.is_empty()) else { return };
         let all = &mut self.records.borrow_mut().requirements;
         // A definition may be used several times.
-        if !all.iter().any(|known| known.rule.includes(rule) && known.values == values) {
+        if !all.iter().any(|known| known.rule.implies_rule(rule) && known.values == values) {
             all.push(Requirement { rule, figure: figure(), parameters, values: values.to_vec() });
         }
     }
@@ -32,19 +32,27 @@ impl Builder<'_, '_> {
         for limit in &self.model.limits {
             let name = self.model.velocities.get(limit.v.0).map_or("", |(name, _)| name.as_str());
             if let (Some(lower), Some(upper)) = (limit.lower, limit.upper) {
-                self.scope.require(Rule::Order, || format!("the range of `{name}`"), &[lower, upper]);
+                self.scope.record_requirement(
+                    Rule::Order,
+                    || format!("the range of `{name}`"),
+                    &[lower, upper],
+                );
             }
             for (bound, what) in [(limit.speed, "speed"), (limit.effort, "effort")] {
                 let describe_largest_value = || format!("the largest {what} of `{name}`");
                 bound.iter().for_each(|bound| {
-                    self.scope.require(Rule::NotNegative, describe_largest_value, &[*bound])
+                    self.scope.record_requirement(Rule::NotNegative, describe_largest_value, &[*bound])
                 });
             }
         }
         for (k, parameter) in self.description.parameters.iter().enumerate() {
             let value = Quantity::Parameter(k).expr(self.scope.graph);
             if !parameter.text.starts_with('_') {
-                self.scope.require(Rule::Finite, || format!("the parameter `{}`", parameter.text), &[value]);
+                self.scope.record_requirement(
+                    Rule::Finite,
+                    || format!("the parameter `{}`", parameter.text),
+                    &[value],
+                );
             }
         }
         self.model.requirements = std::mem::take(&mut self.scope.records.borrow_mut().requirements);

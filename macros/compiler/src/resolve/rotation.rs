@@ -3,7 +3,7 @@
 use super::corrections::{MATRIX_SYNTAX, check_angle, is_rotation, report_matrix, report_rotation};
 use super::scope::Scope;
 use crate::diag::{Diagnostics, Place};
-use crate::expr::sample::always;
+use crate::expr::sample::always_equals;
 use crate::expr::{Expr, Mat3, Rotation};
 use crate::language::{self, Callable};
 use crate::mechanism::Rule;
@@ -11,7 +11,7 @@ use crate::syntax::{self, Callee, ExprKind};
 
 impl<'g> Scope<'_, 'g> {
     /// Returns the product of successive rotations about rotated axes.
-    pub fn rotation(&self, steps: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Rotation<'g>> {
+    pub fn resolve_rotation(&self, steps: &[syntax::Expr], cx: &mut Diagnostics) -> Option<Rotation<'g>> {
         let mut whole = Some(Rotation::identity(self.graph));
         for step in steps {
             if !is_rotation(step) {
@@ -19,7 +19,7 @@ impl<'g> Scope<'_, 'g> {
                 return None;
             }
             let next = self.rotation_step(step, cx);
-            whole = whole.zip(next).map(|(whole, next)| whole.then(&next));
+            whole = whole.zip(next).map(|(whole, next)| whole.compose_with(&next));
         }
         whole
     }
@@ -27,41 +27,43 @@ impl<'g> Scope<'_, 'g> {
     fn rotation_step(&self, step: &syntax::Expr, cx: &mut Diagnostics) -> Option<Rotation<'g>> {
         match &step.kind {
             ExprKind::Call(Callee { id: Some(Callable::Rotation(id)), .. }, arguments) => {
-                match (id, id.axis(), arguments.as_slice()) {
+                match (id, id.index_of_axis(), arguments.as_slice()) {
                     (_, Some(k), [angle]) => {
                         return Some(Rotation::about_axis(k, self.plane_angle(angle, cx)?));
                     }
                     (language::Rotation::Eigenaxis, _, [n, angle]) => {
                         let n = self.unit_vector(n, false, cx);
                         let angle = self.plane_angle(angle, cx);
-                        return Some(Rotation::eigenaxis(n?, angle?));
+                        return Some(Rotation::rotation_about_axis(n?, angle?));
                     }
                     (language::Rotation::Quaternion, _, [x, y, z, w]) => {
-                        let parts: Vec<_> = [x, y, z, w].iter().map(|e| self.scalar(e, cx)).collect();
+                        let parts: Vec<_> = [x, y, z, w].iter().map(|e| self.resolve_scalar(e, cx)).collect();
                         let q = [parts[0]?, parts[1]?, parts[2]?, parts[3]?];
                         let square = q.iter().fold(self.graph.zero(), |sum, c| sum + c.square());
-                        if square.value().is_some_and(|n| (n - 1.0).abs() > 1e-9) {
-                            cx.error(step.place.clone(), "this quaternion is not of unit length")
-                                .help("its four numbers are x, y, z, w, and their squares add up to one");
+                        if square.constant_value().is_some_and(|n| (n - 1.0).abs() > 1e-9) {
+                            cx.report_error(step.place.clone(), "this quaternion is not of unit length")
+                                .add_help("its four numbers are x, y, z, w, and their squares add up to one");
                             return None;
                         }
-                        self.require(Rule::Unit, || "a quaternion".to_string(), &[square]);
-                        return Some(Rotation::quaternion(q));
+                        self.record_requirement(Rule::Unit, || "a quaternion".to_string(), &[square]);
+                        return Some(Rotation::from_quaternion(q));
                     }
                     _ if id.row().natural => {
                         let word = id.name();
-                        cx.error(
+                        cx.report_error(
                             step.place.clone(),
                             format!("`{word}` must be the first rotation of a `Frame`"),
                         )
-                        .help(format!("write `#[frame(ground, {word}(…))]`, followed by further rotations"));
+                        .add_help(format!(
+                            "write `#[frame(ground, {word}(…))]`, followed by further rotations"
+                        ));
                         return None;
                     }
                     _ => {}
                 }
             }
             ExprKind::Array(_) => {
-                let matrix = self.matrix(step, cx)?;
+                let matrix = self.resolve_matrix(step, cx)?;
                 return check_rotation_matrix(&matrix, &step.place, cx)
                     .then(|| Rotation::from_matrix(matrix));
             }
@@ -74,11 +76,11 @@ impl<'g> Scope<'_, 'g> {
     /// Returns an angle, rad. A plain number beyond a full revolution is most likely in degrees and is
     /// reported.
     pub fn plane_angle(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
-        if check_angle(e, cx) { self.scalar(e, cx) } else { None }
+        if check_angle(e, cx) { self.resolve_scalar(e, cx) } else { None }
     }
 
     /// Returns a 3×3 matrix written as an array of rows.
-    pub fn matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Mat3<'g>> {
+    pub fn resolve_matrix(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Mat3<'g>> {
         let mut m = Mat3::zero(self.graph);
         let rows = match &e.kind {
             ExprKind::Array(rows) if rows.len() == 3 => rows,
@@ -95,11 +97,12 @@ impl<'g> Scope<'_, 'g> {
             match &row.kind {
                 ExprKind::Array(entries) if entries.len() == 3 => {
                     for (j, entry) in entries.iter().enumerate() {
-                        m.0[i][j] = self.scalar(entry, cx)?;
+                        m.0[i][j] = self.resolve_scalar(entry, cx)?;
                     }
                 }
                 _ => {
-                    cx.error(row.place.clone(), "expected a row of three numbers").help(MATRIX_SYNTAX);
+                    cx.report_error(row.place.clone(), "expected a row of three numbers")
+                        .add_help(MATRIX_SYNTAX);
                     return None;
                 }
             }
@@ -112,11 +115,12 @@ impl<'g> Scope<'_, 'g> {
 fn check_rotation_matrix(m: &Mat3<'_>, place: &Place, cx: &mut Diagnostics) -> bool {
     let product = m.transpose() * *m;
     let determinant = m.column(0).cross(m.column(1)).dot(m.column(2));
-    let orthogonal = (0..3).all(|i| (0..3).all(|j| always(product.0[i][j], if i == j { 1.0 } else { 0.0 })));
-    if orthogonal && always(determinant, 1.0) {
+    let orthogonal =
+        (0..3).all(|i| (0..3).all(|j| always_equals(product.0[i][j], if i == j { 1.0 } else { 0.0 })));
+    if orthogonal && always_equals(determinant, 1.0) {
         return true;
     }
-    cx.error(place.clone(), "this matrix is not a rotation")
-        .help("its columns are three orthogonal unit vectors that form a right-handed frame");
+    cx.report_error(place.clone(), "this matrix is not a rotation")
+        .add_help("its columns are three orthogonal unit vectors that form a right-handed frame");
     false
 }

@@ -21,7 +21,7 @@ pub struct ConstraintRows<'g> {
 
 impl<'g> Builder<'_, 'g> {
     /// Returns a row of a declared constraint with this rate.
-    pub fn row(
+    pub fn constraint_row(
         &self,
         (name, place): (String, &Place),
         measure: Measure,
@@ -33,7 +33,7 @@ impl<'g> Builder<'_, 'g> {
             place: place.clone(),
             residual,
             rate,
-            bias: time_derivative(self.model.space(), rate),
+            bias: time_derivative(self.model.configuration_space(), rate),
             measure,
             transmits: Vec::new(),
             group: 0,
@@ -56,18 +56,18 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// Returns the motion of a link relative to the nearest common ancestor of it and another link.
-    pub fn relative(&self, link: Option<LinkId>, other: Option<LinkId>) -> Relative<'g> {
-        jet::relative(&self.model, &self.scope.kinematics.joints, link, other)
+    pub fn relative_motion(&self, link: Option<LinkId>, other: Option<LinkId>) -> Relative<'g> {
+        jet::relative_motion(&self.model, &self.scope.kinematics.joints, link, other)
     }
 
     /// Returns a point of a link with its first and second time derivatives.
-    pub fn point(&self, on: &Relative<'g>, p: Vec3<'g>) -> Moving<'g> {
-        jet::point(&self.scope.kinematics.joints, on, p)
+    pub fn motion_of_point(&self, on: &Relative<'g>, p: Vec3<'g>) -> Moving<'g> {
+        jet::motion_of_point(&self.scope.kinematics.joints, on, p)
     }
 
     /// Returns a direction that is fixed in a link, with its first and second time derivatives.
-    pub fn direction(&self, on: &Relative<'g>, e: Vec3<'g>) -> Moving<'g> {
-        jet::direction(&self.scope.kinematics.joints, on, e)
+    pub fn motion_of_direction(&self, on: &Relative<'g>, e: Vec3<'g>) -> Moving<'g> {
+        jet::motion_of_direction(&self.scope.kinematics.joints, on, e)
     }
 
     /// Returns a vector of a link in the axes of the ancestor.

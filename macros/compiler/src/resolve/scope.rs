@@ -96,7 +96,7 @@ pub enum Value<'g> {
 
 impl Value<'_> {
     /// Returns the rank as which the value can be declared.
-    pub fn rank(&self) -> Rank {
+    pub fn declared_rank(&self) -> Rank {
         match self {
             Value::Scalar(_) => Rank::Scalar,
             Value::Vector(_) => Rank::Vector,
@@ -105,7 +105,7 @@ impl Value<'_> {
     }
 
     /// Returns the kind of value, with its article, for messages.
-    pub fn word(&self) -> &'static str {
+    pub fn kind_with_article(&self) -> &'static str {
         match self {
             Value::Scalar(_) => "a scalar",
             Value::Vector(_) => "a vector",
@@ -202,6 +202,8 @@ pub struct Kinematics<'g> {
     pub contact_loads: BTreeMap<String, ContactLoads<'g>>,
     /// Power of each force element that an output uses.
     pub powers: BTreeMap<String, ElementPower<'g>>,
+    /// Quantities of force elements of a file, by the names that the laws of these elements contain.
+    pub drive_quantities: BTreeMap<String, Expr<'g>>,
     /// Accelerations of the links; set after all links are placed.
     pub accelerations: Vec<Spatial<'g>>,
     /// Mass, centre of mass and central inertia of bodies and particles.
@@ -239,7 +241,7 @@ impl<'g> Kinematics<'g> {
     }
 
     /// Returns the position of a point relative to the ground's origin.
-    pub fn position(&self, link: Option<LinkId>, p: Vec3<'g>) -> Terms<'g> {
+    pub fn position_of_point(&self, link: Option<LinkId>, p: Vec3<'g>) -> Terms<'g> {
         let mut terms = vec![(link, p)];
         let mut current = link;
         while let Some(l) = current {
@@ -252,8 +254,8 @@ impl<'g> Kinematics<'g> {
 
     /// Returns `r(y / x)`; links that carry both points cancel.
     pub fn position_between(&self, y: &Placed<'g>, x: &Placed<'g>) -> Terms<'g> {
-        let mut sum = self.position(y.link, y.pose.translation);
-        for (axes, v) in self.position(x.link, x.pose.translation) {
+        let mut sum = self.position_of_point(y.link, y.pose.translation);
+        for (axes, v) in self.position_of_point(x.link, x.pose.translation) {
             match sum.iter_mut().find(|(known, _)| *known == axes) {
                 Some((_, total)) => *total -= v,
                 None => sum.push((axes, -v)),
@@ -264,7 +266,7 @@ impl<'g> Kinematics<'g> {
     }
 
     /// Returns the velocity of a point relative to the ground.
-    pub fn velocity(&self, p: &Placed<'g>) -> Terms<'g> {
+    pub fn velocity_of_point(&self, p: &Placed<'g>) -> Terms<'g> {
         p.link.map_or(Vec::new(), |l| {
             let t = &self.twists[l.0];
             vec![(p.link, t.linear + t.angular.cross(p.pose.translation))]
@@ -272,7 +274,7 @@ impl<'g> Kinematics<'g> {
     }
 
     /// Returns the acceleration of a point relative to the ground.
-    pub fn acceleration(&self, p: &Placed<'g>) -> Terms<'g> {
+    pub fn acceleration_of_point(&self, p: &Placed<'g>) -> Terms<'g> {
         p.link.map_or(Vec::new(), |l| {
             let (t, a, r) = (&self.twists[l.0], &self.accelerations[l.0], p.pose.translation);
             vec![(p.link, a.linear + a.angular.cross(r) + t.angular.cross(t.angular.cross(r)))]
@@ -290,14 +292,14 @@ impl<'g> Scope<'_, 'g> {
     }
 
     /// Returns the placement of an element by its name.
-    pub fn placed(&self, name: &str) -> Option<Placed<'g>> {
+    pub fn placement_of_element(&self, name: &str) -> Option<Placed<'g>> {
         let records = self.records.borrow();
         let displaced = records.displaced.iter().rev().find(|(displaced, _)| displaced == name);
         displaced.map(|(_, placed)| placed).or_else(|| self.kinematics.places.get(name)).cloned()
     }
 
     /// Returns the quantities on which expressions may depend here.
-    pub fn allowed(&self) -> Allowed {
+    pub fn allowed_quantities(&self) -> Allowed {
         self.context.borrow().allowed
     }
 }

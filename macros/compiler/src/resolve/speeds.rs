@@ -5,7 +5,7 @@ use super::constraint::Constrained;
 use super::scope::{Allowed, Context};
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::Expr;
-use crate::expr::replace::replace;
+use crate::expr::replace::substitute_symbols;
 use crate::kinematics::{speeds, symbols_in, velocity_gradient};
 use crate::language::Key;
 use crate::mechanism::{InV, Pose, Quantity, Speeds};
@@ -31,7 +31,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             .iter()
             .filter_map(|name| {
                 let definition = d.definitions.iter().find(|definition| definition.name.text == name.text)?;
-                let row = self.coefficients(name, &definition.value, cx)?;
+                let row = self.speed_coefficients(name, &definition.value, cx)?;
                 Some(DeclaredSpeed { name, value: &definition.value, row })
             })
             .collect();
@@ -41,17 +41,22 @@ impl<'a, 'g> Builder<'a, 'g> {
     }
 
     /// Returns the coefficients of a speed; `None` if it is not a linear combination of rates.
-    fn coefficients(&self, name: &Name, value: &syntax::Expr, cx: &mut Diagnostics) -> Option<Vec<Expr<'g>>> {
+    fn speed_coefficients(
+        &self,
+        name: &Name,
+        value: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Vec<Expr<'g>>> {
         let g = self.scope.graph;
         let context = Context::new(Allowed::Motion, Some((None, Pose::identity(g))));
         let name_expression =
             syntax::Expr { kind: ExprKind::Name(name.text.clone()), place: name.place.clone() };
-        let e = self.scope.in_context(context, |scope| scope.scalar(&name_expression, cx))?;
+        let e = self.scope.in_context(context, |scope| scope.resolve_scalar(&name_expression, cx))?;
         let place_of_value = || value.place.clone();
         let mut row = vec![g.zero(); self.model.nv()];
         velocity_gradient(e).into_iter().for_each(|(k, d)| row[k] = d);
         if row.iter().all(|d| d.is_zero()) {
-            cx.error(place_of_value(), "this speed contains no rate").help(
+            cx.report_error(place_of_value(), "this speed contains no rate").add_help(
                 "a speed is a combination of rates: `rate(psi) * sin(theta)`, `dot(omega(body / ground), \
                  body.x)`",
             );
@@ -85,14 +90,15 @@ impl<'a, 'g> Builder<'a, 'g> {
                 },
                 _ => continue,
             };
-            cx.error(place_of_value(), what).help(help);
+            cx.report_error(place_of_value(), what).add_help(help);
             return None;
         }
-        let at_rest =
-            replace(e, &|s| matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| g.zero()));
+        let at_rest = substitute_symbols(e, &|s| {
+            matches!(Quantity::from_symbol(s), Quantity::Velocity(_)).then(|| g.zero())
+        });
         let remainder = [vec![at_rest]];
         if !at_rest.is_zero() && !speeds::named_columns(&self.model, &remainder.to_vec()).is_empty() {
-            cx.error(place_of_value(), "a speed cannot have a term without rates").help(
+            cx.report_error(place_of_value(), "a speed cannot have a term without rates").add_help(
                 "speeds are velocities and zero at rest: take the rates relative to the moving frame, or \
                  declare an `#[output(…)]`",
             );
@@ -112,11 +118,11 @@ impl<'a, 'g> Builder<'a, 'g> {
             rows.iter().map(|row| columns.iter().map(|k| row[*k]).collect()).collect();
         let Some(inverse) = speeds::inverse(&self.model, &block) else {
             let limit = speeds::MOST_COUPLED;
-            cx.error(
+            cx.report_error(
                 declared[0].value.place.clone(),
                 format!("more than {limit} of these speeds depend on each other"),
             )
-            .help("choose speeds that contain few rates each");
+            .add_help("choose speeds that contain few rates each");
             return;
         };
         let g = self.scope.graph;
@@ -160,19 +166,19 @@ impl<'a, 'g> Builder<'a, 'g> {
                 0 => format!("the speed `{}` is zero in every motion", speed.name.text),
                 _ => format!("the speed `{}` depends on the speeds before it", speed.name.text),
             };
-            cx.error(speed.value.place.clone(), what)
-                .help("speeds are independent combinations of the rates, which determine the rates");
+            cx.report_error(speed.value.place.clone(), what)
+                .add_help("speeds are independent combinations of the rates, which determine the rates");
             return false;
         }
         if count < all {
             let verb = if count == 1 { "names" } else { "name" };
             let subject = if count == 1 { "one speed" } else { &format!("{count} speeds") };
             let rate = &self.model.velocities[columns[all - 1]].0;
-            cx.error(
+            cx.report_error(
                 last.name.place.clone(),
                 format!("{subject} {verb} {all} velocities: {}", list_velocity_names(columns)),
             )
-            .help(format!(
+            .add_help(format!(
                 "speeds replace all velocities that they contain: declare the same number of speeds, for \
                  example one for `{rate}` itself, `#[speed(rate({rate}))] {}_rate: Speed`",
                 rate.replace('.', "_")
@@ -188,11 +194,11 @@ impl<'a, 'g> Builder<'a, 'g> {
                 list_velocity_names(&[k]),
                 if key == Key::MaxSpeed { "the rate" } else { "the force on the rate" },
             );
-            cx.error(
+            cx.report_error(
                 declared[0].name.place.clone(),
                 format!("speeds replace the rate of {rate}, which has a `{}`", key.name()),
             )
-            .help(format!(
+            .add_help(format!(
                 "it bounds {what} of {rate}, which is no longer a velocity: remove it, or choose speeds that \
                  keep this rate; bounds `from` and `to` of the coordinate are allowed"
             ));

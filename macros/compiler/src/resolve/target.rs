@@ -20,30 +20,38 @@ pub enum Target<'g> {
 
 impl<'g> Builder<'_, 'g> {
     /// Returns the coordinate of a limit, and whether it is an angle, if that is known.
-    pub fn coordinate(&self, on: &Expr, cx: &mut Diagnostics) -> Option<(Coordinate, Option<bool>)> {
-        let joint = on.name().and_then(|name| self.joint_coordinates(name));
+    pub fn resolve_limited_coordinate(
+        &self,
+        on: &Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<(Coordinate, Option<bool>)> {
+        let joint = on.as_name().and_then(|name| self.joint_coordinates(name));
         if joint.is_some_and(|coordinates| coordinates.is_empty()) {
-            cx.error(on.place.clone(), format!("`{}` has no coordinate to be limited", on.to_source())).help(
+            cx.report_error(
+                on.place.clone(),
+                format!("`{}` has no coordinate to be limited", on.to_source()),
+            )
+            .add_help(
                 "limits apply to joints with plain coordinates: not to a Ball, Free or Weld, and not to a \
                  joint that closes a loop",
             );
             return None;
         }
-        match self.target(on, cx)? {
+        match self.resolve_target(on, cx)? {
             Target::Coordinate(coordinate, angle) => Some((coordinate, angle)),
             Target::Point(_) | Target::Expression(_) => {
-                cx.error(
+                cx.report_error(
                     on.place.clone(),
                     "a Limit applies to the coordinate of a joint, but this is a point",
                 )
-                .help("name a joint, as in `on = hinge`");
+                .add_help("name a joint, as in `on = hinge`");
                 None
             }
         }
     }
 
     /// Resolves a target written as `joint`, `joint.coordinate`, `body` or `body.at(vector)`.
-    pub fn target(&self, on: &Expr, cx: &mut Diagnostics) -> Option<Target<'g>> {
+    pub fn resolve_target(&self, on: &Expr, cx: &mut Diagnostics) -> Option<Target<'g>> {
         match &on.kind {
             ExprKind::Name(name) => self.named_target(on, name, cx),
             ExprKind::Field(joint, coordinate) => self.coordinate_of_joint(on, joint, coordinate, cx),
@@ -51,7 +59,7 @@ impl<'g> Builder<'_, 'g> {
                 if method.id == Some(Method::At) && arguments.len() == 1 =>
             {
                 let ExprKind::Name(name) = &inner.kind else {
-                    cx.error(on.place.clone(), "expected a body");
+                    cx.report_error(on.place.clone(), "expected a body");
                     return None;
                 };
                 if !self.placeable.contains(name) {
@@ -64,8 +72,10 @@ impl<'g> Builder<'_, 'g> {
                 self.expression_stretch(on, cx).map(Target::Expression)
             }
             _ => {
-                cx.error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body")
-                    .help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
+                cx.report_error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body")
+                    .add_help(
+                        "write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`",
+                    );
                 None
             }
         }
@@ -84,11 +94,11 @@ impl<'g> Builder<'_, 'g> {
             }
             let list: Vec<String> = joint.iter().map(|(n, ..)| format!("`on = {n}`")).collect();
             if list.is_empty() {
-                cx.error(on.place.clone(), format!("`{name}` has no coordinate to act on"))
-                    .help("a force or a torque can act on one of its bodies, with a direction");
+                cx.report_error(on.place.clone(), format!("`{name}` has no coordinate to act on"))
+                    .add_help("a force or a torque can act on one of its bodies, with a direction");
             } else {
-                cx.error(on.place.clone(), format!("`{name}` has {} coordinates", list.len()))
-                    .help(format!("write {}", one_of(&list)));
+                cx.report_error(on.place.clone(), format!("`{name}` has {} coordinates", list.len()))
+                    .add_help(format!("write {}", one_of(&list)));
             }
             return None;
         }
@@ -102,7 +112,7 @@ impl<'g> Builder<'_, 'g> {
             self.report_target(name, &on.place, cx);
             return None;
         }
-        self.scope.place(on, cx).map(Target::Point)
+        self.scope.resolve_placement(on, cx).map(Target::Point)
     }
 
     /// Resolves a target written as `joint.coordinate`.
@@ -114,21 +124,21 @@ impl<'g> Builder<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Target<'g>> {
         let ExprKind::Name(joint) = &inner.kind else {
-            cx.error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body");
+            cx.report_error(on.place.clone(), "expected a joint, a coordinate of a joint, or a body");
             return None;
         };
         let Some(coordinates) = self.joint_coordinates(joint) else {
             if self.jointed_index(joint).is_some() {
-                cx.error(member.place.clone(), format!("`{joint}` is a body and has no coordinates"))
-                    .help(format!("write `on = {joint}` and give a direction, or name a joint"));
+                cx.report_error(member.place.clone(), format!("`{joint}` is a body and has no coordinates"))
+                    .add_help(format!("write `on = {joint}` and give a direction, or name a joint"));
                 return None;
             }
             if self.scope.is_first_report(joint, cx) {
                 let known = self.joint_names();
-                let error = cx.error(inner.place.clone(), format!("unknown joint `{joint}`"));
-                error.suggest(joint, known.iter().map(String::as_str));
+                let error = cx.report_error(inner.place.clone(), format!("unknown joint `{joint}`"));
+                error.suggest_name(joint, known.iter().map(String::as_str));
                 if error.is_bare() {
-                    error.help("name a joint and one of its coordinates, as in `on = slot.slide`");
+                    error.add_help("name a joint and one of its coordinates, as in `on = slot.slide`");
                 }
             }
             return None;
@@ -138,8 +148,11 @@ impl<'g> Builder<'_, 'g> {
             return Some(Target::Coordinate(*c, Some(*angle)));
         }
         let own: Vec<&str> = coordinates.iter().map(|(n, ..)| n.as_str()).collect();
-        cx.error(member.place.clone(), format!("`{joint}` has no coordinate `{}` to act on", member.text))
-            .suggest(&full, own);
+        cx.report_error(
+            member.place.clone(),
+            format!("`{joint}` has no coordinate `{}` to act on", member.text),
+        )
+        .suggest_name(&full, own);
         None
     }
 
@@ -154,14 +167,14 @@ impl<'g> Builder<'_, 'g> {
     /// Reports a name that cannot be a target, with the reason.
     fn report_target(&self, name: &str, place: &Place, cx: &mut Diagnostics) {
         if name == GROUND {
-            cx.error(place.clone(), "a force on the ground has no effect")
-                .help("name a body that moves, or one of its points: `on = body.at(length * x)`");
+            cx.report_error(place.clone(), "a force on the ground has no effect")
+                .add_help("name a body that moves, or one of its points: `on = body.at(length * x)`");
         } else if self.scope.kind_of_name(name) == Some("a joint") {
-            cx.error(place.clone(), format!("`{name}` is a joint and has no points"))
-                .help(format!("write `on = {name}`, or name a point of a body"));
+            cx.report_error(place.clone(), format!("`{name}` is a joint and has no points"))
+                .add_help(format!("write `on = {name}`, or name a point of a body"));
         } else if let Some(what) = self.scope.kind_of_name(name) {
-            cx.error(place.clone(), format!("`{name}` is {what}: nothing can act on it"))
-                .help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
+            cx.report_error(place.clone(), format!("`{name}` is {what}: nothing can act on it"))
+                .add_help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
         } else {
             let mut known = self.joint_names();
             known.extend(self.placeable.iter().cloned());
@@ -169,10 +182,12 @@ impl<'g> Builder<'_, 'g> {
             if !self.scope.is_first_report(name, cx) {
                 return;
             }
-            let error = cx.error(place.clone(), format!("unknown joint or body `{name}`"));
-            error.suggest(name, known.iter().map(String::as_str));
+            let error = cx.report_error(place.clone(), format!("unknown joint or body `{name}`"));
+            error.suggest_name(name, known.iter().map(String::as_str));
             if error.is_bare() {
-                error.help("write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`");
+                error.add_help(
+                    "write `on = hinge`, `on = slot.slide`, `on = arm` or `on = arm.at(length * x)`",
+                );
             }
         }
     }

@@ -7,7 +7,7 @@ use super::element_forces::Forces;
 use super::scope::{Allowed, Context};
 use crate::diag::Diagnostics;
 use crate::expr::eval::eval;
-use crate::expr::sample::sample;
+use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{position_in, symbols_in, time_derivative, velocity_gradient};
 use crate::mechanism::{Coordinate, Pose, Quantity};
@@ -47,7 +47,8 @@ impl<'g> Builder<'_, 'g> {
     pub fn expression_stretch(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
         let stretch = self.stretch_of(e, cx)?;
         if velocity_gradient(stretch.rate).is_empty() {
-            cx.error(e.place.clone(), "this contains no coordinate: a force on it has no effect").help(
+            let message = "this contains no coordinate: a force on it has no effect";
+            cx.report_error(e.place.clone(), message).add_help(
                 "an element acts on a length or an angle that changes with the motion, such as `norm(r(a / \
                  b))`",
             );
@@ -59,20 +60,25 @@ impl<'g> Builder<'_, 'g> {
     /// Returns the value and the rate of an expression of positions, which may be constant.
     pub fn stretch_of(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
         let context = Context::new(Allowed::Placement, Some((None, Pose::identity(self.scope.graph))));
-        let value = self.scope.in_context(context, |scope| scope.scalar(e, cx))?;
-        let rate = time_derivative(self.model.space(), value);
+        let value = self.scope.in_context(context, |scope| scope.resolve_scalar(e, cx))?;
+        let rate = time_derivative(self.model.configuration_space(), value);
         Some(Stretch { value, rate, square: value.square(), signed: false })
     }
 
     /// Returns the distance between two points. If they move along one line, the distance is the signed
     /// coordinate along it, which is smooth where they coincide. Otherwise the direction of a zero distance
     /// is the zero vector.
-    pub fn distance(&self, a: &syntax::Expr, b: &syntax::Expr, cx: &mut Diagnostics) -> Option<Stretch<'g>> {
-        let (first, second) = (self.scope.place(a, cx), self.scope.place(b, cx));
+    pub fn distance_between_points(
+        &self,
+        a: &syntax::Expr,
+        b: &syntax::Expr,
+        cx: &mut Diagnostics,
+    ) -> Option<Stretch<'g>> {
+        let (first, second) = (self.scope.resolve_placement(a, cx), self.scope.resolve_placement(b, cx));
         let (first, second) = (first?, second?);
         if first.link == second.link {
-            cx.error(b.place.clone(), "these two points do not move relative to each other")
-                .help("let the element act between points of different bodies");
+            cx.report_error(b.place.clone(), "these two points do not move relative to each other")
+                .add_help("let the element act between points of different bodies");
             return None;
         }
         let kinematics = &self.scope.kinematics;
@@ -83,14 +89,14 @@ impl<'g> Builder<'_, 'g> {
         // The test for a common line ignores released joints.
         let with_closed_joints = Vec3(self.with_released_at_zero(&r.0).try_into().unwrap_or(r.0));
         if always_zero(with_closed_joints) {
-            cx.error(b.place.clone(), "these two points always coincide")
-                .help("let the element act between points that move relative to each other");
+            cx.report_error(b.place.clone(), "these two points always coincide")
+                .add_help("let the element act between points that move relative to each other");
             return None;
         }
-        let mut v = kinematics.velocity(&second);
-        v.extend(kinematics.velocity(&first).into_iter().map(|(link, v)| (link, -v)));
+        let mut v = kinematics.velocity_of_point(&second);
+        v.extend(kinematics.velocity_of_point(&first).into_iter().map(|(link, v)| (link, -v)));
         if let Some(line) = constant_direction(with_closed_joints) {
-            let e = Vec3::numbers(self.scope.graph, line);
+            let e = Vec3::from_numbers(self.scope.graph, line);
             let rate = e.dot(kinematics.resolve(&v, axes, zero));
             let value = r.dot(e);
             return Some(Stretch { value, square: value.square(), rate, signed: true });
@@ -107,15 +113,15 @@ impl<'g> Builder<'_, 'g> {
         let ground_frame = || Some((None, Pose::identity(self.scope.graph)));
         for (name, e) in &d.energies {
             let context = Context::new(Allowed::Placement, ground_frame());
-            let energy = self.scope.in_context(context, |scope| scope.scalar(e, cx));
+            let energy = self.scope.in_context(context, |scope| scope.resolve_scalar(e, cx));
             self.add_forces(&name.text, Forces::of_potentials(energy));
         }
         for (name, e) in &d.dissipations {
             let context = Context::new(Allowed::Motion, ground_frame());
-            let function = self.scope.in_context(context, |scope| scope.scalar(e, cx));
+            let function = self.scope.in_context(context, |scope| scope.resolve_scalar(e, cx));
             // Zero is not an error: the bodies may be welded together.
             if function.is_some_and(|f| !f.is_zero() && velocity_gradient(f).is_empty()) {
-                cx.error(e.place.clone(), "this contains no velocity, and has no effect").help(
+                cx.report_error(e.place.clone(), "this contains no velocity, and has no effect").add_help(
                     "dissipation is a function of rates, half the dissipated power: `c / 2 * rate(hinge) * \
                      rate(hinge)`",
                 );
@@ -129,7 +135,7 @@ impl<'g> Builder<'_, 'g> {
             let context = Context::new(Allowed::Reaction, ground_frame());
             let name = ExprKind::Name(definition.name.text.clone());
             let e = syntax::Expr { kind: name, place: definition.name.place.clone() };
-            let _ = self.scope.in_context(context, |scope| scope.value(&e, cx));
+            let _ = self.scope.in_context(context, |scope| scope.resolve_value(&e, cx));
         }
     }
 
@@ -146,7 +152,7 @@ impl<'g> Builder<'_, 'g> {
         all.extend(m.constraints.iter().flat_map(|c| c.residual.into_iter().chain([c.rate])));
         all.extend(m.constraints.iter().flat_map(|c| c.friction.iter().map(|d| d.share)));
         all.extend(m.outputs.iter().flat_map(|o| o.values.iter().copied()));
-        all.extend(m.links.iter().flat_map(|link| link.placement.entries()));
+        all.extend(m.links.iter().flat_map(|link| link.placement.all_expressions()));
         let time = symbols_in(&all).into_iter().any(|s| Quantity::from_symbol(s) == Quantity::Time);
         let by_velocity = m.loads.iter().any(|load| {
             let symbols: Vec<Quantity> =
@@ -162,12 +168,14 @@ impl<'g> Builder<'_, 'g> {
 /// Whether a vector is zero for all coordinates and parameters.
 fn always_zero(r: Vec3<'_>) -> bool {
     r.is_zero()
-        || (0..4).all(|seed| eval(&r.0, &|s| 2.0 * sample(s, seed) - 1.7).iter().all(|c| c.abs() < 1e-14))
+        || (0..4).all(|seed| {
+            eval(&r.0, &|s| 2.0 * sample_of_symbol(s, seed) - 1.7).iter().all(|c| c.abs() < 1e-14)
+        })
 }
 
 /// Returns the direction of a vector, if it is the same for all coordinates and parameters.
 fn constant_direction(r: Vec3<'_>) -> Option<[f64; 3]> {
-    let evaluate_with_seed = |seed| eval(&r.0, &|s| 2.0 * sample(s, seed) - 1.7);
+    let evaluate_with_seed = |seed| eval(&r.0, &|s| 2.0 * sample_of_symbol(s, seed) - 1.7);
     let first = evaluate_with_seed(0);
     let norm = first.iter().map(|c| c * c).sum::<f64>().sqrt();
     let e = [first[0] / norm, first[1] / norm, first[2] / norm];

@@ -103,8 +103,8 @@ pub fn find_tree(
             if jointed.iter().any(|h| h.text == GROUND) {
                 continue;
             }
-            cx.error(name.place.clone(), format!("`{}` is joined to itself", name.text))
-                .help("a joint is between two bodies, or the ground and a body");
+            cx.report_error(name.place.clone(), format!("`{}` is joined to itself", name.text))
+                .add_help("a joint is between two bodies, or the ground and a body");
             continue;
         }
         match child {
@@ -128,7 +128,7 @@ pub fn find_tree(
         }
     }
     let roots: Vec<BodyIndex> = (0..jointed.len()).filter(|k| is_placed(*k)).collect();
-    let order = sort(&ends, jointed.len(), &roots);
+    let order = sort_joints_depth_first(&ends, jointed.len(), &roots);
     is_valid.then_some(Order { joints: order, closing: loops })
 }
 
@@ -138,22 +138,25 @@ fn report_unattached(description: &Description, body: &Name, loops: &[usize], cx
     let name = &body.text;
     let loop_joints = || loops.iter().map(|j| &description.joints[*j]);
     if let Some(joint) = loop_joints().find(|j| j.child.body.text == *name) {
-        cx.error(joint.name.place.clone(), format!("the joints of `{name}` form a cycle without the ground"))
-            .help(format!("start one of them at the ground, as in `ground -> {name}`"));
+        cx.report_error(
+            joint.name.place.clone(),
+            format!("the joints of `{name}` form a cycle without the ground"),
+        )
+        .add_help(format!("start one of them at the ground, as in `ground -> {name}`"));
     } else if let Some(joint) =
         loop_joints().find(|j| j.parent.body.text == *name && j.child.body.text == GROUND)
     {
-        cx.error(joint.child.body.place.clone(), "the ground cannot be the child of a joint")
-            .help(format!("reverse the joint, `ground -> {name}`, or connect `{name}` by another one"));
+        cx.report_error(joint.child.body.place.clone(), "the ground cannot be the child of a joint")
+            .add_help(format!("reverse the joint, `ground -> {name}`, or connect `{name}` by another one"));
     } else {
-        cx.error(body.place.clone(), format!("no joint connects `{name}` to the ground"))
-            .help(format!("add a joint `ground -> {name}`, a Free one if it moves freely"));
+        cx.report_error(body.place.clone(), format!("no joint connects `{name}` to the ground"))
+            .add_help(format!("add a joint `ground -> {name}`, a Free one if it moves freely"));
     }
 }
 
 /// Sorts joints with their parents (`None` for the ground) and children, depth first from the ground,
 /// siblings in declaration order. Unreachable joints are omitted.
-fn sort(
+fn sort_joints_depth_first(
     ends: &[(usize, Option<BodyIndex>, BodyIndex)],
     bodies: usize,
     roots: &[BodyIndex],
@@ -176,30 +179,30 @@ fn sort(
 fn unknown_body(name: &Name, jointed: &[&Name], scope: &Scope<'_, '_>, cx: &mut Diagnostics) {
     let place: Place = name.place.clone();
     if let Some(what) = scope.kind_of_name(&name.text).filter(|_| !scope.bodies.contains(&name.text)) {
-        cx.error(place, format!("`{}` is {what}, not a body", name.text))
-            .help("a joint connects bodies: `parent -> child`, with `ground` for the fixed reference");
+        cx.report_error(place, format!("`{}` is {what}, not a body", name.text))
+            .add_help("a joint connects bodies: `parent -> child`, with `ground` for the fixed reference");
         return;
     }
     if scope.frames.contains(&name.text) {
-        cx.error(place, format!("`{}` is a frame, which has axes but no position", name.text))
-            .help("join a body: `#[body(frame = …)]` makes one with the axes of a frame");
+        cx.report_error(place, format!("`{}` is a frame, which has axes but no position", name.text))
+            .add_help("join a body: `#[body(frame = …)]` makes one with the axes of a frame");
         return;
     }
     if scope.bodies.contains(&name.text) {
-        cx.error(place, format!("`{}` is fixed at a point of a body and cannot be joined", name.text))
-            .help("remove its `at`, or use the body");
+        cx.report_error(place, format!("`{}` is fixed at a point of a body and cannot be joined", name.text))
+            .add_help("remove its `at`, or use the body");
         return;
     }
     let known: Vec<&str> = jointed.iter().map(|h| h.text.as_str()).chain([GROUND]).collect();
     if !scope.is_first_report(&name.text, cx) {
         return;
     }
-    let error = cx.error(place, format!("unknown body `{}`", name.text));
-    match crate::diag::nearest(&name.text, &known) {
-        Some(_) => drop(error.suggest(&name.text, known)),
+    let error = cx.report_error(place, format!("unknown body `{}`", name.text));
+    match crate::diag::nearest_candidate(&name.text, &known) {
+        Some(_) => drop(error.suggest_name(&name.text, known)),
         None => words::suggest_meaning(error, words::BODIES, &name.text, &known),
     }
     if error.is_bare() {
-        error.help(format!("declare it: `#[body(mass = m)] {}: Body`", name.text));
+        error.add_help(format!("declare it: `#[body(mass = m)] {}: Body`", name.text));
     }
 }

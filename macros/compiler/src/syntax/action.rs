@@ -13,7 +13,7 @@ pub fn read_action(
     arguments: &mut Arguments,
     cx: &mut Diagnostics,
 ) -> Option<Action> {
-    let (row, names) = (kind.row(), &kind.keys());
+    let (row, names) = (kind.row(), &kind.argument_names());
     let refused = arguments.place_of("between").is_some() && !row.between;
     let on = read_target(kind, arguments, names, cx);
     if refused {
@@ -21,9 +21,9 @@ pub fn read_action(
     }
     reject_second_law(arguments, row.laws, cx);
     let keys = Keys { all: row.arguments, laws: row.laws, required: row.required, attribute: "acts", names };
-    let (given, is_complete) = keys.read(arguments, cx);
+    let (given, is_complete) = keys.read_arguments(arguments, cx);
     check_relations(row.relations, &given, name, cx);
-    arguments.finish(&kind.phrase(), names, cx);
+    arguments.report_remaining_arguments(&kind.name_with_article(), names, cx);
     is_complete.then_some(())?;
     Some(Action { name: name.clone(), kind, on: on?, arguments: given })
 }
@@ -36,25 +36,26 @@ fn unnamed_target(kind: ForceKind, arguments: &mut Arguments, cx: &mut Diagnosti
         false => "say what it acts on: `on = …`".to_string(),
     };
     if let Some((a, b)) = arguments.take_arrow() {
-        cx.error(a.place.join(&b.place), format!("{} is not a joint", kind.phrase()))
-            .help(between_help(&a, &b));
+        cx.report_error(a.place.extend_to(&b.place), format!("{} is not a joint", kind.name_with_article()))
+            .add_help(between_help(&a, &b));
         return true;
     }
     if arguments.place_of("on").is_some() || arguments.place_of("between").is_some() {
         return false;
     }
     if let Some((place, a, b)) = arguments.take_ends() {
-        cx.error(place, format!("{} has no such ends", kind.phrase())).help(between_help(&a, &b));
+        cx.report_error(place, format!("{} has no such ends", kind.name_with_article()))
+            .add_help(between_help(&a, &b));
         return true;
     }
-    let plain = arguments.plain();
+    let plain = arguments.positional_arguments();
     let (Some(first), Some(last)) = (plain.first(), plain.last()) else { return false };
     let help = match plain {
         [one] if on => format!("write `on = {}`", one.to_source()),
         [a, b, ..] => between_help(a, b),
         _ => "write `between = (first, second)`".to_string(),
     };
-    cx.error(first.place.join(&last.place), "expected `name = value`").help(help);
+    cx.report_error(first.place.extend_to(&last.place), "expected `name = value`").add_help(help);
     arguments.take_plain();
     true
 }
@@ -84,18 +85,18 @@ fn read_target(
             }
             _ => "declare a field for each thing that it acts on".to_string(),
         };
-        cx.error(on.place, "`on` names one thing, found a list").help(help);
+        cx.report_error(on.place, "`on` names one thing, found a list").add_help(help);
         return None;
     };
     if !row.between {
-        cx.error(place, format!("{} does not act between two points", kind.phrase()))
-            .help("say what it acts on: `on = …`");
+        cx.report_error(place, format!("{} does not act between two points", kind.name_with_article()))
+            .add_help("say what it acts on: `on = …`");
         arguments.remove_all();
         return None;
     }
     if let Some(on) = arguments.place_of("on") {
-        cx.error(on, "an element has either `on` or `between`")
-            .help("`on` names a joint, `between` two points");
+        cx.report_error(on, "an element has either `on` or `between`")
+            .add_help("`on` names a joint, `between` two points");
         arguments.remove_key("on");
     }
     match arguments.take_expr("between", cx)? {
@@ -118,7 +119,7 @@ fn read_target(
                 }
                 _ => "write `between = (first, second)`".to_string(),
             };
-            cx.error(other.place, "`between` names two points").help(help);
+            cx.report_error(other.place, "`between` names two points").add_help(help);
             None
         }
     }
@@ -131,8 +132,8 @@ fn reject_second_law(arguments: &mut Arguments, keys: &[Key], cx: &mut Diagnosti
     for key in given.iter().skip(1) {
         if let Some(place) = arguments.place_of(key) {
             let list: Vec<String> = keys.iter().map(|key| format!("`{}`", key.name())).collect();
-            cx.error(place, format!("a second force law: `{}` is already given", given[0]))
-                .help(format!("give one of {}", crate::diag::one_of(&list)));
+            cx.report_error(place, format!("a second force law: `{}` is already given", given[0]))
+                .add_help(format!("give one of {}", crate::diag::one_of(&list)));
             arguments.remove_key(key);
         }
     }

@@ -3,7 +3,7 @@
 
 use super::file_parameters::FileParameters;
 use super::{Expr, ExprKind, Name, words};
-use crate::diag::{Diagnostics, Place, nearest};
+use crate::diag::{Diagnostics, Place, nearest_candidate};
 
 use proc_macro2::{Span, TokenStream};
 use syn::parse::{ParseStream, Parser};
@@ -64,7 +64,8 @@ impl Arguments {
             Meta::Path(_) => Arguments::parse_with(TokenStream::new(), span, grammar, cx),
             Meta::NameValue(_) => {
                 let word = attribute.path().get_ident().map_or_else(String::new, Ident::to_string);
-                cx.error(span, "expected arguments in parentheses").help(format!("write `#[{word}(…)]`"));
+                cx.report_error(span, "expected arguments in parentheses")
+                    .add_help(format!("write `#[{word}(…)]`"));
                 None
             }
         }
@@ -82,7 +83,7 @@ impl Arguments {
         cx: &mut Diagnostics,
     ) -> Option<Arguments> {
         if let Some(error) = decimal_comma_error(&tokens) {
-            cx.syn(error);
+            cx.report_syn_error(error);
             return None;
         }
         let parsed = (|input: ParseStream<'_>| parse_arguments(input, span, grammar)).parse2(tokens);
@@ -90,19 +91,20 @@ impl Arguments {
             Ok(arguments) => arguments,
             // The end of the input has no span.
             Err(error) if error.to_string().starts_with("unexpected end") => {
-                cx.error(span, "unexpected end of the arguments")
-                    .help("an argument is missing after the last token");
+                cx.report_error(span, "unexpected end of the arguments")
+                    .add_help("an argument is missing after the last token");
                 return None;
             }
             Err(error) => {
-                cx.syn(error);
+                cx.report_syn_error(error);
                 return None;
             }
         };
         let mut first: Vec<(Name, ArgumentValue)> = Vec::new();
         for (key, value) in std::mem::take(&mut arguments.named) {
             if first.iter().any(|(other, _)| other.text == key.text) {
-                cx.error(key.place, format!("`{}` is given twice", key.text)).help("remove one of the two");
+                cx.report_error(key.place, format!("`{}` is given twice", key.text))
+                    .add_help("remove one of the two");
             } else {
                 first.push((key, value));
             }
@@ -111,7 +113,7 @@ impl Arguments {
         Some(arguments)
     }
 
-    fn take(&mut self, key: &str) -> Option<(Name, ArgumentValue)> {
+    fn take_named_argument(&mut self, key: &str) -> Option<(Name, ArgumentValue)> {
         let index = self.named.iter().position(|(name, _)| name.text == key)?;
         let (name, value) = self.named.remove(index);
         self.seen.push(name.clone());
@@ -139,7 +141,7 @@ impl Arguments {
     }
 
     /// Returns the expressions without a key.
-    pub fn plain(&self) -> &[Expr] {
+    pub fn positional_arguments(&self) -> &[Expr] {
         &self.plain
     }
 
@@ -176,32 +178,34 @@ impl Arguments {
     pub fn check_option(&mut self, word: &str, cx: &mut Diagnostics) -> bool {
         let is_option_call = |e: &Expr| matches!(&e.kind, ExprKind::Call(name, _) if name.text == word);
         let call = self.plain.iter().position(is_option_call).map(|index| self.plain.remove(index).place);
-        let argument = self.take(word);
+        let argument = self.take_named_argument(word);
         let Some(place) = call.or(argument.as_ref().map(|(name, _)| name.place.clone())) else {
             return false;
         };
         let off = match &argument {
-            Some((_, ArgumentValue::Expr(e))) => e.name() == Some("false") || e.literal() == Some(0.0),
+            Some((_, ArgumentValue::Expr(e))) => {
+                e.as_name() == Some("false") || e.literal_number() == Some(0.0)
+            }
             _ => false,
         };
         let help = if off { "leave it out".to_string() } else { format!("write `{word}` alone") };
-        cx.error(place.clone(), format!("`{word}` is an option without a value")).help(help);
+        cx.report_error(place.clone(), format!("`{word}` is an option without a value")).add_help(help);
         self.plain.push(Expr { kind: ExprKind::Name(word.to_string()), place });
         true
     }
 
     /// Returns the expression of a key, if the key is present.
     pub fn take_expr(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Expr> {
-        match self.take(key)? {
+        match self.take_named_argument(key)? {
             (_, ArgumentValue::Expr(e)) => Some(e),
             (_, ArgumentValue::Text(text)) => {
-                cx.error(text.span(), format!("expected an expression for `{key}`, found a string"))
-                    .help("write it without quotes");
+                cx.report_error(text.span(), format!("expected an expression for `{key}`, found a string"))
+                    .add_help("write it without quotes");
                 None
             }
             (name, ArgumentValue::Texts(_) | ArgumentValue::FileParameters(_)) => {
-                cx.error(name.place, format!("expected an expression for `{key}`, found strings"))
-                    .help("write it without quotes");
+                cx.report_error(name.place, format!("expected an expression for `{key}`, found strings"))
+                    .add_help("write it without quotes");
                 None
             }
         }
@@ -223,18 +227,18 @@ impl Arguments {
         {
             if let [value, others @ ..] = self.plain.as_slice()
                 && attribute != "constraint"
-                && !value.name().is_some_and(|word| known.contains(&word))
+                && !value.as_name().is_some_and(|word| known.contains(&word))
             {
-                let error = cx.error(value.place.clone(), "expected `name = value`");
-                error.help(format!("write `{key} = {}`", value.to_source()));
+                let error = cx.report_error(value.place.clone(), "expected `name = value`");
+                error.add_help(format!("write `{key} = {}`", value.to_source()));
                 if !others.is_empty() {
-                    error.suggest("", known.iter().copied());
+                    error.suggest_name("", known.iter().copied());
                 }
                 self.plain.clear();
                 return None;
             }
-            cx.error(self.place.clone(), format!("missing `{key}`"))
-                .help(format!("write `#[{attribute}(…, {key} = {example})]`").replace("(…, on", "(on"));
+            cx.report_error(self.place.clone(), format!("missing `{key}`"))
+                .add_help(format!("write `#[{attribute}(…, {key} = {example})]`").replace("(…, on", "(on"));
         }
         self.take_expr(key, cx)
     }
@@ -255,7 +259,7 @@ impl Arguments {
         choices: &[&str],
         cx: &mut Diagnostics,
     ) -> Option<(String, Place)> {
-        let (name, value) = self.take(key)?;
+        let (name, value) = self.take_named_argument(key)?;
         match value {
             ArgumentValue::Expr(Expr { kind: ExprKind::Name(word), place })
                 if choices.contains(&word.as_str()) =>
@@ -265,7 +269,7 @@ impl Arguments {
             ArgumentValue::Expr(Expr { kind: ExprKind::Name(word), place }) => {
                 let synonyms = if key == "formulation" { words::FORMULATIONS } else { &[] };
                 words::suggest_meaning(
-                    cx.error(place, format!("unknown value `{word}` for `{key}`")),
+                    cx.report_error(place, format!("unknown value `{word}` for `{key}`")),
                     synonyms,
                     &word,
                     choices,
@@ -273,13 +277,13 @@ impl Arguments {
                 None
             }
             ArgumentValue::Text(text) if choices.contains(&text.value().as_str()) => {
-                cx.error(text.span(), format!("expected a name for `{key}`"))
-                    .help(format!("write it without quotes: `{key} = {}`", text.value()));
+                cx.report_error(text.span(), format!("expected a name for `{key}`"))
+                    .add_help(format!("write it without quotes: `{key} = {}`", text.value()));
                 None
             }
             _ => {
-                cx.error(name.place, format!("expected a name for `{key}`"))
-                    .suggest("", choices.iter().copied());
+                cx.report_error(name.place, format!("expected a name for `{key}`"))
+                    .suggest_name("", choices.iter().copied());
                 None
             }
         }
@@ -287,11 +291,11 @@ impl Arguments {
 
     /// Removes a key and returns its string.
     pub fn take_text(&mut self, key: &str, cx: &mut Diagnostics) -> Option<Name> {
-        match self.take(key)? {
+        match self.take_named_argument(key)? {
             (_, ArgumentValue::Text(text)) => Some(Name { text: text.value(), place: text.span().into() }),
             (name, _) => {
-                cx.error(name.place, format!("expected a string for `{key}`"))
-                    .help(format!("write `{key} = \"…\"`"));
+                cx.report_error(name.place, format!("expected a string for `{key}`"))
+                    .add_help(format!("write `{key} = \"…\"`"));
                 None
             }
         }
@@ -300,7 +304,7 @@ impl Arguments {
     /// Returns the strings of a key, in brackets.
     pub fn take_texts(&mut self, key: &str, cx: &mut Diagnostics) -> Vec<Name> {
         let name_of_literal = |text: &LitStr| Name { text: text.value(), place: text.span().into() };
-        match self.take(key) {
+        match self.take_named_argument(key) {
             None => Vec::new(),
             Some((_, ArgumentValue::Texts(texts))) => texts.iter().map(name_of_literal).collect(),
             Some((_, ArgumentValue::Expr(Expr { kind: ExprKind::Array(items), .. }))) if items.is_empty() => {
@@ -308,8 +312,8 @@ impl Arguments {
             }
             Some((name, value)) => {
                 let list = quoted_names(&value).unwrap_or_else(|| "\"…\", \"…\"".to_string());
-                cx.error(name.place, format!("expected a list of strings for `{key}`"))
-                    .help(format!("write `{key} = [{list}]`"));
+                cx.report_error(name.place, format!("expected a list of strings for `{key}`"))
+                    .add_help(format!("write `{key} = [{list}]`"));
                 Vec::new()
             }
         }
@@ -317,7 +321,7 @@ impl Arguments {
 
     /// Returns the parameters that replace values of a file.
     pub fn take_file_parameters(&mut self, key: &str) -> Vec<FileParameters> {
-        match self.take(key) {
+        match self.take_named_argument(key) {
             Some((_, ArgumentValue::FileParameters(figures))) => figures,
             _ => Vec::new(),
         }
@@ -371,12 +375,12 @@ impl Arguments {
 
     /// Reports the remaining arguments; `whose` is the element with its article. Arguments with the same help
     /// are reported once.
-    pub fn finish(&mut self, whose: &str, known: &[&str], cx: &mut Diagnostics) {
-        let (owner, example) = (&self.owner, words::example(whose));
+    pub fn report_remaining_arguments(&mut self, whose: &str, known: &[&str], cx: &mut Diagnostics) {
+        let (owner, example) = (&self.owner, words::example_declaration(whose));
         let mut answers: Vec<String> = Vec::new();
         for (name, value) in self.named.drain(..) {
             let word = name.text.as_str();
-            let near = nearest(word, known).is_some();
+            let near = nearest_candidate(word, known).is_some();
             let help = words::argument_help(whose, owner, word, known)
                 .or((!near && known.len() < 2).then(|| format!("write `{example}`")));
             if let Some(help) = &help {
@@ -385,13 +389,13 @@ impl Arguments {
                 }
                 answers.push(help.clone());
             }
-            let error = cx.error(name.place, format!("{whose} has no argument `{word}`"));
+            let error = cx.report_error(name.place, format!("{whose} has no argument `{word}`"));
             match help {
-                Some(help) => error.help(help),
-                None => error.suggest(word, known.iter().copied()),
+                Some(help) => error.add_help(help),
+                None => error.suggest_name(word, known.iter().copied()),
             };
             if whose == "`#[mechanism]`" && error.is_bare() {
-                error.help(match value {
+                error.add_help(match value {
                     ArgumentValue::Text(_) => "a file is named by `urdf = \"path/to/robot.urdf\"`",
                     _ => "the documentation of `mechanism` lists its arguments",
                 });
@@ -401,16 +405,16 @@ impl Arguments {
             report_unnamed(&e, known, example, cx);
         }
         if let Some((left, right)) = self.equations.pop() {
-            let error = cx.error(left.place.join(&right.place), "expected `name = value`");
-            match left.name().filter(|name| known.contains(name)) {
-                Some(name) => error.help(format!("write `{name} = {}`", right.to_source())),
-                None if known.is_empty() => error.help(format!("write `{example}`")),
-                None => error.suggest("", known.iter().copied()),
+            let error = cx.report_error(left.place.extend_to(&right.place), "expected `name = value`");
+            match left.as_name().filter(|name| known.contains(name)) {
+                Some(name) => error.add_help(format!("write `{name} = {}`", right.to_source())),
+                None if known.is_empty() => error.add_help(format!("write `{example}`")),
+                None => error.suggest_name("", known.iter().copied()),
             };
         }
         if let Some((parent, child)) = self.relation.take() {
-            cx.error(parent.place.join(&child.place), format!("{whose} does not connect bodies"))
-                .help("`parent -> child` belongs to a joint");
+            cx.report_error(parent.place.extend_to(&child.place), format!("{whose} does not connect bodies"))
+                .add_help("`parent -> child` belongs to a joint");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Parsing of the struct and its attributes: fields are classified as parameters and elements.
 
-use super::expression::name;
+use super::expression::name_from_identifier;
 use super::field::{check_duplicates, is_known, read_field};
 use super::lists::Lists;
 use super::mechanism::{Mechanism, Shell};
@@ -8,7 +8,7 @@ use super::options::read_options;
 use super::parameter::type_name;
 use super::readable::Reading;
 use super::request::Requests;
-use super::separate::separate;
+use super::separate::insert_missing_commas;
 use super::state::give_type;
 use super::table::table_variables;
 use super::{Description, ScalarType, crate_path, declaration, guard};
@@ -23,18 +23,18 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
     if !guard::check_arguments(&arguments, cx) || !guard::check_item(&item, cx) {
         return None;
     }
-    let fields = declaration::fields(&item);
+    let fields = declaration::fields_source_text(&item);
     let mut item = parse_struct(item, cx)?;
     let before = cx.len();
     let mut lists = Lists::expand(&mut item.fields, cx);
-    let arguments = lists.rewrite(arguments, None, cx);
+    let arguments = lists.rewrite_list_index(arguments, None, cx);
     let mut reading = Reading::default();
     if cx.len() > before {
         reading.mark_unreadable();
     }
     let (arguments, runtime) = crate_path::take_path(arguments, cx);
     let (generic, refused) = check_generics(&mut item, cx);
-    let mut description = Description::empty(name(&item.ident));
+    let mut description = Description::empty_description(name_from_identifier(&item.ident));
     let mut shell = Shell {
         attributes: item.attrs.clone(),
         visibility: item.vis.clone(),
@@ -44,8 +44,8 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         tables: Vec::new(),
         file_fields: Vec::new(),
         elements: Vec::new(),
-        notes: declaration::notes(&item),
-        declaration: declaration::text(&item, fields),
+        notes: declaration::field_notes(&item),
+        declaration: declaration::declaration_text(&item, fields),
         runtime,
     };
     let mut scalar: Option<(ScalarType, Place)> = None;
@@ -86,7 +86,8 @@ pub fn parse_mechanism(arguments: TokenStream, item: TokenStream, cx: &mut Diagn
         let place = unused.type_params().next().map_or(unused.span(), |t| t.ident.span());
         // The type parameter is most likely meant by an unknown type.
         if unknown_types.is_empty() {
-            cx.error(place, format!("no parameter of the mechanism has the type `{generic}`")).help(
+            let message = format!("no parameter of the mechanism has the type `{generic}`");
+            cx.report_error(place, message).add_help(
                 "remove the type parameter, or use it as the type of the parameters: all generated functions \
                  then use it",
             );
@@ -103,9 +104,11 @@ fn parse_struct(tokens: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct>
     let item = match syn::parse2::<Item>(tokens.clone()) {
         Ok(item) => item,
         Err(error) => {
-            match separate(&tokens) {
-                Some((_, slip)) => cx.syn(slip),
-                None => _ = cx.error(error.span(), error.to_string()).help(field_syntax_help(&error)),
+            match insert_missing_commas(&tokens) {
+                Some((_, slip)) => cx.report_syn_error(slip),
+                None => {
+                    _ = cx.report_error(error.span(), error.to_string()).add_help(field_syntax_help(&error))
+                }
             }
             return None;
         }
@@ -124,7 +127,7 @@ fn parse_struct(tokens: TokenStream, cx: &mut Diagnostics) -> Option<ItemStruct>
         Item::Trait(t) => (t.trait_token.span, "a trait"),
         _ => (Span::call_site(), "this item"),
     };
-    cx.error(span, format!("`#[mechanism]` cannot be applied to {what}")).help(
+    cx.report_error(span, format!("`#[mechanism]` cannot be applied to {what}")).add_help(
         "a mechanism is a struct with named fields: parameters (`mass: f64`) and elements (`#[body(mass = \
          mass)] cart: Body`)",
     );
@@ -156,17 +159,17 @@ fn check_generics(item: &mut ItemStruct, cx: &mut Diagnostics) -> (Option<String
                 item.generics.params.push(parameter);
             }
             GenericParam::Type(t) => {
-                cx.error(t.ident.span(), format!("a second type parameter `{}`", t.ident))
-                    .help("a mechanism has at most one scalar type");
+                cx.report_error(t.ident.span(), format!("a second type parameter `{}`", t.ident))
+                    .add_help("a mechanism has at most one scalar type");
                 refused.push(t.ident.clone());
             }
             GenericParam::Const(c) => {
-                cx.error(c.ident.span(), "a mechanism can be generic over its scalar type only")
-                    .help("write `struct Robot<T>` with parameters of type `T`");
+                cx.report_error(c.ident.span(), "a mechanism can be generic over its scalar type only")
+                    .add_help("write `struct Robot<T>` with parameters of type `T`");
             }
             GenericParam::Lifetime(l) => {
-                cx.error(l.lifetime.span(), "a mechanism can be generic over its scalar type only")
-                    .help("write `struct Robot<T>` with parameters of type `T`");
+                cx.report_error(l.lifetime.span(), "a mechanism can be generic over its scalar type only")
+                    .add_help("write `struct Robot<T>` with parameters of type `T`");
             }
         }
     }

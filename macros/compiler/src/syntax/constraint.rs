@@ -14,34 +14,36 @@ pub fn read_constraint(
     description: &mut Description,
     cx: &mut Diagnostics,
 ) {
-    let element = kind.element();
-    let (row, names) = (element.row(), &element.keys());
-    let (given, _) = Keys::new(element, names).read(arguments, cx);
+    let element = kind.catalogue_row();
+    let (row, names) = (element.row(), &element.argument_names());
+    let (given, _) = Keys::new(element, names).read_arguments(arguments, cx);
     let found = arguments.take_equation();
     let (whose, example) = (format!("a {} constraint", row.name), row.example);
-    if let (Some((value, None)), [second, ..]) = (&found, arguments.plain()) {
-        let (message, help) = match kind.pair() {
-            Some(pair) => (format!("expected a pair that {}", pair.verb()), format!("write `{example}`")),
+    if let (Some((value, None)), [second, ..]) = (&found, arguments.positional_arguments()) {
+        let (message, help) = match kind.surface_pair_function() {
+            Some(pair) => {
+                (format!("expected a pair that {}", pair.contact_verb()), format!("write `{example}`"))
+            }
             None => {
                 let help = format!("write `{} = {}`", value.to_source(), second.to_source());
                 ("expected one equation".to_string(), help)
             }
         };
-        cx.error(value.place.join(&second.place), message).help(help);
+        cx.report_error(value.place.extend_to(&second.place), message).add_help(help);
         return;
     }
     let is_empty = arguments.is_empty();
-    arguments.finish(&whose, names, cx);
+    arguments.report_remaining_arguments(&whose, names, cx);
     let Some((value, other)) = found else {
         if is_empty {
-            cx.error(name.place.clone(), format!("`{}` has no expression", name.text))
-                .help(format!("write `{example}`"));
+            cx.report_error(name.place.clone(), format!("`{}` has no expression", name.text))
+                .add_help(format!("write `{example}`"));
         }
         return;
     };
-    if let (Some(_), Some(other)) = (kind.pair(), &other) {
-        cx.error(other.place.clone(), "a pair of surfaces is not an equation")
-            .help(format!("write `{example}`"));
+    if let (Some(_), Some(other)) = (kind.surface_pair_function(), &other) {
+        cx.report_error(other.place.clone(), "a pair of surfaces is not an equation")
+            .add_help(format!("write `{example}`"));
         return;
     }
     description.constraints.push(Constraint { name, kind, value, other, arguments: given });
@@ -54,16 +56,16 @@ pub fn read_limit(
     description: &mut Description,
     cx: &mut Diagnostics,
 ) {
-    let (row, names) = (OtherKind::Limit.row(), &OtherKind::Limit.keys());
+    let (row, names) = (OtherKind::Limit.row(), &OtherKind::Limit.argument_names());
     let on = arguments.need_expr("on", "joint", "limit", names, cx);
-    let (given, _) = Keys::new(OtherKind::Limit, names).read(arguments, cx);
+    let (given, _) = Keys::new(OtherKind::Limit, names).read_arguments(arguments, cx);
     let is_empty = arguments.is_empty();
-    arguments.finish("a Limit", names, cx);
+    arguments.report_remaining_arguments("a Limit", names, cx);
     let Some(on) = on else { return };
     if given.iter().all(|(key, _)| key == Key::Restitution) {
         if is_empty {
-            cx.error(name.place.clone(), format!("the limit `{}` has no bound", name.text))
-                .help("add a bound: `from = …`, `to = …`, `max_speed = …`, `max_effort = …`");
+            cx.report_error(name.place.clone(), format!("the limit `{}` has no bound", name.text))
+                .add_help("add a bound: `from = …`, `to = …`, `max_speed = …`, `max_effort = …`");
         }
     } else if check_relations(row.relations, &given, &name, cx) {
         description.limits.push(Limit { name, on, arguments: given });

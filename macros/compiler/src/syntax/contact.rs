@@ -20,26 +20,28 @@ pub fn read_contact(
     description: &mut Description,
     cx: &mut Diagnostics,
 ) {
-    let (row, names) = (OtherKind::Contact.row(), &OtherKind::Contact.keys());
-    let (given, _) = Keys::new(OtherKind::Contact, names).read(arguments, cx);
+    let (row, names) = (OtherKind::Contact.row(), &OtherKind::Contact.argument_names());
+    let (given, _) = Keys::new(OtherKind::Contact, names).read_arguments(arguments, cx);
     check_relations(row.relations, &given, &name, cx);
     let mut surfaces = arguments.take_plain().into_iter();
     let is_empty = arguments.is_empty();
-    arguments.finish("a Contact", names, cx);
+    arguments.report_remaining_arguments("a Contact", names, cx);
     let example = row.example;
     match (surfaces.next(), surfaces.next(), surfaces.next()) {
         (Some(first), Some(second), None) => {
             description.contacts.push(Contact { name, first, second, arguments: given, of_file: false });
         }
         (Some(only), None, _) => {
-            cx.error(only.place, "expected two surfaces, found one").help(format!("write `{example}`"));
+            cx.report_error(only.place, "expected two surfaces, found one")
+                .add_help(format!("write `{example}`"));
         }
         (Some(_), Some(_), Some(more)) => {
-            cx.error(more.place, "a contact is between two surfaces").help("declare a field for each pair");
+            cx.report_error(more.place, "a contact is between two surfaces")
+                .add_help("declare a field for each pair");
         }
         _ if is_empty => {
-            cx.error(name.place.clone(), format!("`{}` has no surfaces", name.text))
-                .help(format!("write `{example}`"));
+            cx.report_error(name.place.clone(), format!("`{}` has no surfaces", name.text))
+                .add_help(format!("write `{example}`"));
         }
         _ => {}
     }
@@ -47,7 +49,7 @@ pub fn read_contact(
 
 /// Returns the link of `link.collision()`, or `Some(None)` for `collision()`, which denotes all links of the
 /// file. `link.collision(2)` is the third shape of a link.
-pub fn collision(surface: &Expr) -> Option<Option<&Expr>> {
+pub fn collision_link(surface: &Expr) -> Option<Option<&Expr>> {
     match &surface.kind {
         ExprKind::Method(link, word, arguments)
             if word.id == Some(Method::Collision) && arguments.len() < 2 =>
@@ -64,11 +66,11 @@ pub fn collision(surface: &Expr) -> Option<Option<&Expr>> {
 /// Returns the indices of the shapes that `link.collision()`, `link.collision(2)` or `collision()` denotes;
 /// `None` for other surfaces.
 pub fn select_collisions(surface: &Expr, all: &[Collision]) -> Option<Vec<usize>> {
-    let link = collision(surface)?.and_then(Expr::name);
+    let link = collision_link(surface)?.and_then(Expr::as_name);
     let of_link = |part: &Collision| link.is_none_or(|name| part.on.body.text == name);
     let parts = (0..all.len()).filter(|k| of_link(&all[*k]));
     let index = match &surface.kind {
-        ExprKind::Method(_, _, arguments) => arguments.first().and_then(Expr::literal),
+        ExprKind::Method(_, _, arguments) => arguments.first().and_then(Expr::literal_number),
         _ => None,
     };
     Some(match index {
@@ -80,6 +82,6 @@ pub fn select_collisions(surface: &Expr, all: &[Collision]) -> Option<Vec<usize>
 impl Contact {
     /// Whether the contact uses collision geometry of a file.
     pub fn names_collisions(&self) -> bool {
-        [&self.first, &self.second].into_iter().any(|surface| collision(surface).is_some())
+        [&self.first, &self.second].into_iter().any(|surface| collision_link(surface).is_some())
     }
 }

@@ -12,26 +12,26 @@ pub fn take_path(arguments: TokenStream, cx: &mut Diagnostics) -> (TokenStream, 
     let mut found = None;
     let mut tokens = arguments.into_iter().peekable();
     while let Some(token) = tokens.next() {
-        let starts = rest.last().is_none_or(|last| is(last, ','));
+        let starts = rest.last().is_none_or(|last| is_punctuation(last, ','));
         let is_crate = matches!(&token, TokenTree::Ident(word) if word == "crate");
-        if !(starts && is_crate && tokens.peek().is_some_and(|next| is(next, '='))) {
+        if !(starts && is_crate && tokens.peek().is_some_and(|next| is_punctuation(next, '='))) {
             rest.push(token);
             continue;
         }
         tokens.next();
         let mut path = Vec::new();
-        while let Some(part) = tokens.next_if(|part| !is(part, ',')) {
+        while let Some(part) = tokens.next_if(|part| !is_punctuation(part, ',')) {
             path.push(part);
         }
         tokens.next();
         if found.is_some() {
-            cx.error(token.span(), "`crate` is given twice");
+            cx.report_error(token.span(), "`crate` is given twice");
         }
         let span = path.first().map_or(token.span(), TokenTree::span);
         match Path::parse_mod_style.parse2(path.into_iter().collect()) {
             Ok(path) => found = Some(path),
             Err(_) => {
-                cx.error(span, "expected a path for `crate`").help(
+                cx.report_error(span, "expected a path for `crate`").add_help(
                     "write `crate = name` if the dependency has another name, `crate = other::linkwork` if \
                      another crate re-exports it",
                 );
@@ -41,6 +41,6 @@ pub fn take_path(arguments: TokenStream, cx: &mut Diagnostics) -> (TokenStream, 
     (rest.into_iter().collect(), found)
 }
 
-fn is(token: &TokenTree, sign: char) -> bool {
+fn is_punctuation(token: &TokenTree, sign: char) -> bool {
     matches!(token, TokenTree::Punct(punct) if punct.as_char() == sign)
 }

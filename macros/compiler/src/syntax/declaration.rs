@@ -6,22 +6,22 @@ use syn::{Attribute, Expr, ExprLit, ItemStruct, Lit, Meta};
 
 /// Returns the source text of a struct's fields with their braces. `None` outside of a compilation, and for
 /// tokens assembled by a macro.
-pub fn fields(item: &TokenStream) -> Option<String> {
+pub fn fields_source_text(item: &TokenStream) -> Option<String> {
     let braces = item.clone().into_iter().find_map(|token| match token {
         TokenTree::Group(group) if group.delimiter() == Delimiter::Brace => Some(group.span()),
         _ => None,
     });
-    braces.map(source).unwrap_or_else(|| Some(";".to_string()))
+    braces.map(source_text_of_token).unwrap_or_else(|| Some(";".to_string()))
 }
 
 /// Returns the source text of a token, unless it is part of a macro definition.
-fn source(span: Span) -> Option<String> {
+fn source_text_of_token(span: Span) -> Option<String> {
     span.source_text().filter(|text| !text.contains('$'))
 }
 
 /// Returns the source text of the attribute and of the struct with its fields.
-pub fn text(item: &ItemStruct, fields: Option<String>) -> Option<String> {
-    let attribute = source(Span::call_site()).filter(|text| text.starts_with("#["))?;
+pub fn declaration_text(item: &ItemStruct, fields: Option<String>) -> Option<String> {
+    let attribute = source_text_of_token(Span::call_site()).filter(|text| text.starts_with("#["))?;
     let fields = fields?;
     let (visibility, name) = (item.vis.to_token_stream().to_string(), &item.ident);
     let generics = item.generics.params.to_token_stream().to_string();
@@ -30,11 +30,11 @@ pub fn text(item: &ItemStruct, fields: Option<String>) -> Option<String> {
     let head = [visibility, format!("struct {name}{generics}"), bounds];
     let head = head.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");
     let space = if fields == ";" { "" } else { " " };
-    Some(format!("{}\n{head}{space}{}", dedent(&attribute), dedent(&fields)))
+    Some(format!("{}\n{head}{space}{}", remove_indentation(&attribute), remove_indentation(&fields)))
 }
 
 /// Removes the indentation of the last line, the closing brace, from all lines.
-fn dedent(text: &str) -> String {
+fn remove_indentation(text: &str) -> String {
     let depth = text.lines().last().map_or(0, |last| last.len() - last.trim_start().len());
     let dedent_line = |line: &str| {
         let blank = line.len() - line.trim_start().len();
@@ -46,7 +46,7 @@ fn dedent(text: &str) -> String {
 }
 
 /// Returns the first paragraph of the doc comment of every field that has one.
-pub fn notes(item: &ItemStruct) -> Vec<(String, String)> {
+pub fn field_notes(item: &ItemStruct) -> Vec<(String, String)> {
     let note_of_field = |field: &syn::Field| {
         let name = field.ident.as_ref()?.to_string();
         let paragraph = first_paragraph(&field.attrs);
@@ -78,8 +78,11 @@ mod tests {
 
     #[test]
     fn lines_start_where_the_last_does() {
-        assert_eq!(dedent("{\n        a: f64,\n\n            b\n    }"), "{\n    a: f64,\n\n        b\n}");
-        assert_eq!(dedent("{ a: f64 }"), "{ a: f64 }");
+        assert_eq!(
+            remove_indentation("{\n        a: f64,\n\n            b\n    }"),
+            "{\n    a: f64,\n\n        b\n}"
+        );
+        assert_eq!(remove_indentation("{ a: f64 }"), "{ a: f64 }");
     }
 
     #[test]
@@ -94,6 +97,6 @@ mod tests {
                 mass: f64,
             }
         };
-        assert_eq!(notes(&item), [("length".to_string(), "The length, of the rod.".to_string())]);
+        assert_eq!(field_notes(&item), [("length".to_string(), "The length, of the rod.".to_string())]);
     }
 }

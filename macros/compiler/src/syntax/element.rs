@@ -10,7 +10,7 @@ use super::{
     Body, ConstraintKind, Definition, Description, Equilibrium, Expr, Frame, FreeCoordinate, Name, Particle,
     Point, Rank, words,
 };
-use crate::diag::{Diagnostics, Place, nearest, one_of, syn_error};
+use crate::diag::{Diagnostics, Place, nearest_candidate, one_of, syn_error};
 use crate::language::elements::article;
 use crate::language::{ElementKind, OtherKind};
 use proc_macro2::{Span, TokenStream};
@@ -49,30 +49,35 @@ const RUST_NUMBERS: [&str; 12] =
 /// Reports a field whose type is neither a parameter's nor an element's.
 pub fn unknown_type(field: &Name, kind: &str, place: impl Into<Place>, cx: &mut Diagnostics) {
     if RUST_NUMBERS.contains(&kind) {
-        cx.error(place, format!("the parameter `{}` cannot have the type `{kind}`", field.text))
-            .help("parameters are real numbers: `f64`, `f32` or the struct's own type parameter");
+        cx.report_error(place, format!("the parameter `{}` cannot have the type `{kind}`", field.text))
+            .add_help("parameters are real numbers: `f64`, `f32` or the struct's own type parameter");
     } else if matches!(kind, "" | "bool" | "char" | "str" | "String" | "Vec" | "Option") {
-        cx.error(place, format!("field `{}` has a type that is not supported in a mechanism", field.text))
-            .help(
-                "a field is a parameter (`f64`, `f32` or the struct's own type parameter) or an element \
+        cx.report_error(
+            place,
+            format!("field `{}` has a type that is not supported in a mechanism", field.text),
+        )
+        .add_help(
+            "a field is a parameter (`f64`, `f32` or the struct's own type parameter) or an element \
                  (`Body`, `Pin`, …); a vector is three parameters, `[a, b, c]` in expressions",
-            );
+        );
     } else {
         let types = element_types();
-        let diagnostic = cx.error(place, format!("unknown element type `{kind}`"));
-        let near = crate::diag::nearest(kind, &types);
+        let diagnostic = cx.report_error(place, format!("unknown element type `{kind}`"));
+        let near = crate::diag::nearest_candidate(kind, &types);
         if near.is_some_and(|near| near.eq_ignore_ascii_case(kind))
             || !words::explain_element(diagnostic, kind, &types)
         {
-            diagnostic.suggest(kind, types);
+            diagnostic.suggest_name(kind, types);
         }
         if let [letter] = kind.as_bytes()
             && letter.is_ascii_uppercase()
         {
-            diagnostic.help(format!("or declare it as the type of all parameters: `struct Robot<{kind}>`"));
+            diagnostic
+                .add_help(format!("or declare it as the type of all parameters: `struct Robot<{kind}>`"));
         }
         if diagnostic.is_bare() {
-            diagnostic.help("`linkwork::elements` lists them: `Body`, `Pin`, `Sleeve`, `Spring`, `Force`, …");
+            diagnostic
+                .add_help("`linkwork::elements` lists them: `Body`, `Pin`, `Sleeve`, `Spring`, `Force`, …");
         }
     }
 }
@@ -84,7 +89,7 @@ pub fn is_element(kind: &str) -> bool {
 
 /// Returns all element types of the language, and that of parameters.
 fn element_types() -> Vec<&'static str> {
-    ["f64"].into_iter().chain(ElementKind::names()).collect()
+    ["f64"].into_iter().chain(ElementKind::element_names()).collect()
 }
 
 /// Reads the element `name: kind` with its attributes into the description.
@@ -100,7 +105,7 @@ pub fn read_element(
         unknown_type(name, &kind_name, kind.span(), cx);
         return;
     };
-    let expected = element.attributes();
+    let expected = element.element_attributes();
     let given = attributes.iter().find(|a| is_one_of(a, expected));
     let word = given.map(attribute_name).or(expected.first().map(ToString::to_string));
     let arguments = match &word {
@@ -132,9 +137,9 @@ pub fn read_rate(name: &Name, kind: &Ident, attributes: &[Attribute], cx: &mut D
     let kind = (&*kind.to_string(), ElementKind::Other(OtherKind::State));
     let arguments = attribute_arguments(name, kind, "state", attributes, cx)?;
     let mut arguments = arguments.with_owner(name);
-    let keys = &OtherKind::State.keys();
+    let keys = &OtherKind::State.argument_names();
     let rate = arguments.need_expr("rate", "(command - level) / lag", "state", keys, cx);
-    arguments.finish("a State", keys, cx);
+    arguments.report_remaining_arguments("a State", keys, cx);
     rate
 }
 
@@ -170,8 +175,8 @@ pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
     let tokens = match &attribute.meta {
         Meta::List(list) if !list.tokens.is_empty() => list.tokens.clone(),
         _ => {
-            cx.error(attribute.path().span(), "missing unit")
-                .help("write `#[unit(kg)]` or `#[unit(N * m / rad)]`");
+            cx.report_error(attribute.path().span(), "missing unit")
+                .add_help("write `#[unit(kg)]` or `#[unit(N * m / rad)]`");
             return None;
         }
     };
@@ -191,7 +196,7 @@ pub fn read_unit(attribute: &Attribute, cx: &mut Diagnostics) -> Option<Expr> {
         };
         Err(syn_error(input.span(), "expected `*` or `/`", help))
     };
-    parse_whole_unit.parse2(tokens).map_err(|error| cx.syn(error)).ok()
+    parse_whole_unit.parse2(tokens).map_err(|error| cx.report_syn_error(error)).ok()
 }
 
 /// Returns the arguments of the only attribute of an element of this kind.
@@ -210,22 +215,22 @@ fn attribute_arguments(
         let span = path.segments.first().map_or_else(Span::call_site, |s| s.ident.span());
         if word == expected {
             if found.is_some() {
-                cx.error(span, format!("`{}` has a second `#[{expected}]`", name.text))
-                    .help("write all arguments in one attribute");
+                cx.report_error(span, format!("`{}` has a second `#[{expected}]`", name.text))
+                    .add_help("write all arguments in one attribute");
             } else {
                 found = Some(Arguments::of_attribute(attribute, cx));
             }
         } else if ATTRIBUTES.contains(&word.as_str()) {
-            cx.error(span, format!("a `{kind}` has no `#[{word}]`"))
-                .help(format!("expected `#[{expected}(…)]`"));
+            cx.report_error(span, format!("a `{kind}` has no `#[{word}]`"))
+                .add_help(format!("expected `#[{expected}(…)]`"));
             return None;
-        } else if !check_foreign(&word, span, (kind, element.attributes()), cx) {
+        } else if !check_foreign(&word, span, (kind, element.element_attributes()), cx) {
             return None;
         }
     }
     if found.is_none() {
-        cx.error(name.place.clone(), format!("`{}` has no attribute that defines it", name.text))
-            .help(format!("add `{}`", words::example(kind)));
+        cx.report_error(name.place.clone(), format!("`{}` has no attribute that defines it", name.text))
+            .add_help(format!("add `{}`", words::example_declaration(kind)));
     }
     found.flatten()
 }
@@ -236,23 +241,25 @@ fn check_foreign(word: &str, span: Span, (kind, own): (&str, &[&str]), cx: &mut 
     match word {
         "doc" | "allow" | "expect" | "warn" | "deny" | "forbid" | "deprecated" => return true,
         "cfg" | "cfg_attr" => {
-            cx.error(span, "an element cannot be conditional").help(CONDITION_HELP);
+            cx.report_error(span, "an element cannot be conditional").add_help(CONDITION_HELP);
             return true;
         }
         _ => {}
     }
-    let diagnostic = cx.error(span, format!("unknown attribute `#[{word}]` on an element"));
+    let diagnostic = cx.report_error(span, format!("unknown attribute `#[{word}]` on an element"));
     if own.is_empty() {
-        diagnostic.help(format!("{} `{kind}` has no attribute", article(kind)));
-    } else if let Some(last) = word.rsplit("::").next().filter(|last| nearest(last, own).is_some()) {
-        diagnostic.suggest(last, own.iter().copied());
+        diagnostic.add_help(format!("{} `{kind}` has no attribute", article(kind)));
+    } else if let Some(last) = word.rsplit("::").next().filter(|last| nearest_candidate(last, own).is_some())
+    {
+        diagnostic.suggest_name(last, own.iter().copied());
         return false;
     } else {
         let list: Vec<String> = own.iter().map(|word| format!("`#[{word}(…)]`")).collect();
-        diagnostic.help(format!("expected {}", one_of(&list)));
+        diagnostic.add_help(format!("expected {}", one_of(&list)));
     }
-    diagnostic
-        .help("elements are removed from the struct; only parameters can have attributes of other crates");
+    diagnostic.add_help(
+        "elements are removed from the struct; only parameters can have attributes of other crates",
+    );
     false
 }
 
@@ -267,22 +274,25 @@ fn read_body(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -> Bo
         at: arguments.take_expr("at", cx),
         frame: arguments.take_expr("frame", cx),
     };
-    arguments.finish("a Body", &["mass", "com", "inertia", "about", "at", "frame"], cx);
+    arguments.report_remaining_arguments("a Body", &["mass", "com", "inertia", "about", "at", "frame"], cx);
     if let (Some(about), None) = (&body.about, &body.inertia) {
-        cx.error(
+        cx.report_error(
             about.place.clone(),
             "`about` is the reference point of the inertia, but there is no inertia",
         )
-        .help("add `inertia = …`, or remove it");
+        .add_help("add `inertia = …`, or remove it");
     }
     if let Some(place) = massive {
         if body.at.is_none() && body.frame.is_none() {
-            cx.error(place, "the motion of a massive body is prescribed").help(
+            cx.report_error(place, "the motion of a massive body is prescribed").add_help(
                 "place it by expressions of time: `#[body(massive, at = height * sin(speed * t) * z)]`",
             );
         } else if body.mass.is_some() || body.inertia.is_some() {
-            cx.error(place, "the motion of a massive body is prescribed and does not depend on its mass")
-                .help("remove `mass` and `inertia`");
+            cx.report_error(
+                place,
+                "the motion of a massive body is prescribed and does not depend on its mass",
+            )
+            .add_help("remove `mass` and `inertia`");
         }
     }
     body
@@ -292,7 +302,7 @@ fn read_particle(name: &Name, arguments: &mut Arguments, cx: &mut Diagnostics) -
     let keys = ["mass", "at"];
     let mass = arguments.need_expr("mass", "m", "particle", &keys, cx);
     let at = arguments.take_expr("at", cx);
-    arguments.finish("a Particle", &keys, cx);
+    arguments.report_remaining_arguments("a Particle", &keys, cx);
     Some(Particle { name: name.clone(), mass: mass?, at })
 }
 
@@ -310,8 +320,11 @@ fn no_arguments(
 ) -> Option<Arguments> {
     if let Some(attribute) = attributes.iter().find(|a| is_one_of(a, &ATTRIBUTES)) {
         let span = attribute.path().segments.first().map_or_else(Span::call_site, |s| s.ident.span());
-        cx.error(span, format!("{} `{kind}` has no `#[{}]`", article(kind), attribute_name(attribute)))
-            .help("the field alone declares it: remove the attribute");
+        cx.report_error(
+            span,
+            format!("{} `{kind}` has no `#[{}]`", article(kind), attribute_name(attribute)),
+        )
+        .add_help("the field alone declares it: remove the attribute");
         return None;
     }
     for attribute in attributes {
@@ -347,30 +360,33 @@ fn read_other(
                 }
                 None if !arguments.is_empty() => {}
                 None => {
-                    cx.error(name.place.clone(), "a frame starts with the axes of a body or another frame")
-                        .help("write `#[frame(ground, z(angle))]`");
+                    cx.report_error(
+                        name.place.clone(),
+                        "a frame starts with the axes of a body or another frame",
+                    )
+                    .add_help("write `#[frame(ground, z(angle))]`");
                 }
             }
-            arguments.finish("a Frame", &[], cx);
+            arguments.report_remaining_arguments("a Frame", &[], cx);
         }
         OtherKind::Point => {
             let (on, at) = (arguments.take_expr("on", cx), arguments.take_expr("at", cx));
-            if let [body, place] = arguments.plain() {
+            if let [body, place] = arguments.positional_arguments() {
                 let help = format!("write `#[point(on = {}, at = {})]`", body.to_source(), place.to_source());
-                cx.error(body.place.join(&place.place), "expected `name = value`").help(help);
+                cx.report_error(body.place.extend_to(&place.place), "expected `name = value`").add_help(help);
                 return;
             }
             if on.is_none() && at.is_none() && arguments.is_empty() {
-                cx.error(name.place.clone(), "a point needs a position")
-                    .help("write `#[point(on = body, at = length * x)]`");
+                cx.report_error(name.place.clone(), "a point needs a position")
+                    .add_help("write `#[point(on = body, at = length * x)]`");
             }
-            arguments.finish("a Point", &kind.keys(), cx);
+            arguments.report_remaining_arguments("a Point", &kind.argument_names(), cx);
             description.points.push(Point { name, on, at });
         }
         OtherKind::Limit => read_limit(name, arguments, description, cx),
         OtherKind::Equilibrium => {
             let values = arguments.take_values();
-            arguments.finish("an Equilibrium", &[], cx);
+            arguments.report_remaining_arguments("an Equilibrium", &[], cx);
             description.equilibria.push(Equilibrium { name, values });
         }
         OtherKind::Holonomic => read_constraint(name, ConstraintKind::Holonomic, arguments, description, cx),
@@ -441,18 +457,22 @@ fn read_expression(
     let word = attribute.unwrap_or("define");
     if !plain.is_empty() {
         let last = value.as_ref().map_or(&name.place, |e| &e.place);
-        cx.error(
-            plain[0].place.join(last),
+        cx.report_error(
+            plain[0].place.extend_to(last),
             format!("`#[{word}(…)]` takes one expression, found {}", plain.len() + 1),
         )
-        .help("declare a field for each");
+        .add_help("declare a field for each");
         return None;
     }
     let is_empty = arguments.is_empty();
-    arguments.finish(&ElementKind::Other(kind).phrase(), &kind.keys(), cx);
+    arguments.report_remaining_arguments(
+        &ElementKind::Other(kind).name_with_article(),
+        &kind.argument_names(),
+        cx,
+    );
     if value.is_none() && is_empty {
-        cx.error(name.place.clone(), format!("`{}` has no expression", name.text))
-            .help(format!("write `#[{word}(expression)]`"));
+        cx.report_error(name.place.clone(), format!("`{}` has no expression", name.text))
+            .add_help(format!("write `#[{word}(expression)]`"));
     }
     value
 }

@@ -37,12 +37,12 @@ impl Size {
     }
 
     /// Returns the size of an expression in which these operands are nested.
-    fn nested(self) -> Self {
+    fn size_of_nested(self) -> Self {
         Self { depth: self.depth + 1, length: self.length + 1 }
     }
 
     /// Returns the size of a chain with one more link, at the same nesting depth.
-    fn extended(self) -> Self {
+    fn size_of_longer_chain(self) -> Self {
         Self { length: self.length + 1, ..self }
     }
 }
@@ -54,15 +54,15 @@ pub fn parse_expr(input: ParseStream<'_>) -> syn::Result<Expr> {
 
 /// Parses a name, including keywords.
 pub fn parse_name(input: ParseStream<'_>) -> syn::Result<Name> {
-    Ident::parse_any(input).map(|ident| name(&ident))
+    Ident::parse_any(input).map(|ident| name_from_identifier(&ident))
 }
 
 /// Converts an identifier to a name.
-pub fn name(ident: &Ident) -> Name {
+pub fn name_from_identifier(ident: &Ident) -> Name {
     Name { text: ident.unraw().to_string(), place: ident.span().into() }
 }
 
-fn node(kind: ExprKind, place: Place, size: Size) -> syn::Result<Parsed> {
+fn check_expression_size(kind: ExprKind, place: Place, size: Size) -> syn::Result<Parsed> {
     let message = if size.depth > guard::MAX_DEPTH {
         "this expression is nested too deeply"
     } else if size.length > MAX_LENGTH {
@@ -85,7 +85,7 @@ fn parse_sum(input: ParseStream<'_>) -> syn::Result<Parsed> {
             return Ok(left);
         };
         let right = parse_operand(span, input, parse_product)?;
-        left = binary(op, span, left, right)?;
+        left = binary_expression(op, span, left, right)?;
     }
 }
 
@@ -103,7 +103,7 @@ fn parse_product(input: ParseStream<'_>) -> syn::Result<Parsed> {
             return Ok(left);
         };
         let right = parse_operand(span, input, parse_unary)?;
-        left = binary(op, span, left, right)?;
+        left = binary_expression(op, span, left, right)?;
     }
 }
 
@@ -124,18 +124,22 @@ fn parse_operand(
     parse(input)
 }
 
-fn binary(op: BinaryOp, operator: Span, left: Parsed, right: Parsed) -> syn::Result<Parsed> {
-    let size = left.1.extended().max(right.1.nested());
-    let place = left.0.place.join(&right.0.place);
-    node(ExprKind::Binary(op, Box::new(left.0), Box::new(right.0), operator.into()), place, size)
+fn binary_expression(op: BinaryOp, operator: Span, left: Parsed, right: Parsed) -> syn::Result<Parsed> {
+    let size = left.1.size_of_longer_chain().max(right.1.size_of_nested());
+    let place = left.0.place.extend_to(&right.0.place);
+    check_expression_size(
+        ExprKind::Binary(op, Box::new(left.0), Box::new(right.0), operator.into()),
+        place,
+        size,
+    )
 }
 
 fn parse_unary(input: ParseStream<'_>) -> syn::Result<Parsed> {
     if input.peek(Token![-]) && !input.peek(Token![->]) {
         let span = input.parse::<Token![-]>()?.span;
         let inner = parse_operand(span, input, parse_unary)?;
-        let place = Place::from(span).join(&inner.0.place);
-        return node(ExprKind::Neg(Box::new(inner.0)), place, inner.1.nested());
+        let place = Place::from(span).extend_to(&inner.0.place);
+        return check_expression_size(ExprKind::Neg(Box::new(inner.0)), place, inner.1.size_of_nested());
     }
     parse_postfix(input)
 }
@@ -149,21 +153,21 @@ fn parse_postfix(input: ParseStream<'_>) -> syn::Result<Parsed> {
             return Err(syn_error(dot, "expected a name after this dot", help));
         }
         let member = parse_name(input)?;
-        let size = inner.1.extended();
+        let size = inner.1.size_of_longer_chain();
         inner = if input.peek(token::Paren) {
             let (arguments, arguments_size, close) = match member.text == SurfaceId::Hull.name() {
                 true => parse_hull(input)?,
                 false => parse_arguments(input)?,
             };
-            let place = inner.0.place.join(&close.into());
-            node(
+            let place = inner.0.place.extend_to(&close.into());
+            check_expression_size(
                 ExprKind::Method(Box::new(inner.0), Member::new(member, arguments.len()), arguments),
                 place,
-                size.max(arguments_size.nested()),
+                size.max(arguments_size.size_of_nested()),
             )?
         } else {
-            let place = inner.0.place.join(&member.place);
-            node(ExprKind::Field(Box::new(inner.0), member), place, size)?
+            let place = inner.0.place.extend_to(&member.place);
+            check_expression_size(ExprKind::Field(Box::new(inner.0), member), place, size)?
         };
     }
     Ok(inner)
@@ -179,20 +183,20 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
     if input.peek(token::Paren) {
         let content;
         let span = parenthesized!(content in input).span;
-        let place = Place::from(span.open()).join(&span.close().into());
+        let place = Place::from(span.open()).extend_to(&span.close().into());
         let (mut items, size, trailing) = parse_list(&content)?;
         if items.len() == 1 && !trailing {
             let item = items.remove(0);
-            return Ok(Parsed(Expr { place, ..item }, size.nested()));
+            return Ok(Parsed(Expr { place, ..item }, size.size_of_nested()));
         }
-        return node(ExprKind::Tuple(items), place, size.nested());
+        return check_expression_size(ExprKind::Tuple(items), place, size.size_of_nested());
     }
     if input.peek(token::Bracket) {
         let content;
         let span = bracketed!(content in input).span;
-        let place = Place::from(span.open()).join(&span.close().into());
+        let place = Place::from(span.open()).extend_to(&span.close().into());
         let (items, size, _) = parse_list(&content)?;
-        return node(ExprKind::Array(items), place, size.nested());
+        return check_expression_size(ExprKind::Array(items), place, size.size_of_nested());
     }
     if input.peek(Token![if]) {
         return parse_pieces(input);
@@ -203,13 +207,13 @@ fn parse_primary(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let place = name.place.clone();
         if input.peek(token::Paren) {
             let (arguments, size, close) = parse_arguments(input)?;
-            return node(
+            return check_expression_size(
                 ExprKind::Call(Callee::new(name), arguments),
-                place.join(&close.into()),
-                size.nested(),
+                place.extend_to(&close.into()),
+                size.size_of_nested(),
             );
         }
-        return node(ExprKind::Name(name.text), place, Size::ONE);
+        return check_expression_size(ExprKind::Name(name.text), place, Size::ONE);
     }
     Err(missing_expression_error(input))
 }
@@ -244,12 +248,13 @@ fn parse_pieces(input: ParseStream<'_>) -> syn::Result<Parsed> {
         }
     };
     for Branch { keyword, left, right, is_less, piece } in branches.into_iter().rev() {
-        let size = left.1.max(right.1).max(piece.1).max(last.1).nested();
+        let size = left.1.max(right.1).max(piece.1).max(last.1).size_of_nested();
         let pieces = if is_less { [piece.0, last.0] } else { [last.0, piece.0] };
         let arguments = [left.0, right.0].into_iter().chain(pieces).collect();
         let place = Place::from(keyword);
         let name = Name { text: IF.to_string(), place: place.clone() };
-        last = node(ExprKind::Call(Callee::new(name), arguments), place.join(&end), size)?;
+        last =
+            check_expression_size(ExprKind::Call(Callee::new(name), arguments), place.extend_to(&end), size)?;
     }
     Ok(last)
 }
@@ -362,7 +367,7 @@ pub fn unexpected_token_error(input: ParseStream<'_>) -> syn::Error {
 }
 
 /// Returns a text in quotes.
-pub fn quoted(text: &str) -> String {
+pub fn quote_text(text: &str) -> String {
     format!("\"{text}\"")
 }
 
@@ -372,7 +377,9 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
         Lit::Int(n) => (n.base10_digits().to_string(), n.suffix().to_string()),
         Lit::Float(n) => (n.base10_digits().to_string(), n.suffix().to_string()),
         // Words; the error at their use is more helpful.
-        Lit::Bool(b) => return node(ExprKind::Name(b.value.to_string()), b.span.into(), Size::ONE),
+        Lit::Bool(b) => {
+            return check_expression_size(ExprKind::Name(b.value.to_string()), b.span.into(), Size::ONE);
+        }
         Lit::Str(_) | Lit::Char(_) => {
             let message = "expected an expression, found a string";
             return Err(syn_error(literal.span(), message, "write it without quotes"));
@@ -388,7 +395,9 @@ fn parse_number(input: ParseStream<'_>) -> syn::Result<Parsed> {
         ));
     }
     match digits.parse::<f64>() {
-        Ok(value) if value.is_finite() => node(ExprKind::Number(value), literal.span().into(), Size::ONE),
+        Ok(value) if value.is_finite() => {
+            check_expression_size(ExprKind::Number(value), literal.span().into(), Size::ONE)
+        }
         _ => Err(syn_error(literal.span(), "this number is too large", "the largest is about 1e308")),
     }
 }

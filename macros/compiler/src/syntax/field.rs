@@ -1,6 +1,6 @@
 //! Fields of a mechanism: parameters, tables, states and elements.
 
-use super::expression::name;
+use super::expression::name_from_identifier;
 use super::mechanism::Shell;
 use super::parameter::{check_parameter_attributes, read_units, span_of, type_name, unify_scalar};
 use super::state::read_state;
@@ -20,9 +20,10 @@ pub fn read_field(
     cx: &mut Diagnostics,
 ) {
     let Some(ident) = field.ident.clone() else { return };
-    let field_name = name(&ident);
+    let field_name = name_from_identifier(&ident);
     if ident == "_" {
-        cx.error(ident.span(), "a field of a mechanism needs a name").help("write a name, such as `_unused`");
+        cx.report_error(ident.span(), "a field of a mechanism needs a name")
+            .add_help("write a name, such as `_unused`");
         return;
     }
     if let Some(variables) = table_variables(&field.ty) {
@@ -93,9 +94,9 @@ pub fn check_distinct(names: &[&Name], cx: &mut Diagnostics) -> Vec<String> {
     for pair in sorted.windows(2) {
         let (first, second) = (pair[0].1, pair[1].1);
         if first.text == second.text {
-            cx.error(second.place.clone(), format!("the name `{}` is used twice", second.text))
-                .note("another field has this name as well")
-                .help("rename one of the two");
+            cx.report_error(second.place.clone(), format!("the name `{}` is used twice", second.text))
+                .add_note("another field has this name as well")
+                .add_help("rename one of the two");
             twice.push(second.text.clone());
         }
     }

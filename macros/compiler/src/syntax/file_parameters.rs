@@ -50,7 +50,7 @@ pub struct FileField {
     pub of: String,
     /// Documentation of the field.
     pub about: String,
-    /// Values in the file, in the order of [`members`](Self::members).
+    /// Values in the file, in the order of [`member_accesses`](Self::member_accesses).
     pub values: Vec<f64>,
     /// Units of the values, in the same order.
     pub units: Vec<&'static str>,
@@ -58,7 +58,7 @@ pub struct FileField {
 
 impl FileField {
     /// Returns the member access of each value relative to a mechanism: `trunk.mass`.
-    pub fn members(&self) -> Vec<String> {
+    pub fn member_accesses(&self) -> Vec<String> {
         let members: &[&str] = match self.kind {
             FileFieldKind::Inertial => {
                 &["mass", "com[0]", "com[1]", "com[2]", "ixx", "ixy", "ixz", "iyy", "iyz", "izz"]
@@ -115,18 +115,19 @@ fn parse_one(input: ParseStream<'_>) -> syn::Result<FileParameters> {
 }
 
 /// Returns the known kinds, each once; reports unknown kinds and duplicates.
-pub fn check(requested: Vec<FileParameters>, cx: &mut Diagnostics) -> Vec<FileParameters> {
+pub fn check_file_parameters(requested: Vec<FileParameters>, cx: &mut Diagnostics) -> Vec<FileParameters> {
     let mut good: Vec<FileParameters> = Vec::new();
     for figures in requested {
         let word = &figures.word;
         if !WORDS.contains(&word.text.as_str()) {
             let words = WORDS.map(|word| format!("`{word}`"));
-            let error = cx.error(word.place.clone(), format!("unknown file parameters `{}`", word.text));
-            error.suggest(&word.text, WORDS);
-            error.help(format!("parameters of a file are {}", one_of(&words)));
+            let error =
+                cx.report_error(word.place.clone(), format!("unknown file parameters `{}`", word.text));
+            error.suggest_name(&word.text, WORDS);
+            error.add_help(format!("parameters of a file are {}", one_of(&words)));
         } else if good.iter().any(|known| known.word.text == word.text) {
-            cx.error(word.place.clone(), format!("`{}` is given twice", word.text))
-                .help(format!("list all names in one: `{}(\"…\", \"…\")`", word.text));
+            cx.report_error(word.place.clone(), format!("`{}` is given twice", word.text))
+                .add_help(format!("list all names in one: `{}(\"…\", \"…\")`", word.text));
         } else {
             good.push(figures);
         }

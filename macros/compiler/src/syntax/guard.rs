@@ -33,7 +33,7 @@ struct OpenBracket {
 }
 
 impl OpenBracket {
-    fn outermost(tokens: &TokenStream, has_types: bool) -> Self {
+    fn outermost_bracket(tokens: &TokenStream, has_types: bool) -> Self {
         Self { tokens: tokens.clone().into_iter(), depth: 1, outer: 0, has_types, after_hash: false }
     }
 }
@@ -41,12 +41,12 @@ impl OpenBracket {
 /// Reports an attribute's arguments that are nested too deeply or have too many tokens. Returns whether
 /// parsing may continue.
 pub fn check_arguments(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
-    check_tokens(OpenBracket::outermost(tokens, false), cx)
+    check_tokens(OpenBracket::outermost_bracket(tokens, false), cx)
 }
 
 /// Reports an item whose tokens are nested too deeply or are too many. Returns whether parsing may continue.
 pub fn check_item(tokens: &TokenStream, cx: &mut Diagnostics) -> bool {
-    check_tokens(OpenBracket::outermost(tokens, true), cx)
+    check_tokens(OpenBracket::outermost_bracket(tokens, true), cx)
 }
 
 fn check_tokens(outermost: OpenBracket, cx: &mut Diagnostics) -> bool {
@@ -100,24 +100,24 @@ fn check_tokens(outermost: OpenBracket, cx: &mut Diagnostics) -> bool {
                 let text = literal.to_string();
                 // The time to parse a number grows with the square of its length.
                 if text.len() > MAX_DIGITS && text.starts_with(|c: char| c.is_ascii_digit()) {
-                    cx.error(place, format!("this number has more than {MAX_DIGITS} digits"));
+                    cx.report_error(place, format!("this number has more than {MAX_DIGITS} digits"));
                     return false;
                 }
             }
         }
         let depth = levels.last().map_or(0, |level| level.depth) + run.saturating_sub(1);
         if depth > MAX_DEPTH || angle > MAX_DEPTH {
-            cx.error(place, "this is nested too deeply")
-                .help("name a part of it as a parameter, or simplify the expression");
+            cx.report_error(place, "this is nested too deeply")
+                .add_help("name a part of it as a parameter, or simplify the expression");
             return false;
         }
         if types > MAX_TYPE_TOKENS {
-            cx.error(place, format!("this type has more than {MAX_TYPE_TOKENS} tokens"))
-                .help("give it a name, `type Name = …;`, outside the struct");
+            cx.report_error(place, format!("this type has more than {MAX_TYPE_TOKENS} tokens"))
+                .add_help("give it a name, `type Name = …;`, outside the struct");
             return false;
         }
         if count > MAX_TOKENS {
-            cx.error(place, format!("this struct has more than {MAX_TOKENS} tokens"));
+            cx.report_error(place, format!("this struct has more than {MAX_TOKENS} tokens"));
             return false;
         }
     }

@@ -29,17 +29,18 @@ pub fn read_joint(
             } else {
                 format!("expected {}", crate::diag::one_of(&list))
             };
-            cx.error(place, format!("{} has no argument `{key}`", kind.phrase())).help(help);
+            cx.report_error(place, format!("{} has no argument `{key}`", kind.name_with_article()))
+                .add_help(help);
         }
     }
-    arguments.finish(&kind.phrase(), allowed, cx);
+    arguments.report_remaining_arguments(&kind.name_with_article(), allowed, cx);
     let (parent, child) = ends?;
     let (about, along) = (about?, along?);
     Some(Joint {
         name: name.clone(),
         kind,
-        parent: endpoint(parent, cx)?,
-        child: endpoint(child, cx)?,
+        parent: read_joint_endpoint(parent, cx)?,
+        child: read_joint_endpoint(child, cx)?,
         about,
         along,
         pitch,
@@ -56,7 +57,7 @@ pub fn read_joint(
 /// Reads one or several axes. Three numbers in parentheses are an error: a vector has brackets.
 fn read_axes(key: &str, arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<Vec<Expr>> {
     let axes = arguments.take_list(key, cx);
-    let numbers: Option<Vec<f64>> = axes.iter().map(Expr::literal).collect();
+    let numbers: Option<Vec<f64>> = axes.iter().map(Expr::literal_number).collect();
     let Some([a, b, c]) = numbers.as_deref() else { return Some(axes) };
     let axis = match [*a, *b, *c] {
         [1.0, 0.0, 0.0] => "x".to_string(),
@@ -67,27 +68,28 @@ fn read_axes(key: &str, arguments: &mut Arguments, cx: &mut Diagnostics) -> Opti
         [0.0, 0.0, -1.0] => "-z".to_string(),
         _ => format!("[{a}, {b}, {c}]"),
     };
-    let place = axes[0].place.join(&axes[2].place);
-    cx.error(place, "expected a direction, found three numbers").help(format!("write `{key} = {axis}`"));
+    let place = axes[0].place.extend_to(&axes[2].place);
+    cx.report_error(place, "expected a direction, found three numbers")
+        .add_help(format!("write `{key} = {axis}`"));
     None
 }
 
 /// Reads an end of a joint: `body`, `body.at(v)`, `body.rotated(…)`, `body.at(v).rotated(…)`.
-fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
+fn read_joint_endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
     match e.kind {
         ExprKind::Name(text) => {
             Some(Endpoint { body: Name { text, place: e.place }, at: None, rotated: Vec::new() })
         }
         ExprKind::Method(inner, method, mut arguments) => {
-            let mut end = endpoint(*inner, cx)?;
+            let mut end = read_joint_endpoint(*inner, cx)?;
             match method.id {
                 Some(Method::At) if arguments.len() == 1 && end.at.is_none() && end.rotated.is_empty() => {
                     end.at = arguments.pop();
                     Some(end)
                 }
                 Some(Method::At) if arguments.len() == 1 => {
-                    cx.error(method.place, "`.at(…)` is allowed once, before `.rotated(…)`")
-                        .help("write `body.at(a + b).rotated(z(angle))`");
+                    cx.report_error(method.place, "`.at(…)` is allowed once, before `.rotated(…)`")
+                        .add_help("write `body.at(a + b).rotated(z(angle))`");
                     None
                 }
                 Some(Method::At) => {
@@ -97,7 +99,7 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
                         }
                         _ => "write `body.at(length * x)`".to_string(),
                     };
-                    cx.error(method.place, "expected one vector in `.at(…)`").help(help);
+                    cx.report_error(method.place, "expected one vector in `.at(…)`").add_help(help);
                     None
                 }
                 Some(Method::Rotated) if !arguments.is_empty() => {
@@ -105,13 +107,14 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
                     Some(end)
                 }
                 Some(Method::Rotated) => {
-                    cx.error(method.place, "`.rotated()` has no rotation")
-                        .help("write `body.rotated(z(angle))`");
+                    cx.report_error(method.place, "`.rotated()` has no rotation")
+                        .add_help("write `body.rotated(z(angle))`");
                     None
                 }
                 Some(Method::Collision | Method::Surface(_)) | None => {
                     let other = method.text.as_str();
-                    let error = cx.error(method.place, format!("unknown method `.{other}(…)` of a body"));
+                    let error =
+                        cx.report_error(method.place, format!("unknown method `.{other}(…)` of a body"));
                     words::suggest_meaning(error, words::METHODS, other, &["at", "rotated"]);
                     None
                 }
@@ -119,12 +122,12 @@ fn endpoint(e: Expr, cx: &mut Diagnostics) -> Option<Endpoint> {
         }
         kind => {
             let help = match kind {
-                ExprKind::Field(base, _) | ExprKind::Binary(_, base, ..) if base.name().is_some() => {
+                ExprKind::Field(base, _) | ExprKind::Binary(_, base, ..) if base.as_name().is_some() => {
                     format!("a point of a body is written `{}.at(vector)`", base.to_source())
                 }
                 _ => "write `ground -> cart`, `arm.at(length * x) -> hand`".to_string(),
             };
-            cx.error(e.place, "expected a body").help(help);
+            cx.report_error(e.place, "expected a body").add_help(help);
             None
         }
     }

@@ -30,7 +30,11 @@ impl<'a> Keys<'a> {
 
     /// Reads the arguments of an element, laws first. The second result is false if a required argument is
     /// missing.
-    pub fn read(&self, arguments: &mut Arguments, cx: &mut Diagnostics) -> (WrittenArguments, bool) {
+    pub fn read_arguments(
+        &self,
+        arguments: &mut Arguments,
+        cx: &mut Diagnostics,
+    ) -> (WrittenArguments, bool) {
         let mut given: Vec<(Key, Expr)> = Vec::new();
         let mut is_complete = true;
         let others = self.all.iter().filter(|key| !self.laws.contains(key));
@@ -55,8 +59,8 @@ impl<'a> Keys<'a> {
 fn check_restitution(e: &Expr, cx: &mut Diagnostics) -> bool {
     match &e.kind {
         ExprKind::Call(word, list) if word.id == Some(Callable::Poisson) && list.len() != 1 => {
-            cx.error(word.place.clone(), "`poisson` takes one coefficient")
-                .help("write `restitution = poisson(e)`");
+            cx.report_error(word.place.clone(), "`poisson` takes one coefficient")
+                .add_help("write `restitution = poisson(e)`");
             false
         }
         _ => true,
@@ -76,7 +80,8 @@ pub fn check_relations(
         let has_other = relation.others.iter().any(|key| given.get(*key).is_some());
         let is_known = |known: &&Relation| known.key == relation.key || known.message == relation.message;
         if has_other != relation.needs && !reported.iter().any(is_known) {
-            cx.error(e.place.clone(), relation.message.replace("NAME", &name.text)).help(relation.help);
+            cx.report_error(e.place.clone(), relation.message.replace("NAME", &name.text))
+                .add_help(relation.help);
             reported.push(relation);
         }
     }

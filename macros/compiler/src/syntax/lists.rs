@@ -30,7 +30,7 @@ impl Lists {
         let mut lists = Lists { lists: Vec::new(), tokens: 0 };
         let Fields::Named(named_fields) = fields else { return lists };
         let counts: Vec<Option<usize>> =
-            named_fields.named.iter().map(|field| lists.read(field, cx)).collect();
+            named_fields.named.iter().map(|field| lists.read_list_length(field, cx)).collect();
         if lists.lists.is_empty() {
             return lists;
         }
@@ -44,14 +44,14 @@ impl Lists {
                 continue;
             };
             for k in 0..count {
-                named_fields.named.push(lists.element(&field, k, cx));
+                named_fields.named.push(lists.list_element_field(&field, k, cx));
             }
         }
         lists
     }
 
     /// Returns the number of elements of a field that is a list; 0 for an invalid list.
-    fn read(&mut self, field: &Field, cx: &mut Diagnostics) -> Option<usize> {
+    fn read_list_length(&mut self, field: &Field, cx: &mut Diagnostics) -> Option<usize> {
         let (Type::Array(array), Some(ident)) = (&field.ty, &field.ident) else { return None };
         if matches!(&*array.elem, Type::Path(path) if path.path.is_ident("f64") || path.path.is_ident("f32"))
         {
@@ -61,7 +61,7 @@ impl Lists {
         let count = match &array.len {
             Expr::Lit(ExprLit { lit: Lit::Int(n), .. }) => n.base10_parse::<usize>().unwrap_or(usize::MAX),
             other => {
-                cx.error(span(other), "the length of a list must be a number").help(
+                cx.report_error(span_of_first_token(other), "the length of a list must be a number").add_help(
                     "write `[Body; 2]`: the value of a Rust constant is not known yet when mechanisms are \
                      compiled",
                 );
@@ -70,13 +70,13 @@ impl Lists {
         };
         let found = cx.len();
         if count > left {
-            cx.error(
-                span(&array.len),
+            cx.report_error(
+                span_of_first_token(&array.len),
                 format!("the lists of a mechanism have at most {MAX_LIST_ELEMENTS} elements"),
             );
         } else if count == 0 && matches!(&array.len, Expr::Lit(_)) {
-            cx.error(span(&array.len), "a list has at least one element")
-                .help("write its length, as in `[Body; 2]`");
+            cx.report_error(span_of_first_token(&array.len), "a list has at least one element")
+                .add_help("write its length, as in `[Body; 2]`");
         }
         let count = if cx.len() > found { 0 } else { count };
         self.lists.push((ident.unraw().to_string(), count));
@@ -87,13 +87,13 @@ impl Lists {
     fn check_names<'a>(&self, mut fields: impl Iterator<Item = &'a Field>, cx: &mut Diagnostics) {
         let other = fields.find(|field| field.ident.as_ref().is_some_and(|ident| ident == INDEX));
         if let Some(ident) = other.and_then(|field| field.ident.as_ref()) {
-            cx.error(ident.span(), format!("`{INDEX}` counts the elements of lists"))
-                .help("give the field another name");
+            cx.report_error(ident.span(), format!("`{INDEX}` counts the elements of lists"))
+                .add_help("give the field another name");
         }
     }
 
     /// Returns one element of a list as a separate field.
-    fn element(&mut self, list: &Field, k: usize, cx: &mut Diagnostics) -> Field {
+    fn list_element_field(&mut self, list: &Field, k: usize, cx: &mut Diagnostics) -> Field {
         let mut field = list.clone();
         if let Type::Array(array) = &list.ty {
             field.ty = (*array.elem).clone();
@@ -107,13 +107,13 @@ impl Lists {
     fn rewrite_attributes(&mut self, field: &mut Field, index: Option<usize>, cx: &mut Diagnostics) {
         for attribute in field.attrs.iter_mut().filter(|attribute| is_one_of(attribute, &ATTRIBUTES)) {
             if let Meta::List(list) = &mut attribute.meta {
-                list.tokens = self.rewrite(std::mem::take(&mut list.tokens), index, cx);
+                list.tokens = self.rewrite_list_index(std::mem::take(&mut list.tokens), index, cx);
             }
         }
     }
 
     /// Replaces `leg[1]` by the name of the element, and the index by its value.
-    pub fn rewrite(
+    pub fn rewrite_list_index(
         &mut self,
         tokens: TokenStream,
         index: Option<usize>,
@@ -129,7 +129,10 @@ impl Lists {
             self.tokens += 1;
             if self.tokens > MAX_EXPANDED_TOKENS {
                 if self.tokens == MAX_EXPANDED_TOKENS + 1 {
-                    cx.error(token.span(), format!("lists expand to at most {MAX_EXPANDED_TOKENS} tokens"));
+                    cx.report_error(
+                        token.span(),
+                        format!("lists expand to at most {MAX_EXPANDED_TOKENS} tokens"),
+                    );
                 }
                 break;
             }
@@ -150,7 +153,7 @@ impl Lists {
                     }
                 }
                 TokenTree::Group(group) => {
-                    let inner = self.rewrite(group.stream(), index, cx);
+                    let inner = self.rewrite_list_index(group.stream(), index, cx);
                     let mut rewritten = Group::new(group.delimiter(), inner);
                     rewritten.set_span(group.span());
                     written.push(rewritten.into());
@@ -184,10 +187,10 @@ impl Lists {
         let Some(group) = brackets else {
             // An invalid list, or the name of an argument.
             if *count > 0 && ends {
-                let error = cx.error(word.span(), format!("`{text}` is a list of {count}"));
+                let error = cx.report_error(word.span(), format!("`{text}` is a list of {count}"));
                 match index {
-                    Some(_) => error.help(format!("write `{text}[{INDEX}]`, or `{text}[0]`")),
-                    None => error.help(format!("write which one, as in `{text}[0]`")),
+                    Some(_) => error.add_help(format!("write `{text}[{INDEX}]`, or `{text}[0]`")),
+                    None => error.add_help(format!("write which one, as in `{text}[0]`")),
                 };
             }
             return (word.clone().into(), false);
@@ -207,14 +210,14 @@ impl Lists {
     ) -> Option<usize> {
         let short = group.stream().into_iter().count() <= MAX_INDEX_TOKENS;
         let written: Option<Expr> = short.then(|| syn::parse2(group.stream()).ok()).flatten();
-        let value = written.as_ref().and_then(|e| value(e, index));
+        let value = written.as_ref().and_then(|e| integer_value(e, index));
         let Some(value) = value else {
-            let error = cx.error(group.span(), format!("expected an index into `{list}`"));
+            let error = cx.report_error(group.span(), format!("expected an index into `{list}`"));
             match index {
-                Some(_) => error.help(format!(
+                Some(_) => error.add_help(format!(
                     "write an integer, or an expression of `{INDEX}`, as in `{list}[{INDEX} + 1]`"
                 )),
-                None => error.help(format!(
+                None => error.add_help(format!(
                     "write an integer, as in `{list}[0]`; `{INDEX}` is available only in the attributes of \
                      lists"
                 )),
@@ -223,13 +226,13 @@ impl Lists {
         };
         let place = usize::try_from(value).ok().filter(|k| *k < count);
         if place.is_none() && count > 0 {
-            let error = cx.error(
+            let error = cx.report_error(
                 group.span(),
                 format!("`{list}[{value}]` does not exist: `{list}` is a list of {count}"),
             );
-            error.help(format!("its elements are `{list}[0]` to `{list}[{}]`", count - 1));
+            error.add_help(format!("its elements are `{list}[0]` to `{list}[{}]`", count - 1));
             if let Some(k) = index {
-                error.note(format!("`{INDEX}` is {k} here"));
+                error.add_note(format!("`{INDEX}` is {k} here"));
             }
         }
         place
@@ -246,20 +249,22 @@ fn is_punct(token: &TokenTree, sign: char) -> bool {
 }
 
 /// Returns the span of the first token of a Rust expression.
-fn span(e: &Expr) -> Span {
+fn span_of_first_token(e: &Expr) -> Span {
     e.to_token_stream().into_iter().next().map_or_else(Span::call_site, |token| token.span())
 }
 
 /// Returns the value of an integer expression; `None` for overflow and division by zero.
-fn value(e: &Expr, index: Option<usize>) -> Option<i64> {
+fn integer_value(e: &Expr, index: Option<usize>) -> Option<i64> {
     match e {
         Expr::Lit(ExprLit { lit: Lit::Int(n), .. }) => n.base10_parse().ok(),
         Expr::Path(path) if path.path.is_ident(INDEX) => index.and_then(|k| i64::try_from(k).ok()),
-        Expr::Paren(inner) => value(&inner.expr, index),
-        Expr::Group(inner) => value(&inner.expr, index),
-        Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => value(&unary.expr, index)?.checked_neg(),
+        Expr::Paren(inner) => integer_value(&inner.expr, index),
+        Expr::Group(inner) => integer_value(&inner.expr, index),
+        Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => {
+            integer_value(&unary.expr, index)?.checked_neg()
+        }
         Expr::Binary(both) => {
-            let (a, b) = (value(&both.left, index)?, value(&both.right, index)?);
+            let (a, b) = (integer_value(&both.left, index)?, integer_value(&both.right, index)?);
             match both.op {
                 BinOp::Add(_) => a.checked_add(b),
                 BinOp::Sub(_) => a.checked_sub(b),

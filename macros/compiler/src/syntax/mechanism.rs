@@ -54,7 +54,7 @@ impl Shell {
     }
 
     /// Returns the lines of the documentation comments.
-    pub fn documentation(&self) -> String {
+    pub fn documentation_lines(&self) -> String {
         let lines: Vec<String> = doc_lines(&self.attributes).map(|line| line.trim().to_string()).collect();
         lines.join("\n").trim().to_string()
     }
@@ -65,9 +65,9 @@ impl Shell {
     }
 
     /// Returns the member access of every parameter relative to a mechanism.
-    pub fn accesses(&self) -> Vec<String> {
+    pub fn parameter_accesses(&self) -> Vec<String> {
         let own = self.parameters.iter().filter_map(|field| field.ident.as_ref().map(ToString::to_string));
-        own.chain(self.file_fields.iter().flat_map(FileField::members)).collect()
+        own.chain(self.file_fields.iter().flat_map(FileField::member_accesses)).collect()
     }
 }
 
@@ -104,7 +104,7 @@ impl FileFormat {
     pub const ALL: [FileFormat; 3] = [FileFormat::Urdf, FileFormat::Mjcf, FileFormat::Sdf];
 
     /// Returns the option of `#[mechanism]` for the format.
-    pub fn word(self) -> &'static str {
+    pub fn format_option(self) -> &'static str {
         match self {
             FileFormat::Urdf => "urdf",
             FileFormat::Mjcf => "mjcf",
@@ -113,7 +113,7 @@ impl FileFormat {
     }
 
     /// Returns the format's term for a body.
-    pub fn body(self) -> &'static str {
+    pub fn body_term(self) -> &'static str {
         match self {
             FileFormat::Urdf | FileFormat::Sdf => "link",
             FileFormat::Mjcf => "body",
@@ -121,7 +121,7 @@ impl FileFormat {
     }
 
     /// Returns the name of the format.
-    pub fn name(self) -> &'static str {
+    pub fn format_name(self) -> &'static str {
         match self {
             FileFormat::Urdf => "URDF",
             FileFormat::Mjcf => "MJCF",
@@ -130,7 +130,7 @@ impl FileFormat {
     }
 
     /// Returns the phrase for a file of this format, with its article.
-    pub fn article(self) -> &'static str {
+    pub fn phrase_with_article(self) -> &'static str {
         match self {
             FileFormat::Urdf => "a URDF file",
             FileFormat::Mjcf => "an MJCF file",
@@ -139,7 +139,7 @@ impl FileFormat {
     }
 
     /// Returns the file extensions of this format.
-    pub fn endings(self) -> &'static [&'static str] {
+    pub fn file_extensions(self) -> &'static [&'static str] {
         match self {
             FileFormat::Urdf => &["urdf", "xml"],
             FileFormat::Mjcf => &["xml", "mjcf"],

@@ -7,14 +7,14 @@ use super::mechanism::{FileFormat, FileOptions, InputOption, LimitOption};
 use super::parameter::unify_scalar;
 use super::request::{Printed, REQUESTS, Requests};
 use super::{Base, Description, Expr, ExprKind, Formulation, Inertias, Name, ScalarType, skipped, words};
-use crate::diag::{Diagnostics, Place, nearest, one_of};
+use crate::diag::{Diagnostics, Place, nearest_candidate, one_of};
 use proc_macro2::{Span, TokenStream};
 
 /// Maximum of the tolerance `snap`, rad and m.
 const LARGEST_SNAP: f64 = 0.01;
 
 /// Options of `#[mechanism(…)]` that take a value.
-const OPTIONS: [&str; 22] = [
+const OPTIONS: [&str; 23] = [
     "gravity",
     "friction_speed",
     "formulation",
@@ -35,6 +35,7 @@ const OPTIONS: [&str; 22] = [
     "snap",
     "parameters",
     "processor",
+    "arithmetic",
     "skip_passes",
     "equations",
 ];
@@ -64,11 +65,11 @@ pub fn read_options(
     if file.is_none() {
         for option in file_only {
             if let Some(place) = arguments.place_of(option) {
-                let error = cx.error(place, format!("`{option}` is an option of imported files"));
+                let error = cx.report_error(place, format!("`{option}` is an option of imported files"));
                 if option == "base" {
-                    error.help("a free body has a separate joint: `#[joint(ground -> body)] pose: Free`");
+                    error.add_help("a free body has a separate joint: `#[joint(ground -> body)] pose: Free`");
                 }
-                error.help(
+                error.add_help(
                     "add `urdf = \"path/to/robot.urdf\"` or `mjcf = \"path/to/robot.xml\"`, or remove the \
                      option",
                 );
@@ -91,8 +92,9 @@ pub fn read_options(
     let ignore_passive = choice("passive", ["honour", "ignore"]).unwrap_or(false);
     let independent = choice("mimic", ["follow", "independent"]).unwrap_or(false);
     requests.target_only = choice("processor", ["detect", "target"]).unwrap_or(false);
+    requests.reproducible = choice("arithmetic", ["fast", "reproducible"]).unwrap_or(false);
     description.inertias = read_inertias(&mut arguments, &requested, description, cx);
-    requests.skipped = skipped::read(&mut arguments, cx);
+    requests.skipped = skipped::read_skipped(&mut arguments, cx);
     let printed = arguments.take_choice("equations", &Printed::WORDS.map(|(word, _)| word), cx);
     let printed =
         printed.and_then(|(requested, _)| Printed::WORDS.into_iter().find(|(word, _)| *word == requested));
@@ -103,7 +105,7 @@ pub fn read_options(
     let parameters = read_file_parameters(&mut arguments, description.inertias, cx);
     requests.file_parameters = !parameters.is_empty();
     requests.file_inertials = parameters.iter().any(|figures| figures.word.text == file_parameters::INERTIAL);
-    arguments.finish("`#[mechanism]`", &OPTIONS, cx);
+    arguments.report_remaining_arguments("`#[mechanism]`", &OPTIONS, cx);
     let (format, path) = file?;
     Some(FileOptions {
         format,
@@ -131,8 +133,8 @@ fn read_contacts(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut
         arguments.take_choice("contacts", &["file", "ignore"], cx).is_some_and(|(word, _)| word == "file");
     let unsupported = format.filter(|format| from_file && *format != FileFormat::Mjcf);
     if let (Some(place), Some(unsupported)) = (place, unsupported) {
-        cx.error(place, format!("{} does not declare contacts", unsupported.article()))
-            .help(super::contact::CONTACT_HELP);
+        cx.report_error(place, format!("{} does not declare contacts", unsupported.phrase_with_article()))
+            .add_help(super::contact::CONTACT_HELP);
     }
     from_file && unsupported.is_none()
 }
@@ -144,8 +146,8 @@ fn read_loops(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Di
     let close =
         arguments.take_choice("loops", &["refuse", "close"], cx).is_some_and(|(word, _)| word == "close");
     if let (Some(place), Some(other)) = (place, format.filter(|format| *format != FileFormat::Urdf)) {
-        cx.error(place, "`loops` is an option of URDF files")
-            .help(format!("remove it: the loops of {} are always closed", other.article()));
+        cx.report_error(place, "`loops` is an option of URDF files")
+            .add_help(format!("remove it: the loops of {} are always closed", other.phrase_with_article()));
     }
     close
 }
@@ -154,10 +156,12 @@ fn read_loops(arguments: &mut Arguments, format: Option<FileFormat>, cx: &mut Di
 fn read_path(arguments: &mut Arguments, cx: &mut Diagnostics) -> Option<(FileFormat, Name)> {
     let mut found: Option<(FileFormat, Name)> = None;
     for format in FileFormat::ALL {
-        let Some(path) = arguments.take_text(format.word(), cx) else { continue };
+        let Some(path) = arguments.take_text(format.format_option(), cx) else { continue };
         if let Some((first, _)) = &found {
-            cx.error(path.place.clone(), "a second file")
-                .help(format!("a mechanism is read from one file: remove `{}` or this", first.word()));
+            cx.report_error(path.place.clone(), "a second file").add_help(format!(
+                "a mechanism is read from one file: remove `{}` or this",
+                first.format_option()
+            ));
         } else {
             found = Some((format, path));
         }
@@ -193,13 +197,13 @@ fn read_inertias(
         Some((word, _)) if word == "trust" => Inertias::Trust,
         Some((word, _)) if word == "none" => {
             for (word, place) in requested.iter().filter(|(word, _)| *word != "drawing") {
-                cx.error(place.clone(), format!("`{word}` needs inertia")).help(format!(
+                cx.report_error(place.clone(), format!("`{word}` needs inertia")).add_help(format!(
                     "remove `{word}`, or `inertia = none`: without inertia there are no dynamics"
                 ));
             }
             if let Formulation::Speeds(_, place) = &description.formulation {
-                cx.error(place.clone(), "a formulation of the dynamics needs inertia")
-                    .help("remove it, or `inertia = none`: without inertia there are no dynamics");
+                cx.report_error(place.clone(), "a formulation of the dynamics needs inertia")
+                    .add_help("remove it, or `inertia = none`: without inertia there are no dynamics");
             }
             Inertias::None
         }
@@ -212,8 +216,8 @@ fn read_tolerance(e: &Expr, cx: &mut Diagnostics) -> Option<f64> {
     match e.kind {
         ExprKind::Number(tolerance) if tolerance > 0.0 && tolerance <= LARGEST_SNAP => Some(tolerance),
         _ => {
-            cx.error(e.place.clone(), format!("expected a number above 0, at most {LARGEST_SNAP}"))
-                .help("`snap = 1e-4` rounds values with a deviation of at most 0.0001 rad or 0.0001 m");
+            cx.report_error(e.place.clone(), format!("expected a number above 0, at most {LARGEST_SNAP}"))
+                .add_help("`snap = 1e-4` rounds values with a deviation of at most 0.0001 rad or 0.0001 m");
             None
         }
     }
@@ -225,13 +229,13 @@ fn read_file_parameters(
     inertias: Inertias,
     cx: &mut Diagnostics,
 ) -> Vec<FileParameters> {
-    let mut found = file_parameters::check(arguments.take_file_parameters("parameters"), cx);
+    let mut found = file_parameters::check_file_parameters(arguments.take_file_parameters("parameters"), cx);
     found.retain(|figures| {
         let good = inertias != Inertias::None || figures.word.text == file_parameters::PLACEMENT;
         if !good {
             let word = &figures.word;
-            cx.error(word.place.clone(), format!("`{}` needs inertia", word.text))
-                .help("remove it, or `inertia = none`: without inertia there are no dynamics");
+            cx.report_error(word.place.clone(), format!("`{}` needs inertia", word.text))
+                .add_help("remove it, or `inertia = none`: without inertia there are no dynamics");
         }
         good
     });
@@ -245,8 +249,8 @@ fn read_formulation(arguments: &mut Arguments, cx: &mut Diagnostics) -> Formulat
     let chosen = arguments.take_choice("formulation", &["multipliers", "speeds"], cx);
     match (chosen, place) {
         (Some((word, word_place)), Some(_)) if word == "multipliers" => {
-            cx.error(word_place, "multipliers need no independent speeds")
-                .help("remove `independent`, or write `formulation = speeds`");
+            cx.report_error(word_place, "multipliers need no independent speeds")
+                .add_help("remove `independent`, or write `formulation = speeds`");
             Formulation::Multipliers
         }
         (_, Some(place)) => Formulation::Speeds(independent, place),
@@ -273,26 +277,29 @@ fn read_requests(
     for (word, place) in requested {
         let without = ["sensitivities", "prepare"].contains(word) && !rejected.contains(word);
         if description.parameters.is_empty() && arguments.place_of("parameters").is_none() && without {
-            cx.error(place.clone(), format!("`{word}` has no effect here: this mechanism has no parameters"))
-                .help(format!("remove `{word}`: all numbers are known at compile time"));
+            cx.report_error(
+                place.clone(),
+                format!("`{word}` has no effect here: this mechanism has no parameters"),
+            )
+            .add_help(format!("remove `{word}`: all numbers are known at compile time"));
         }
     }
     for e in arguments.take_plain() {
-        match e.name() {
+        match e.as_name() {
             None => {
                 let inside = match &e.kind {
-                    ExprKind::Array(items) => items.first().and_then(Expr::name),
+                    ExprKind::Array(items) => items.first().and_then(Expr::as_name),
                     _ => None,
                 };
                 let help = match inside.filter(|word| REQUESTS.contains(word)) {
                     Some(word) => format!("write `{word}` without brackets"),
                     None => "write `gravity = -9.81 * y`".to_string(),
                 };
-                cx.error(e.place.clone(), "expected `name = value`").help(help)
+                cx.report_error(e.place.clone(), "expected `name = value`").add_help(help)
             }
-            Some(word) if REQUESTS.contains(&word) => {
-                cx.error(e.place.clone(), format!("`{word}` is given twice")).help("remove one of the two")
-            }
+            Some(word) if REQUESTS.contains(&word) => cx
+                .report_error(e.place.clone(), format!("`{word}` is given twice"))
+                .add_help("remove one of the two"),
             Some(word) if OPTIONS.contains(&word) => {
                 let value = match word {
                     "gravity" => "-9.81 * y",
@@ -302,19 +309,19 @@ fn read_requests(
                     "inertia" => "trust",
                     _ => "…",
                 };
-                cx.error(e.place.clone(), format!("`{word}` has no value"))
-                    .help(format!("write `{word} = {value}`"))
+                cx.report_error(e.place.clone(), format!("`{word}` has no value"))
+                    .add_help(format!("write `{word} = {value}`"))
             }
             Some(word) => {
                 let list: Vec<String> = REQUESTS.iter().map(|known| format!("`{known}`")).collect();
-                let error = cx.error(e.place.clone(), format!("unknown option `{word}`"));
-                if words::explain(error, words::REQUESTS, word, &[]) {
+                let error = cx.report_error(e.place.clone(), format!("unknown option `{word}`"));
+                if words::explain_word(error, words::REQUESTS, word, &[]) {
                     continue;
                 }
-                if nearest(word, &REQUESTS).is_some() {
-                    error.suggest(word, REQUESTS);
+                if nearest_candidate(word, &REQUESTS).is_some() {
+                    error.suggest_name(word, REQUESTS);
                 }
-                error.help(format!("options that request functions: {}", one_of(&list)))
+                error.add_help(format!("options that request functions: {}", one_of(&list)))
             }
         };
     }

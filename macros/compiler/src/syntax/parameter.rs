@@ -17,16 +17,20 @@ pub fn unify_scalar(
         None => *scalar = Some((found, place)),
         Some((known, _)) if *known == found => {}
         Some((known, _)) => {
-            cx.error(
+            cx.report_error(
                 place,
-                format!("this parameter is `{}`, but others are `{}`", spell(&found), spell(known)),
+                format!(
+                    "this parameter is `{}`, but others are `{}`",
+                    scalar_type_name(&found),
+                    scalar_type_name(known)
+                ),
             )
-            .help("all parameters of a mechanism have one scalar type");
+            .add_help("all parameters of a mechanism have one scalar type");
         }
     }
 }
 
-fn spell(scalar: &ScalarType) -> &str {
+fn scalar_type_name(scalar: &ScalarType) -> &str {
     match scalar {
         ScalarType::F64 => "f64",
         ScalarType::F32 => "f32",
@@ -39,7 +43,7 @@ pub fn span_of(ty: &Type) -> Place {
     let mut tokens = ty.to_token_stream().into_iter();
     let Some(first) = tokens.next() else { return ty.span().into() };
     let last = tokens.last().map_or(first.span(), |last| last.span());
-    Place::from(first.span()).join(&last.into())
+    Place::from(first.span()).extend_to(&last.into())
 }
 
 /// Returns the last segment of a plain path without arguments.
@@ -64,25 +68,25 @@ pub fn read_units(attributes: &[Attribute], description: &mut Description, cx: &
         description.units.extend(unit.map(|unit| (description.parameters.len(), unit)));
     }
     for second in units {
-        cx.error(second.path().span(), "a parameter has one `#[unit]`");
+        cx.report_error(second.path().span(), "a parameter has one `#[unit]`");
     }
 }
 
 pub fn check_parameter_attributes(field: &Name, attributes: &[Attribute], cx: &mut Diagnostics) {
     for attribute in attributes {
         if element::is_conditional(attribute) {
-            cx.error(attribute.path().span(), "a parameter cannot be conditional")
-                .help(element::CONDITION_HELP);
+            cx.report_error(attribute.path().span(), "a parameter cannot be conditional")
+                .add_help(element::CONDITION_HELP);
         }
         if let Some(word) = attribute.path().get_ident()
             && word != "unit"
             && element::ATTRIBUTES.contains(&word.to_string().as_str())
         {
-            cx.error(
+            cx.report_error(
                 word.span(),
                 format!("`#[{word}]` is an attribute of elements, but `{}` is a parameter", field.text),
             )
-            .help(match word.to_string().as_str() {
+            .add_help(match word.to_string().as_str() {
                 "output" | "define" => "give the field the type of a result: `Scalar`, or `Vector`",
                 "acts" => {
                     "give the field an element's type, such as `Spring`, `Dashpot`, `Force` or `Torque`"

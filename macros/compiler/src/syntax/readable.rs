@@ -2,7 +2,7 @@
 //! them. Their errors are independent of the corrections, so that all errors are reported at once.
 
 use super::{Body, Description, Formulation, Name, RATE_OF_STATE};
-use crate::diag::nearest;
+use crate::diag::nearest_candidate;
 use proc_macro2::{TokenStream, TokenTree};
 use quote::ToTokens;
 use std::collections::BTreeSet;
@@ -33,11 +33,11 @@ impl Reading {
     pub fn record_field(&mut self, field: &Field) {
         let mut words = BTreeSet::new();
         for attribute in &field.attrs {
-            collect(attribute.to_token_stream(), &mut words);
+            collect_identifiers(attribute.to_token_stream(), &mut words);
         }
         let placed = ["at", "frame", "massive"].iter().any(|word| words.contains(*word));
         let body = field.ty.to_token_stream().to_string() == "Body" && !placed;
-        let name = field.ident.as_ref().map(super::expression::name);
+        let name = field.ident.as_ref().map(super::expression::name_from_identifier);
         self.fields.extend(name.map(|name| FieldWords { name, words, body, has_errors: false }));
     }
 
@@ -64,10 +64,10 @@ impl Reading {
     /// an option with which fields are checked.
     pub fn mark_arguments(&mut self, arguments: TokenStream) {
         let mut words = BTreeSet::new();
-        collect(arguments, &mut words);
-        self.unreadable |= words
-            .iter()
-            .any(|word| nearest(word, &GLOBAL_OPTIONS).is_some() || GLOBAL_OPTIONS.contains(&word.as_str()));
+        collect_identifiers(arguments, &mut words);
+        self.unreadable |= words.iter().any(|word| {
+            nearest_candidate(word, &GLOBAL_OPTIONS).is_some() || GLOBAL_OPTIONS.contains(&word.as_str())
+        });
     }
 
     /// Returns the description without unreadable fields and without fields that depend on them; `None` if
@@ -78,15 +78,16 @@ impl Reading {
         }
         let (unreadable, bodies) = self.unreadable_names();
         let is_readable = |name: &Name| !unreadable.contains(name.text.as_str());
-        let is_resolvable =
-            |e: &super::Expr| e.parts().iter().all(|e| e.name().is_none_or(|n| !unreadable.contains(n)));
+        let is_resolvable = |e: &super::Expr| {
+            e.subexpressions().iter().all(|e| e.as_name().is_none_or(|n| !unreadable.contains(n)))
+        };
         let mut d = whole.clone();
         d.partial = true;
         d.formulation = Formulation::default();
         d.gravity = d.gravity.filter(is_resolvable);
         d.friction_speed = d.friction_speed.filter(is_resolvable);
         d.bodies.retain(|b| is_readable(&b.name) && bodies.iter().all(|name| name.text != b.name.text));
-        d.bodies.extend(bodies.into_iter().map(massless));
+        d.bodies.extend(bodies.into_iter().map(massless_body));
         d.particles.retain(|p| is_readable(&p.name));
         d.joints.retain(|j| is_readable(&j.name));
         d.actions.retain(|a| is_readable(&a.name));
@@ -142,16 +143,16 @@ impl Reading {
 }
 
 /// Returns a body without mass and inertia.
-fn massless(name: &Name) -> Body {
+fn massless_body(name: &Name) -> Body {
     Body { name: name.clone(), mass: None, com: None, inertia: None, about: None, at: None, frame: None }
 }
 
 /// Collects all identifiers in a token stream, including nested groups.
-fn collect(tokens: TokenStream, words: &mut BTreeSet<String>) {
+fn collect_identifiers(tokens: TokenStream, words: &mut BTreeSet<String>) {
     for token in tokens {
         match token {
             TokenTree::Ident(word) => _ = words.insert(word.to_string()),
-            TokenTree::Group(group) => collect(group.stream(), words),
+            TokenTree::Group(group) => collect_identifiers(group.stream(), words),
             _ => {}
         }
     }

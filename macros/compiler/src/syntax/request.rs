@@ -57,7 +57,7 @@ macro_rules! words {
             pub const ALL: [Word; [$(stringify!($word)),+].len()] = [$(Word::$variant),+];
 
             /// Returns the trait of the runtime that reports a missing option.
-            pub const fn reason(self) -> &'static str {
+            pub const fn trait_for_missing_option(self) -> &'static str {
                 match self {
                     $(Word::$variant => concat!("AsksFor", stringify!($variant)),)+
                 }
@@ -77,6 +77,8 @@ macro_rules! words {
             pub file_inertials: bool,
             /// Whether only instructions of the compilation target are used.
             pub target_only: bool,
+            /// Whether results have the same bits on every machine, and in C.
+            pub reproducible: bool,
             /// Compiler passes over the model that are skipped.
             pub skipped: Skipped,
             /// Equations of motion that are printed in the documentation.
@@ -85,7 +87,7 @@ macro_rules! words {
 
         impl Requests {
             /// Returns whether an option is requested.
-            pub fn has(&self, word: Word) -> bool {
+            pub fn has_option(&self, word: Word) -> bool {
                 match word {
                     $(Word::$variant => self.$word,)+
                 }

@@ -12,10 +12,12 @@ use syn::{Attribute, Token, Type, Visibility, token};
 
 /// Returns the struct with a comma after every field, and the error at the first missing comma. Returns
 /// `None` if the struct remains invalid or lacks no comma.
-pub fn separate(item: &TokenStream) -> Option<(TokenStream, syn::Error)> {
+pub fn insert_missing_commas(item: &TokenStream) -> Option<(TokenStream, syn::Error)> {
     let mut tokens: Vec<TokenTree> = item.clone().into_iter().collect();
     let Some(TokenTree::Group(body)) = tokens.pop() else { return None };
-    if body.delimiter() != Delimiter::Brace || !guard::check_item(item, &mut Diagnostics::unread()) {
+    if body.delimiter() != Delimiter::Brace
+        || !guard::check_item(item, &mut Diagnostics::discarded_diagnostics())
+    {
         return None;
     }
     let (fields, first) = parse_fields.parse2(body.stream()).ok()?;

@@ -12,24 +12,26 @@ const KEY: &str = "skip_passes";
 const PASSES: [&str; 4] = ["frames", "regroup", "parallel", "limbs"];
 
 /// Takes the option `skip_passes` from the arguments of the attribute.
-pub fn read(arguments: &mut Arguments, cx: &mut Diagnostics) -> Skipped {
+pub fn read_skipped(arguments: &mut Arguments, cx: &mut Diagnostics) -> Skipped {
     let mut skipped = Skipped::default();
     let Some(e) = arguments.take_expr(KEY, cx) else { return skipped };
     let ExprKind::Array(items) = e.kind else {
-        cx.error(e.place, format!("expected a list of passes for `{KEY}`"))
-            .help(format!("write `{KEY} = [{}]`, or some of these", PASSES.join(", ")));
+        cx.report_error(e.place, format!("expected a list of passes for `{KEY}`"))
+            .add_help(format!("write `{KEY} = [{}]`, or some of these", PASSES.join(", ")));
         return skipped;
     };
     for item in items {
-        match item.name() {
+        match item.as_name() {
             Some("frames") => skipped.frames = true,
             Some("regroup") => skipped.regroup = true,
             Some("parallel") => skipped.parallel = true,
             Some("limbs") => skipped.limbs = true,
             Some(word) => {
-                _ = cx.error(item.place.clone(), format!("unknown pass `{word}`")).suggest(word, PASSES)
+                _ = cx
+                    .report_error(item.place.clone(), format!("unknown pass `{word}`"))
+                    .suggest_name(word, PASSES)
             }
-            None => _ = cx.error(item.place, "expected the name of a pass").suggest("", PASSES),
+            None => _ = cx.report_error(item.place, "expected the name of a pass").suggest_name("", PASSES),
         }
     }
     skipped

@@ -18,7 +18,8 @@ pub fn read_state(
     cx: &mut Diagnostics,
 ) {
     if let Some(conditional) = field.attrs.iter().find(|a| element::is_conditional(a)) {
-        cx.error(span_of_path(conditional), "a state cannot be conditional").help(element::CONDITION_HELP);
+        cx.report_error(span_of_path(conditional), "a state cannot be conditional")
+            .add_help(element::CONDITION_HELP);
         return;
     }
     let rate = element::read_rate(name, &kind, &field.attrs, cx);

@@ -43,8 +43,8 @@ pub fn read_table(
 ) {
     check_parameter_attributes(name, &field.attrs, cx);
     for unit in field.attrs.iter().filter(|a| element::is_one_of(a, &["unit"])) {
-        cx.error(unit.path().span(), "a table has no `#[unit]`")
-            .help("the units of its values and axes are inferred from its calls");
+        cx.report_error(unit.path().span(), "a table has no `#[unit]`")
+            .add_help("the units of its values and axes are inferred from its calls");
     }
     field.attrs.retain(|a| !element::is_one_of(a, &element::ATTRIBUTES));
     match variables {
@@ -53,16 +53,16 @@ pub fn read_table(
         }
         Some(1..=3) => {
             let maximum = MAX_TABLES;
-            cx.error(span_of(&field.ty), format!("a mechanism has at most {maximum} tables"))
-                .help("remove some");
+            cx.report_error(span_of(&field.ty), format!("a mechanism has at most {maximum} tables"))
+                .add_help("remove some");
         }
         Some(other) => {
-            cx.error(span_of(&field.ty), format!("a table has one to three variables, found {other}"))
-                .help("write `Table<1>`, `Table<2>` or `Table<3>`");
+            cx.report_error(span_of(&field.ty), format!("a table has one to three variables, found {other}"))
+                .add_help("write `Table<1>`, `Table<2>` or `Table<3>`");
         }
         None => {
-            cx.error(span_of(&field.ty), "a table needs its number of variables")
-                .help("write `Table<1>`, `Table<2>` or `Table<3>`");
+            cx.report_error(span_of(&field.ty), "a table needs its number of variables")
+                .add_help("write `Table<1>`, `Table<2>` or `Table<3>`");
         }
     }
     if !shell.tables.iter().any(|known| known.ident == field.ident) {

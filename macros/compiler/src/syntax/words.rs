@@ -2,7 +2,7 @@
 //! help of messages.
 
 use super::{BinaryOp, Expr, ExprKind};
-use crate::diag::{Diagnostic, nearest};
+use crate::diag::{Diagnostic, nearest_candidate};
 use crate::language::{Callable, ElementKind, FunctionId, Rotation, Solid, Words};
 
 mod tables;
@@ -11,9 +11,9 @@ pub use tables::*;
 
 /// Returns the synonyms of an element's arguments with their meanings; `kind` is the type name of the
 /// element.
-fn arguments(kind: &str) -> Words {
+fn argument_synonyms(kind: &str) -> Words {
     match ElementKind::of_name(kind) {
-        Some(element) => element.words(),
+        Some(element) => element.argument_synonyms(),
         None if kind == ATTRIBUTE => OPTIONS,
         None => &[],
     }
@@ -28,37 +28,38 @@ fn kind_of(whose: &str) -> &str {
 }
 
 /// Returns an example of an element's declaration; `whose` is its type, with or without an article.
-pub fn example(whose: &str) -> &'static str {
-    ElementKind::of_name(kind_of(whose)).map_or("#[mechanism(gravity = -9.81 * y)]", ElementKind::example)
+pub fn example_declaration(whose: &str) -> &'static str {
+    ElementKind::of_name(kind_of(whose))
+        .map_or("#[mechanism(gravity = -9.81 * y)]", ElementKind::declaration_example)
 }
 
 /// List of words that users may write by mistake, with their meanings in the language.
 type Entries<'a> = &'a [(&'static str, &'static str)];
 
 /// Returns the names that other tools use for functions, with their meanings in the language.
-pub fn functions() -> Vec<(&'static str, &'static str)> {
+pub fn function_synonyms() -> Vec<(&'static str, &'static str)> {
     FunctionId::synonyms().chain(FUNCTIONS.iter().copied()).collect()
 }
 
 /// Returns the names that other tools use for solids, with their meanings in the language.
-pub fn solids() -> Vec<(&'static str, &'static str)> {
+pub fn solid_synonyms() -> Vec<(&'static str, &'static str)> {
     Solid::synonyms().chain(SOLIDS.iter().copied()).collect()
 }
 
 /// Returns the names that other tools use for rotations, with their meanings in the language.
-pub fn rotations() -> Vec<(&'static str, &'static str)> {
+pub fn rotation_synonyms() -> Vec<(&'static str, &'static str)> {
     Rotation::synonyms().chain(ROTATIONS.iter().copied()).collect()
 }
 
 /// Normalises a word for the lookup of its meaning: in lower case and without underscores.
-fn key(word: &str) -> String {
+fn normalise_word(word: &str) -> String {
     word.chars().filter(|c| *c != '_').flat_map(char::to_lowercase).collect()
 }
 
 /// Returns the meaning of a word. A single-word meaning must be among the `known` words, unless these are
 /// empty.
-pub fn meaning(words: Entries<'_>, word: &str, known: &[&str]) -> Option<&'static str> {
-    let key = key(word);
+pub fn meaning_of_word(words: Entries<'_>, word: &str, known: &[&str]) -> Option<&'static str> {
+    let key = normalise_word(word);
     let is_applicable_meaning =
         |meaning: &str| meaning.contains(' ') || known.is_empty() || known.contains(&meaning);
     let synonyms = |(synonyms, meaning): &&(&str, &str)| {
@@ -73,10 +74,10 @@ pub fn is_request(word: &str) -> bool {
 }
 
 /// Adds the meaning of an unknown word as help to an error message. Returns whether the meaning was found.
-pub fn explain(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, known: &[&str]) -> bool {
-    match meaning(words, word, known) {
-        Some(meaning) if meaning.contains(' ') => diagnostic.help(meaning),
-        Some(meaning) => diagnostic.help(format!("did you mean `{meaning}`?")),
+pub fn explain_word(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, known: &[&str]) -> bool {
+    match meaning_of_word(words, word, known) {
+        Some(meaning) if meaning.contains(' ') => diagnostic.add_help(meaning),
+        Some(meaning) => diagnostic.add_help(format!("did you mean `{meaning}`?")),
         None => return false,
     };
     true
@@ -84,28 +85,28 @@ pub fn explain(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, know
 
 /// Adds the meaning of a word to a message, or the nearest known word, or the list of known words.
 pub fn suggest_meaning(diagnostic: &mut Diagnostic, words: Entries<'_>, word: &str, known: &[&str]) {
-    if !explain(diagnostic, words, word, known) {
-        diagnostic.suggest(word, known.iter().copied());
+    if !explain_word(diagnostic, words, word, known) {
+        diagnostic.suggest_name(word, known.iter().copied());
     }
 }
 
 /// Adds the element meant by an unknown field type, one of the `known` types, as help to a message. Returns
 /// false if none is found.
 pub fn explain_element(diagnostic: &mut Diagnostic, word: &str, known: &[&str]) -> bool {
-    let key = key(word);
+    let key = normalise_word(word);
     let bare = key.strip_suffix("joint").or(key.strip_suffix("element")).unwrap_or(&key);
     if let Some(same) = known.iter().find(|name| name.eq_ignore_ascii_case(bare)) {
-        diagnostic.help(format!("did you mean `{same}`?"));
+        diagnostic.add_help(format!("did you mean `{same}`?"));
         return true;
     }
-    let words: Vec<_> = ElementKind::synonyms().chain(ELEMENTS.iter().copied()).collect();
-    explain(diagnostic, &words, if bare.is_empty() { "joint" } else { bare }, &[])
+    let words: Vec<_> = ElementKind::element_synonyms().chain(ELEMENTS.iter().copied()).collect();
+    explain_word(diagnostic, &words, if bare.is_empty() { "joint" } else { bare }, &[])
 }
 
 /// Returns the help for an argument that an element does not have; `whose` names the element with its
 /// article, such as `a Pin`.
 pub fn argument_help(whose: &str, owner: &str, word: &str, known: &[&str]) -> Option<String> {
-    let meaning = meaning(arguments(kind_of(whose)), word, known)?;
+    let meaning = meaning_of_word(argument_synonyms(kind_of(whose)), word, known)?;
     Some(match meaning.contains(' ') {
         true => meaning.replace("NAME", owner),
         false => format!("did you mean `{meaning}`?"),
@@ -118,15 +119,16 @@ pub fn known_spelling<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     for (letter, name) in GREEK {
         letters = letters.replace(letter, name);
     }
-    let has_same_key = |a: &str, b: &str| key(a) == key(b);
+    let has_same_key = |a: &str, b: &str| normalise_word(a) == normalise_word(b);
     known.iter().find(|name| has_same_key(&letters, name)).copied()
 }
 
 /// Returns the coordinate of a name that looks like its rate: `hinge_dot`, `hinged`, `dhinge`.
 pub fn rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
     let ends = ["dot", "dt", "d", "rate", "vel", "velocity", "speed", "p"];
-    let ends_with_rate_suffix =
-        |stem: &str| ends.iter().any(|end| word.strip_prefix(stem).map(key).as_deref() == Some(end));
+    let ends_with_rate_suffix = |stem: &str| {
+        ends.iter().any(|end| word.strip_prefix(stem).map(normalise_word).as_deref() == Some(end))
+    };
     let begins_with_rate_prefix = |stem: &str| {
         word.strip_suffix(stem).is_some_and(|before| matches!(before, "d" | "d_" | "dot_" | "v_" | "rate_"))
     };
@@ -140,8 +142,9 @@ pub fn rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
 /// Returns the coordinate of a name that looks like its acceleration: `hinge_ddot`, `ddhinge`.
 pub fn second_rate_of<'a>(word: &str, coordinates: &[&'a str]) -> Option<&'a str> {
     let ends = ["ddot", "dotdot", "dd", "acc", "accel", "acceleration", "pp"];
-    let ends_with_rate_suffix =
-        |stem: &str| ends.iter().any(|end| word.strip_prefix(stem).map(key).as_deref() == Some(end));
+    let ends_with_rate_suffix = |stem: &str| {
+        ends.iter().any(|end| word.strip_prefix(stem).map(normalise_word).as_deref() == Some(end))
+    };
     let begins_with_rate_prefix = |stem: &str| {
         word.strip_suffix(stem).is_some_and(|before| matches!(before, "dd" | "dd_" | "ddot_" | "a_" | "acc_"))
     };
@@ -161,64 +164,73 @@ pub fn is_constant(word: &str) -> bool {
 /// `known` names.
 pub fn suggest_name(diagnostic: &mut Diagnostic, name: &str, known: &[&str], coordinates: &[&str]) {
     if let Some(coordinate) = rate_of(name, coordinates) {
-        diagnostic.help(format!("write `rate({coordinate})` for its rate"));
+        diagnostic.add_help(format!("write `rate({coordinate})` for its rate"));
     } else if let Some(coordinate) = second_rate_of(name, coordinates) {
-        diagnostic.help(format!("write `rate(rate({coordinate}))` for its acceleration"));
+        diagnostic.add_help(format!("write `rate(rate({coordinate}))` for its acceleration"));
     } else if let Some(same) = known_spelling(name, known) {
-        diagnostic.help(format!("did you mean `{same}`?"));
-    } else if explain(diagnostic, NAMES, name, &[]) {
-    } else if nearest(name, known).is_some() {
-        diagnostic.suggest(name, known.iter().copied());
+        diagnostic.add_help(format!("did you mean `{same}`?"));
+    } else if explain_word(diagnostic, NAMES, name, &[]) {
+    } else if nearest_candidate(name, known).is_some() {
+        diagnostic.suggest_name(name, known.iter().copied());
     } else if is_constant(name) {
         let parameter = name.to_lowercase();
-        diagnostic.help(format!(
+        diagnostic.add_help(format!(
             "the macro cannot see the value of a constant: declare a parameter, `{parameter}: f64`, or write \
              the number"
         ));
     } else {
-        diagnostic.suggest(name, known.iter().copied());
+        diagnostic.suggest_name(name, known.iter().copied());
         let or = if diagnostic.is_bare() { "" } else { "or " };
-        diagnostic
-            .help(format!("{or}declare it: `{name}: f64` is a parameter, `{name}: Coordinate` a coordinate"));
+        diagnostic.add_help(format!(
+            "{or}declare it: `{name}: f64` is a parameter, `{name}: Coordinate` a coordinate"
+        ));
     }
 }
 
 impl Expr {
     /// Returns the expression as the user would write it, or `…` if it is long.
     pub fn to_source(&self) -> String {
-        let text = spell(self);
+        let text = expression_text(self);
         if text.chars().count() > 60 { "…".to_string() } else { text }
     }
 
     /// Returns whether another expression has the same source text.
     pub fn has_same_text(&self, other: &Expr) -> bool {
-        spell(self) == spell(other)
+        expression_text(self) == expression_text(other)
     }
 }
 
-fn spell(e: &Expr) -> String {
-    let spell_list = |items: &[Expr]| items.iter().map(spell).collect::<Vec<_>>().join(", ");
+fn expression_text(e: &Expr) -> String {
+    let spell_list = |items: &[Expr]| items.iter().map(expression_text).collect::<Vec<_>>().join(", ");
     match &e.kind {
         ExprKind::Number(n) => n.to_string(),
         ExprKind::Name(name) => name.clone(),
-        ExprKind::Field(base, member) => format!("{}.{}", spell(base), member.text),
+        ExprKind::Field(base, member) => format!("{}.{}", expression_text(base), member.text),
         ExprKind::Method(base, method, items) => {
-            format!("{}.{}({})", spell(base), method.text, spell_list(items))
+            format!("{}.{}({})", expression_text(base), method.text, spell_list(items))
         }
         ExprKind::Call(function, items) if function.id == Some(Callable::If) => match items.as_slice() {
             [a, b, below, above] => {
-                format!("if {} < {} {{ {} }} else {{ {} }}", spell(a), spell(b), spell(below), spell(above))
+                format!(
+                    "if {} < {} {{ {} }} else {{ {} }}",
+                    expression_text(a),
+                    expression_text(b),
+                    expression_text(below),
+                    expression_text(above)
+                )
             }
             _ => function.text.clone(),
         },
         ExprKind::Call(function, items) => format!("{}({})", function.text, spell_list(items)),
-        ExprKind::Neg(inner) => format!("-{}", spell(inner)),
+        ExprKind::Neg(inner) => format!("-{}", expression_text(inner)),
         ExprKind::Binary(op, left, right, _) => {
             let is_sum = |e: &Expr| matches!(e.kind, ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..));
             let product = matches!(op, BinaryOp::Mul | BinaryOp::Div);
             let spell_operand = |e: &Expr, together: bool| match &e.kind {
-                ExprKind::Binary(..) if together || (product && is_sum(e)) => format!("({})", spell(e)),
-                _ => spell(e),
+                ExprKind::Binary(..) if together || (product && is_sum(e)) => {
+                    format!("({})", expression_text(e))
+                }
+                _ => expression_text(e),
             };
             let sign = match op {
                 BinaryOp::Add => "+",
@@ -254,13 +266,18 @@ mod tests {
             RATES,
             NUMBER_METHODS,
         ];
-        let elements = ElementKind::names().filter_map(ElementKind::of_name);
-        let of_arguments = elements.flat_map(|element| element.words().iter().copied());
-        let rows = [functions(), solids(), rotations()].concat();
-        for (said, meaning) in
-            all.into_iter().flatten().copied().chain(rows).chain(of_arguments).chain(ElementKind::synonyms())
+        let elements = ElementKind::element_names().filter_map(ElementKind::of_name);
+        let of_arguments = elements.flat_map(|element| element.argument_synonyms().iter().copied());
+        let rows = [function_synonyms(), solid_synonyms(), rotation_synonyms()].concat();
+        for (said, meaning) in all
+            .into_iter()
+            .flatten()
+            .copied()
+            .chain(rows)
+            .chain(of_arguments)
+            .chain(ElementKind::element_synonyms())
         {
-            assert!(said.split(' ').all(|word| !word.is_empty() && word == key(word)), "{said}");
+            assert!(said.split(' ').all(|word| !word.is_empty() && word == normalise_word(word)), "{said}");
             assert!(!meaning.is_empty() && (meaning.contains(' ') || !meaning.contains('`')), "{meaning}");
         }
     }

@@ -25,15 +25,15 @@ struct Shapes {
 }
 
 /// Finds the groups of isomorphic limbs. No link is in two groups.
-pub fn find(model: &Model<'_>, joints: &[Joint<'_>]) -> Vec<Group> {
+pub fn find_limb_groups(model: &Model<'_>, joints: &[Joint<'_>]) -> Vec<Group> {
     let shapes = Shapes::new(model, joints);
     let mut groups = Vec::new();
     let mut taken = vec![false; joints.len()];
     let roots: Vec<usize> = (0..joints.len()).filter(|k| joints[*k].parent.is_none()).collect();
-    shapes.groups(joints, &roots, &mut groups, &mut taken);
+    shapes.add_limb_groups(joints, &roots, &mut groups, &mut taken);
     for k in 0..joints.len() {
         if !taken[k] {
-            shapes.groups(joints, &shapes.children[k], &mut groups, &mut taken);
+            shapes.add_limb_groups(joints, &shapes.children[k], &mut groups, &mut taken);
         }
     }
     groups
@@ -62,7 +62,13 @@ impl Shapes {
     }
 
     /// Adds the groups of isomorphic limbs that begin at the children of one link.
-    fn groups(&self, joints: &[Joint<'_>], children: &[usize], groups: &mut Vec<Group>, taken: &mut [bool]) {
+    fn add_limb_groups(
+        &self,
+        joints: &[Joint<'_>],
+        children: &[usize],
+        groups: &mut Vec<Group>,
+        taken: &mut [bool],
+    ) {
         let mut left: Vec<usize> = children.iter().copied().filter(|k| self.shape[*k] != 0).collect();
         while let Some(&first) = left.first() {
             let mut roots: Vec<usize> = left
@@ -79,7 +85,7 @@ impl Shapes {
             let mut rows = Vec::new();
             let limbs = roots.len();
             roots.resize(limbs.next_power_of_two(), roots[limbs - 1]);
-            self.rows(roots, &mut rows);
+            self.add_corresponding_links(roots, &mut rows);
             rows.iter().flatten().for_each(|k| taken[*k] = true);
             groups.push(Group { limbs, rows });
         }
@@ -87,7 +93,7 @@ impl Shapes {
 
     /// Adds the rows of corresponding links of isomorphic subtrees, parents before their children. Each row
     /// has one link per subtree.
-    fn rows(&self, roots: Vec<usize>, rows: &mut Vec<Vec<usize>>) {
+    fn add_corresponding_links(&self, roots: Vec<usize>, rows: &mut Vec<Vec<usize>>) {
         let mut todo = vec![roots];
         while let Some(row) = todo.pop() {
             let mut left: Vec<Vec<usize>> = row.iter().map(|k| self.children[*k].clone()).collect();

@@ -58,7 +58,7 @@ impl<'g> Limbs<'g> {
         if groups.is_empty() || !model.inertances.is_empty() || !model.acceleration_forces.is_empty() {
             return None;
         }
-        let rows = rows(joints.len(), groups);
+        let rows = corresponding_links(joints.len(), groups);
         let merge = &mut Merge::new(model.graph);
         pair_coordinates(model, &rows, merge);
         let (velocities, places) = pair_velocities(model, joints, &rows)?;
@@ -75,12 +75,13 @@ impl<'g> Limbs<'g> {
             row.iter().for_each(|k| numbers[*k] = LinkId(limbs.joints.len()));
             let parent = joints[row[0]].parent.map(|p| numbers[p.0]);
             let links: Vec<&Link<'g>> = row.iter().map(|k| &model.links[*k]).collect();
-            let mut joint = limbs.joint(&row.iter().map(|k| &joints[*k]).collect::<Vec<_>>(), merge)?;
+            let mut joint =
+                limbs.merge_joint_lanes(&row.iter().map(|k| &joints[*k]).collect::<Vec<_>>(), merge)?;
             joint.parent = parent;
             let group = groups.iter().find(|group| group.rows.first() == Some(row));
             joint.limbs = group.map_or(1, |group| group.limbs);
             limbs.joints.push(joint);
-            let link = limbs.link(&links, parent, merge)?;
+            let link = limbs.merge_link_lanes(&links, parent, merge)?;
             limbs.model.links.push(link);
         }
         limbs.passive_forces = limbs.lane_groups(&passive_forces(), merge)?;
@@ -88,7 +89,7 @@ impl<'g> Limbs<'g> {
         Some(limbs)
     }
 
-    fn joint(&self, lanes: &[&Joint<'g>], merge: &mut Merge<'g>) -> Option<Joint<'g>> {
+    fn merge_joint_lanes(&self, lanes: &[&Joint<'g>], merge: &mut Merge<'g>) -> Option<Joint<'g>> {
         let first = *lanes.first()?;
         let mut dofs = Vec::new();
         for (d, dof) in first.dofs.iter().enumerate() {
@@ -100,7 +101,8 @@ impl<'g> Limbs<'g> {
             let signs = &self.velocities[index].signs;
             let of_lanes = lanes.iter().zip(signs).map(|(joint, sign)| {
                 let dof = joint.dofs.get(d)?;
-                (dof.ratio == first.dofs[d].ratio).then(|| dof.subspace.times(self.model.graph.num(*sign)))
+                (dof.ratio == first.dofs[d].ratio)
+                    .then(|| dof.subspace.times_scalar(self.model.graph.num(*sign)))
             });
             let subspaces: Vec<Spatial<'g>> = of_lanes.collect::<Option<_>>()?;
             dofs.push(Dof { index, ratio: dof.ratio, subspace: merged_spatial(&subspaces, merge)? });
@@ -112,7 +114,7 @@ impl<'g> Limbs<'g> {
         let translations: Vec<Vec3<'g>> = lanes.iter().map(|j| j.translation).collect();
         Some(Joint {
             parent: None,
-            rotation: Rotation::side_by_side(&rotations, &mut |e| merge.lanes(e))?,
+            rotation: Rotation::side_by_side(&rotations, &mut |e| merge.merge_lanes(e))?,
             translation: merged_vector(&translations, merge)?,
             dofs,
             drift: None,
@@ -120,7 +122,12 @@ impl<'g> Limbs<'g> {
         })
     }
 
-    fn link(&self, lanes: &[&Link<'g>], parent: Option<LinkId>, merge: &mut Merge<'g>) -> Option<Link<'g>> {
+    fn merge_link_lanes(
+        &self,
+        lanes: &[&Link<'g>],
+        parent: Option<LinkId>,
+        merge: &mut Merge<'g>,
+    ) -> Option<Link<'g>> {
         let first = *lanes.first()?;
         let inertias: Vec<Inertia<'g>> = lanes.iter().map(|l| l.inertia).collect();
         let mut motion = first.motion.clone();
@@ -139,14 +146,14 @@ impl<'g> Limbs<'g> {
         let g = self.model.graph;
         let gather_lane_values = |velocity: &Velocity| {
             let lanes: Vec<Expr<'g>> = velocity.lanes.iter().map(|k| whole[*k]).collect();
-            Some(g.lane_constants(&velocity.signs) * merge.lanes(&lanes)?)
+            Some(g.lane_constants(&velocity.signs) * merge.merge_lanes(&lanes)?)
         };
         self.velocities.iter().map(gather_lane_values).collect()
     }
 
     /// Returns the symbols of a quantity, such as the velocities, one entry per velocity of the vectorised
     /// mechanism.
-    pub fn symbols(&self, of: impl Fn(usize) -> Quantity) -> Vec<Expr<'g>> {
+    pub fn symbols_by_velocity(&self, of: impl Fn(usize) -> Quantity) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let gather_lane_symbols = |velocity: &Velocity| {
             let symbols: Vec<_> = velocity.lanes.iter().map(|k| of(*k).symbol()).collect();
@@ -157,7 +164,7 @@ impl<'g> Limbs<'g> {
 
     /// Returns the limb group of each velocity of the vectorised mechanism, identified by the first velocity
     /// of the group; `None` outside limbs.
-    pub fn groups(&self) -> Vec<Option<usize>> {
+    pub fn group_of_each_velocity(&self) -> Vec<Option<usize>> {
         let mut groups = vec![None; self.velocities.len()];
         let mut of_links: Vec<Option<usize>> = Vec::new();
         for joint in &self.joints {
@@ -171,7 +178,7 @@ impl<'g> Limbs<'g> {
     }
 
     /// Returns the number of lanes of a velocity.
-    pub fn width(&self, index: usize) -> usize {
+    pub fn lane_count_of_velocity(&self, index: usize) -> usize {
         self.velocities[index].lanes.len()
     }
 
@@ -199,7 +206,7 @@ impl<'g> Limbs<'g> {
     /// then the second rows, and so on. Returns `None` unless each row belongs to one limb of a group and all
     /// limbs have the same number of rows.
     pub fn limb_rows(&self, rows: &[Vec<Expr<'g>>]) -> Option<Vec<LimbRows>> {
-        let groups = self.groups();
+        let groups = self.group_of_each_velocity();
         let mut found: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
         for (i, row) in rows.iter().enumerate() {
             let LimbLane { group, lane, width } = self.lane_of(row, &groups)?;
@@ -227,7 +234,7 @@ impl<'g> Limbs<'g> {
                 |(lane, row): (usize, &&[Expr<'g>])| self.velocity_in(velocity, lane).map(|k| row[k]);
             let lanes =
                 rows.iter().enumerate().map(|of_lane| lane_entry(of_lane).unwrap_or(self.model.graph.zero()));
-            merge.lanes(&lanes.collect::<Vec<_>>())
+            merge.merge_lanes(&lanes.collect::<Vec<_>>())
         };
         self.velocities.iter().map(merged_entry).collect()
     }
@@ -261,7 +268,7 @@ impl<'g> Limbs<'g> {
 
     /// Returns, for each velocity of the whole mechanism, its index in the vectorised mechanism and its SIMD
     /// lane, if it has one.
-    pub fn places(&self) -> impl Iterator<Item = (usize, Option<usize>)> {
+    pub fn velocity_indices_and_lanes(&self) -> impl Iterator<Item = (usize, Option<usize>)> {
         self.places.iter().map(|place| (place.index, place.lane))
     }
 
@@ -277,7 +284,7 @@ impl<'g> Limbs<'g> {
                 None => g.zero(),
             };
             let lanes: Vec<Expr<'g>> = rows.iter().enumerate().map(lane_entry).collect();
-            let all = merge.lanes(&lanes).unwrap_or_else(|| joined(&lanes));
+            let all = merge.merge_lanes(&lanes).unwrap_or_else(|| join_lanes(&lanes));
             if velocity.lanes.len() == 1 { all } else { g.lane_constants(&velocity.signs) * all }
         };
         self.velocities.iter().map(entry_in_lanes).collect()
@@ -301,7 +308,7 @@ impl<'g> Limbs<'g> {
 
     /// Splits one expression per velocity of the vectorised mechanism into one expression per velocity of the
     /// whole mechanism.
-    pub fn scattered(&self, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn scatter_to_velocities(&self, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let g = self.model.graph;
         let scatter_to_location = |place: &Location| match place.lane {
             Some(k) => (g.lane_constants(&self.velocities[place.index].signs) * values[place.index]).lane(k),
@@ -338,16 +345,16 @@ impl<'g> Limbs<'g> {
 }
 
 /// Joins expressions into the SIMD lanes of one expression. The number of expressions is a power of two.
-pub fn joined<'g>(lanes: &[Expr<'g>]) -> Expr<'g> {
+pub fn join_lanes<'g>(lanes: &[Expr<'g>]) -> Expr<'g> {
     match lanes.split_at(lanes.len() / 2) {
         ([], _) => lanes[0],
-        (a, b) => joined(a).joined(a.len(), joined(b)),
+        (a, b) => join_lanes(a).join_with(a.len(), join_lanes(b)),
     }
 }
 
 /// Returns for each link the corresponding links of its group, itself first; an empty list for links of later
 /// limbs.
-fn rows(links: usize, groups: &[Group]) -> Vec<Vec<usize>> {
+fn corresponding_links(links: usize, groups: &[Group]) -> Vec<Vec<usize>> {
     let mut rows: Vec<Vec<usize>> = (0..links).map(|k| vec![k]).collect();
     for row in groups.iter().flat_map(|group| &group.rows) {
         row.iter().for_each(|k| rows[*k].clear());
@@ -359,7 +366,7 @@ fn rows(links: usize, groups: &[Group]) -> Vec<Vec<usize>> {
 /// Declares to the merger which entries of `q` correspond.
 fn pair_coordinates(model: &Model<'_>, rows: &[Vec<usize>], merge: &mut Merge<'_>) {
     for row in rows.iter().filter(|row| row.len() > 1) {
-        let configuration_indices = |k: &usize| model.links[*k].motion.configuration();
+        let configuration_indices = |k: &usize| model.links[*k].motion.configuration_range();
         for i in 0..configuration_indices(&row[0]).len() {
             let configuration_symbol =
                 |k: &usize| configuration_indices(k).nth(i).map(|q| Quantity::Configuration(q).symbol());
@@ -384,7 +391,7 @@ fn without_forces<'g>(model: &Model<'g>) -> Model<'g> {
 fn merged_vector<'g>(lanes: &[Vec3<'g>], merge: &mut Merge<'g>) -> Option<Vec3<'g>> {
     let mut vector = *lanes.first()?;
     for k in 0..3 {
-        vector.0[k] = merge.lanes(&lanes.iter().map(|v| v[k]).collect::<Vec<_>>())?;
+        vector.0[k] = merge.merge_lanes(&lanes.iter().map(|v| v[k]).collect::<Vec<_>>())?;
     }
     Some(vector)
 }
@@ -398,7 +405,7 @@ fn merged_spatial<'g>(lanes: &[Spatial<'g>], merge: &mut Merge<'g>) -> Option<Sp
 fn merged_inertia<'g>(lanes: &[Inertia<'g>], merge: &mut Merge<'g>) -> Option<Inertia<'g>> {
     let mut inertia = *lanes.first()?;
     let mut each =
-        |of: &dyn Fn(&Inertia<'g>) -> Expr<'g>| merge.lanes(&lanes.iter().map(of).collect::<Vec<_>>());
+        |of: &dyn Fn(&Inertia<'g>) -> Expr<'g>| merge.merge_lanes(&lanes.iter().map(of).collect::<Vec<_>>());
     inertia.mass = each(&|i| i.mass)?;
     for k in 0..3 {
         inertia.moment.0[k] = each(&|i| i.moment[k])?;

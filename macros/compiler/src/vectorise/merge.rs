@@ -2,7 +2,7 @@
 //! for any pairing of operands: every lane has the value of its own expression. Expressions come from users,
 //! so depth and steps are bounded; an expression that exceeds the bounds is not merged.
 
-use crate::expr::replace::replace;
+use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr, Function, Graph, Id, Node, Symbol};
 use crate::kinematics::symbols_in;
 use crate::mechanism::Quantity;
@@ -54,23 +54,26 @@ impl<'g> Merge<'g> {
     /// filler has the symbols of lane `to`, so that they are gathered once. The expression itself is the
     /// filler if it has symbols of other lanes too, or may be infinite, since zero times infinity is not
     /// zero.
-    fn filler(&self, e: Expr<'g>, from: usize, to: usize) -> Expr<'g> {
+    fn lane_filler(&self, e: Expr<'g>, from: usize, to: usize) -> Expr<'g> {
         let partners_of_symbol = |s: Symbol| self.partners.iter().find(|list| list.contains(&s));
         let is_own_symbol = |s: &Symbol| partners_of_symbol(*s).is_none_or(|list| list.get(from) == Some(s));
         if !symbols_in(&[e]).iter().all(is_own_symbol) || !is_finite(e) {
             return e;
         }
-        replace(e, &|s| partners_of_symbol(s)?.get(to).map(|s| self.graph.symbol(*s)))
+        substitute_symbols(e, &|s| partners_of_symbol(s)?.get(to).map(|s| self.graph.symbol(*s)))
     }
 
     /// Uses up steps; returns `None` when too few remain.
-    fn spend(&mut self, steps: usize) -> Option<()> {
+    fn spend_steps(&mut self, steps: usize) -> Option<()> {
         self.steps = self.steps.checked_sub(steps)?;
         Some(())
     }
 
     /// Builds an expression at the next nesting depth; returns `None` if the maximum depth is exceeded.
-    fn nest(&mut self, make: impl FnOnce(&mut Self) -> Option<Expr<'g>>) -> Option<Expr<'g>> {
+    fn build_nested_expression(
+        &mut self,
+        make: impl FnOnce(&mut Self) -> Option<Expr<'g>>,
+    ) -> Option<Expr<'g>> {
         if self.depth == MAX_DEPTH {
             return None;
         }
@@ -82,36 +85,36 @@ impl<'g> Merge<'g> {
 
     /// Returns the expression with these lanes, or the common expression if all lanes are equal. Returns
     /// `None` if the lanes have different structures.
-    pub fn lanes(&mut self, lanes: &[Expr<'g>]) -> Option<Expr<'g>> {
+    pub fn merge_lanes(&mut self, lanes: &[Expr<'g>]) -> Option<Expr<'g>> {
         let first = *lanes.first()?;
         if lanes.iter().all(|e| *e == first) {
             return Some(first);
         }
-        if let Some(values) = lanes.iter().map(|e| e.value()).collect::<Option<Vec<_>>>() {
+        if let Some(values) = lanes.iter().map(|e| e.constant_value()).collect::<Option<Vec<_>>>() {
             return Some(self.graph.lane_constants(&values));
         }
         let ids: Vec<Id> = lanes.iter().map(|e| e.id()).collect();
         if let Some(known) = self.known.get(&ids) {
             return known.map(|id| self.graph.expr(id));
         }
-        self.spend(ids.len())?;
-        let found = self.nest(|merge| merge.build(lanes));
+        self.spend_steps(ids.len())?;
+        let found = self.build_nested_expression(|merge| merge.build(lanes));
         self.known.insert(ids, found.map(Expr::id));
         found
     }
 
     fn build(&mut self, lanes: &[Expr<'g>]) -> Option<Expr<'g>> {
         // Offsets and factors that differ between lanes become lane constants.
-        let mut parts: Vec<(f64, f64, Expr<'g>)> = lanes.iter().map(|e| affine(*e)).collect();
-        let moving = lanes.iter().position(|e| e.value().is_none())?;
+        let mut parts: Vec<(f64, f64, Expr<'g>)> = lanes.iter().map(|e| split_affine(*e)).collect();
+        let moving = lanes.iter().position(|e| e.constant_value().is_none())?;
         for lane in 0..parts.len() {
-            if lanes[lane].value().is_some() {
+            if lanes[lane].constant_value().is_some() {
                 // The lane is constant: its factor is zero.
-                parts[lane].2 = self.filler(parts[moving].2, moving, lane);
+                parts[lane].2 = self.lane_filler(parts[moving].2, moving, lane);
             }
         }
         if parts.iter().any(|(offset, factor, _)| (*offset, *factor) != (0.0, 1.0)) {
-            return self.affine(&parts);
+            return self.merge_affine_lanes(&parts);
         }
         let expression_of_id = |id: Id| self.graph.expr(id);
         match lanes.first()?.node() {
@@ -129,17 +132,18 @@ impl<'g> Merge<'g> {
                     _ => None,
                 };
                 let arguments: Option<Vec<_>> = lanes.iter().map(argument_of_call).collect();
-                Some(self.lanes(&arguments?)?.call(f))
+                Some(self.merge_lanes(&arguments?)?.apply_function(f))
             }
             Node::Add(..) | Node::Sub(..) => {
                 let (a, b) =
-                    self.pair_operands(lanes.iter().map(|e| terms(*e)).collect::<Option<Vec<_>>>()?)?;
-                Some(self.lanes(&a)? + self.lanes(&b)?)
+                    self.pair_operands(lanes.iter().map(|e| terms_of_sum(*e)).collect::<Option<Vec<_>>>()?)?;
+                Some(self.merge_lanes(&a)? + self.merge_lanes(&b)?)
             }
             Node::Mul(..) => {
-                let (a, b) =
-                    self.pair_operands(lanes.iter().map(|e| factors(*e)).collect::<Option<Vec<_>>>()?)?;
-                Some(self.lanes(&a)? * self.lanes(&b)?)
+                let (a, b) = self.pair_operands(
+                    lanes.iter().map(|e| factors_of_product(*e)).collect::<Option<Vec<_>>>()?,
+                )?;
+                Some(self.merge_lanes(&a)? * self.merge_lanes(&b)?)
             }
             Node::Div(..) => {
                 let numerator_and_denominator = |e: &Expr<'g>| match e.node() {
@@ -152,68 +156,68 @@ impl<'g> Merge<'g> {
                     .collect::<Option<Vec<_>>>()?
                     .into_iter()
                     .unzip();
-                Some(self.lanes(&a)? / self.lanes(&b)?)
+                Some(self.merge_lanes(&a)? / self.merge_lanes(&b)?)
             }
             _ => None,
         }
     }
 
     /// Merges lanes of the form `offset + factor × rest`.
-    fn affine(&mut self, parts: &[(f64, f64, Expr<'g>)]) -> Option<Expr<'g>> {
+    fn merge_affine_lanes(&mut self, parts: &[(f64, f64, Expr<'g>)]) -> Option<Expr<'g>> {
         let offsets: Vec<f64> = parts.iter().map(|part| part.0).collect();
         let factors: Vec<f64> = parts.iter().map(|part| part.1).collect();
         let rests: Vec<Expr<'g>> = parts.iter().map(|part| part.2).collect();
         let scaled = match factors.iter().all(|c| c.abs() == 1.0) {
-            true => self.signed(&rests, &factors)?,
-            false => self.graph.lane_constants(&factors) * self.lanes(&rests)?,
+            true => self.merge_signed_lanes(&rests, &factors)?,
+            false => self.graph.lane_constants(&factors) * self.merge_lanes(&rests)?,
         };
         Some(self.graph.lane_constants(&offsets) + scaled)
     }
 
     /// Merges expressions with signs. Signs that differ between lanes are absorbed by constants of the
     /// expressions, if possible.
-    fn signed(&mut self, lanes: &[Expr<'g>], signs: &[f64]) -> Option<Expr<'g>> {
+    fn merge_signed_lanes(&mut self, lanes: &[Expr<'g>], signs: &[f64]) -> Option<Expr<'g>> {
         let sign = *signs.first()?;
         if signs.iter().all(|s| *s == sign) {
-            let all = self.lanes(lanes)?;
+            let all = self.merge_lanes(lanes)?;
             return Some(if sign < 0.0 { -all } else { all });
         }
         let key: Vec<(Id, bool)> = lanes.iter().zip(signs).map(|(e, sign)| (e.id(), *sign < 0.0)).collect();
         if let Some(known) = self.signed.get(&key) {
             return known.map(|id| self.graph.expr(id));
         }
-        self.spend(key.len())?;
-        let found = self.nest(|merge| merge.build_signed(lanes, signs));
+        self.spend_steps(key.len())?;
+        let found = self.build_nested_expression(|merge| merge.build_signed(lanes, signs));
         self.signed.insert(key, found.map(Expr::id));
         found
     }
 
     fn build_signed(&mut self, lanes: &[Expr<'g>], signs: &[f64]) -> Option<Expr<'g>> {
         let first = *lanes.first()?;
-        let mut parts: Vec<(f64, f64, Expr<'g>)> = lanes.iter().map(|e| affine(*e)).collect();
+        let mut parts: Vec<(f64, f64, Expr<'g>)> = lanes.iter().map(|e| split_affine(*e)).collect();
         if parts.iter().any(|(offset, factor, _)| (*offset, *factor) != (0.0, 1.0)) {
             for (part, sign) in parts.iter_mut().zip(signs) {
                 (part.0, part.1) = (part.0 * sign, part.1 * sign);
             }
-            return self.affine(&parts);
+            return self.merge_affine_lanes(&parts);
         }
-        if absorbs(first, DEPTH) {
+        if can_absorb_sign(first, DEPTH) {
             let operands_of_all_lanes = |of: fn(Expr<'g>) -> Option<(Expr<'g>, Expr<'g>)>| {
                 lanes.iter().map(|e| of(*e)).collect::<Option<Vec<_>>>()
             };
-            if let Some(operands) = operands_of_all_lanes(terms) {
+            if let Some(operands) = operands_of_all_lanes(terms_of_sum) {
                 let (a, b) = self.pair_operands(operands)?;
-                return Some(self.signed(&a, signs)? + self.signed(&b, signs)?);
+                return Some(self.merge_signed_lanes(&a, signs)? + self.merge_signed_lanes(&b, signs)?);
             }
-            if let Some(operands) = operands_of_all_lanes(factors) {
+            if let Some(operands) = operands_of_all_lanes(factors_of_product) {
                 let (a, b) = self.pair_operands(operands)?;
-                return match absorbs(*a.first()?, DEPTH) {
-                    true => Some(self.signed(&a, signs)? * self.lanes(&b)?),
-                    false => Some(self.lanes(&a)? * self.signed(&b, signs)?),
+                return match can_absorb_sign(*a.first()?, DEPTH) {
+                    true => Some(self.merge_signed_lanes(&a, signs)? * self.merge_lanes(&b)?),
+                    false => Some(self.merge_lanes(&a)? * self.merge_signed_lanes(&b, signs)?),
                 };
             }
         }
-        Some(self.graph.lane_constants(signs) * self.lanes(lanes)?)
+        Some(self.graph.lane_constants(signs) * self.merge_lanes(lanes)?)
     }
 
     /// Returns the first and the second operands of a commutative operation in all lanes. Operands are
@@ -235,9 +239,9 @@ impl<'g> Merge<'g> {
     /// Returns true if two expressions have the same structure down to a depth, or `None` when no steps
     /// remain.
     fn is_similar(&mut self, a: Expr<'g>, b: Expr<'g>, depth: u8) -> Option<bool> {
-        self.spend(1)?;
-        let ((.., a), (.., b)) = (affine(a), affine(b));
-        if a == b || depth == 0 || a.value().is_some() || b.value().is_some() {
+        self.spend_steps(1)?;
+        let ((.., a), (.., b)) = (split_affine(a), split_affine(b));
+        if a == b || depth == 0 || a.constant_value().is_some() || b.constant_value().is_some() {
             return Some(true);
         }
         let mut same = |x: Id, y: Id| self.is_similar(a.graph().expr(x), a.graph().expr(y), depth - 1);
@@ -259,7 +263,7 @@ impl<'g> Merge<'g> {
 }
 
 /// Returns the terms of a sum or difference.
-fn terms(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
+fn terms_of_sum(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
     let expression_of_id = |id: Id| e.graph().expr(id);
     match e.node() {
         Node::Add(a, b) => Some((expression_of_id(a), expression_of_id(b))),
@@ -269,7 +273,7 @@ fn terms(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
 }
 
 /// Returns the two factors if the expression is a product.
-fn factors(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
+fn factors_of_product(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
     let expression_of_id = |id: Id| e.graph().expr(id);
     match e.node() {
         Node::Mul(a, b) => Some((expression_of_id(a), expression_of_id(b))),
@@ -278,25 +282,25 @@ fn factors(e: Expr<'_>) -> Option<(Expr<'_>, Expr<'_>)> {
 }
 
 /// Returns true if constants of an expression can absorb a sign, down to a depth.
-fn absorbs(e: Expr<'_>, depth: u8) -> bool {
-    let (offset, factor, rest) = affine(e);
-    if offset != 0.0 || factor.abs() != 1.0 || e.value().is_some() {
+fn can_absorb_sign(e: Expr<'_>, depth: u8) -> bool {
+    let (offset, factor, rest) = split_affine(e);
+    if offset != 0.0 || factor.abs() != 1.0 || e.constant_value().is_some() {
         return true;
     }
     let Some(depth) = depth.checked_sub(1) else { return false };
-    match (terms(rest), factors(rest)) {
-        (Some((a, b)), _) => absorbs(a, depth) && absorbs(b, depth),
-        (_, Some((a, b))) => absorbs(a, depth) || absorbs(b, depth),
+    match (terms_of_sum(rest), factors_of_product(rest)) {
+        (Some((a, b)), _) => can_absorb_sign(a, depth) && can_absorb_sign(b, depth),
+        (_, Some((a, b))) => can_absorb_sign(a, depth) || can_absorb_sign(b, depth),
         _ => false,
     }
 }
 
 /// Splits an expression into constants and a remainder, `offset + factor × remainder`.
-fn affine(e: Expr<'_>) -> (f64, f64, Expr<'_>) {
+fn split_affine(e: Expr<'_>) -> (f64, f64, Expr<'_>) {
     let expression_of_id = |id: Id| e.graph().expr(id);
     let (mut offset, mut factor, mut rest) = (0.0, 1.0, e);
     loop {
-        let constant_value = |id: Id| expression_of_id(id).value();
+        let constant_value = |id: Id| expression_of_id(id).constant_value();
         match rest.node() {
             Node::Const(c) => return (offset + factor * c, 0.0, rest),
             Node::Neg(a) => (factor, rest) = (-factor, expression_of_id(a)),
@@ -334,7 +338,7 @@ fn is_finite(e: Expr<'_>) -> bool {
             _ => return false,
         }
         if seen.insert(id) {
-            node.operands(|a| todo.push(a));
+            node.visit_operands(|a| todo.push(a));
         }
     }
     true

@@ -66,14 +66,14 @@ impl<'a, 'g> Paths<'a, 'g> {
     }
 
     /// Returns the link of each degree of freedom.
-    pub fn links(&self) -> &[usize] {
+    pub fn links_of_freedoms(&self) -> &[usize] {
         &self.links
     }
 
     /// Divides the runs into groups of at most `max_lanes` lanes.
     fn lane_groups(&self, max_lanes: usize) -> Vec<Vec<usize>> {
         let mut groups = Vec::new();
-        for run in self.runs().iter().filter(|run| !run.is_empty()) {
+        for run in self.runs_between_branches().iter().filter(|run| !run.is_empty()) {
             let width = self.widths[self.links[run[0]]];
             let size = if width.is_power_of_two() { (max_lanes / width).max(1) } else { 1 };
             groups.extend(run.chunks(size).map(<[usize]>::to_vec));
@@ -82,7 +82,7 @@ impl<'a, 'g> Paths<'a, 'g> {
     }
 
     /// Returns runs of degrees of freedom from a leaf or a branch to the next branch, towards the root.
-    fn runs(&self) -> Vec<Vec<usize>> {
+    fn runs_between_branches(&self) -> Vec<Vec<usize>> {
         let mut children = vec![0; self.joints.len()];
         self.joints.iter().filter_map(|joint| joint.parent).for_each(|p| children[p.0] += 1);
         let mut runs: Vec<Vec<usize>> = Vec::new();
@@ -106,15 +106,15 @@ impl<'a, 'g> Paths<'a, 'g> {
     }
 
     /// Propagates the quantities of all degrees of freedom to the root.
-    pub fn propagate<V: Visitor<'g>>(&self, visitor: &mut V) {
+    pub fn propagate_to_root<V: Visitor<'g>>(&self, visitor: &mut V) {
         for group in &self.groups {
-            let lanes = self.gather(group, visitor);
-            self.transform(lanes, None, visitor);
+            let lanes = self.gather_group(group, visitor);
+            self.transform_group(lanes, None, visitor);
         }
     }
 
     /// Returns the quantities of a group in the frame of the link of its last degree of freedom.
-    fn gather<V: Visitor<'g>>(&self, group: &[usize], visitor: &mut V) -> LaneGroup<V::Item> {
+    fn gather_group<V: Visitor<'g>>(&self, group: &[usize], visitor: &mut V) -> LaneGroup<V::Item> {
         if let [dof] = *group {
             let link = self.links[dof];
             let (width, item) = (self.widths[link], visitor.start(dof));
@@ -122,18 +122,18 @@ impl<'a, 'g> Paths<'a, 'g> {
         }
         let half = group.len().next_power_of_two() / 2;
         let (far, near) = group.split_at(group.len() - half);
-        let far = self.gather(far, visitor);
-        let near = self.gather(near, visitor);
-        let mut far = self.transform(far, Some(near.link), visitor);
+        let far = self.gather_group(far, visitor);
+        let near = self.gather_group(near, visitor);
+        let mut far = self.transform_group(far, Some(near.link), visitor);
         while far.members.len() < half {
-            far.item = far.joined(&far);
+            far.item = far.join_group_lanes(&far);
             far.members.resize(2 * far.members.len(), None);
         }
-        LaneGroup { item: near.joined(&far), members: [near.members, far.members].concat(), ..near }
+        LaneGroup { item: near.join_group_lanes(&far), members: [near.members, far.members].concat(), ..near }
     }
 
     /// Transforms a group link by link to a link nearer to the root, or to the root.
-    fn transform<V: Visitor<'g>>(
+    fn transform_group<V: Visitor<'g>>(
         &self,
         mut group: LaneGroup<V::Item>,
         to: Option<usize>,
@@ -152,12 +152,12 @@ impl<'a, 'g> Paths<'a, 'g> {
 
 impl<T> LaneGroup<T> {
     /// Repeats an expression of the link for every member of the group.
-    pub fn spread<'g>(&self, e: Expr<'g>) -> Expr<'g> {
+    pub fn repeat_for_members<'g>(&self, e: Expr<'g>) -> Expr<'g> {
         let mut e = e;
         // An expression without lanes holds for all members.
         if self.link_width > 1 {
             for k in 0..self.members.len().trailing_zeros() {
-                e = e.joined(self.link_width << k, e);
+                e = e.join_with(self.link_width << k, e);
             }
         }
         e
@@ -168,34 +168,36 @@ impl<T> LaneGroup<T> {
             return joint.clone();
         }
         Joint {
-            rotation: joint.rotation.map(&|e| self.spread(e)),
-            translation: joint.translation.map(|c| self.spread(c)),
+            rotation: joint.rotation.map(&|e| self.repeat_for_members(e)),
+            translation: joint.translation.map(|c| self.repeat_for_members(c)),
             ..joint.clone()
         }
     }
 
     /// Concatenates the SIMD lanes of two groups.
-    fn joined<'g>(&self, other: &LaneGroup<T>) -> T
+    fn join_group_lanes<'g>(&self, other: &LaneGroup<T>) -> T
     where
         T: Propagated<'g>,
     {
         let lanes = self.members.len() * self.width;
-        self.item.zip_with(&other.item, &|a, b| a.joined(lanes, b))
+        self.item.zip_with(&other.item, &|a, b| a.join_with(lanes, b))
     }
 
     /// Returns the degree of freedom of each member with its lanes of an expression.
-    pub fn parts<'g>(&self, e: Expr<'g>) -> impl Iterator<Item = (usize, Expr<'g>)> {
+    pub fn lanes_of_members<'g>(&self, e: Expr<'g>) -> impl Iterator<Item = (usize, Expr<'g>)> {
         let (alone, width) = (self.members.len() == 1, self.width);
-        let lanes_of_member = move |k: usize| if alone { e } else { lanes(e, k * width, width) };
+        let lanes_of_member = move |k: usize| if alone { e } else { lane_range(e, k * width, width) };
         self.members.iter().enumerate().filter_map(move |(k, member)| Some(((*member)?, lanes_of_member(k))))
     }
 }
 
 /// Returns `count` lanes of an expression, from lane `first` on; `count` is a power of two.
-fn lanes(e: Expr<'_>, first: usize, count: usize) -> Expr<'_> {
+fn lane_range(e: Expr<'_>, first: usize, count: usize) -> Expr<'_> {
     match count {
         1 => e.lane(first),
-        _ => lanes(e, first, count / 2).joined(count / 2, lanes(e, first + count / 2, count / 2)),
+        _ => {
+            lane_range(e, first, count / 2).join_with(count / 2, lane_range(e, first + count / 2, count / 2))
+        }
     }
 }
 

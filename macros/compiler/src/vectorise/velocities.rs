@@ -62,7 +62,7 @@ pub fn pair_velocities(
 /// nonzero number in both.
 fn sign_between(a: &Spatial<'_>, b: &Spatial<'_>) -> f64 {
     let pairs = a.linear.0.iter().chain(&a.angular.0).zip(b.linear.0.iter().chain(&b.angular.0));
-    let mut products = pairs.filter_map(|(x, y)| Some(x.value()? * y.value()?));
+    let mut products = pairs.filter_map(|(x, y)| Some(x.constant_value()? * y.constant_value()?));
     let first = products.find(|product| *product != 0.0);
     if first.is_some_and(|product| product < 0.0) { -1.0 } else { 1.0 }
 }

@@ -29,7 +29,7 @@ pub struct Imports {
 
 impl Imports {
     /// Reads all source files below a folder, except tests.
-    pub fn read(source: &Path) -> Imports {
+    pub fn read_imports(source: &Path) -> Imports {
         let mut files = Vec::new();
         let mut todo = vec![source.to_path_buf()];
         while let Some(folder) = todo.pop() {
@@ -38,7 +38,7 @@ impl Imports {
                 if path.is_dir() {
                     todo.push(path);
                 } else if path.extension().is_some_and(|end| end == "rs") && !is_test(&path) {
-                    files.push(File::read(source, path));
+                    files.push(File::read_file_imports(source, path));
                 }
             }
         }
@@ -48,21 +48,21 @@ impl Imports {
     }
 
     /// Returns the path of a source file relative to the folder of the crate's sources.
-    pub fn name(&self, file: usize) -> String {
+    pub fn relative_file_path(&self, file: usize) -> String {
         self.files[file].path.to_string_lossy().into_owned()
     }
 
     /// Returns the files that each file depends on.
-    pub fn graph(&self) -> Vec<BTreeSet<usize>> {
-        (0..self.files.len()).map(|k| self.needs(k)).collect()
+    pub fn dependency_graph(&self) -> Vec<BTreeSet<usize>> {
+        (0..self.files.len()).map(|k| self.dependencies_of_file(k)).collect()
     }
 
-    fn needs(&self, k: usize) -> BTreeSet<usize> {
+    fn dependencies_of_file(&self, k: usize) -> BTreeSet<usize> {
         let file = &self.files[k];
         let mut found = BTreeSet::new();
         for (name, path, passes_on) in &file.imports {
             if !passes_on || file.tokens.contains(name) {
-                found.extend(self.defining(&file.module, path, 0));
+                found.extend(self.defining_file(&file.module, path, 0));
             }
         }
         let mut at = 0;
@@ -70,7 +70,7 @@ impl Imports {
             let path = path_at(&file.tokens, at);
             at += (2 * path.len()).saturating_sub(1).max(1);
             if path.len() > 1 {
-                found.extend(self.defining(&file.module, &path, 0));
+                found.extend(self.defining_file(&file.module, &path, 0));
             }
         }
         found.remove(&k);
@@ -79,7 +79,7 @@ impl Imports {
 
     /// Returns the file that defines a path in a module. Returns `None` for modules and for names of other
     /// crates.
-    fn defining(&self, from: &[String], path: &[String], depth: usize) -> Option<usize> {
+    fn defining_file(&self, from: &[String], path: &[String], depth: usize) -> Option<usize> {
         let mut module = from.to_vec();
         let mut rest = path;
         while let [first, others @ ..] = rest {
@@ -112,7 +112,7 @@ impl Imports {
             let whole: Vec<String> = target.iter().chain(rest).cloned().collect();
             let outside = !matches!(whole[0].as_str(), "crate" | "super" | "self")
                 && !self.by_module.contains_key(&[module, &whole[..1]].concat());
-            if outside { None } else { self.defining(module, &whole, depth + 1) }
+            if outside { None } else { self.defining_file(module, &whole, depth + 1) }
         };
         let named = file.imports.iter().find(|(name, ..)| name == first);
         if let Some((_, target, _)) = named {
@@ -126,7 +126,7 @@ impl Imports {
 }
 
 /// Returns the cycles of a graph, the largest first: files that depend on each other directly or indirectly.
-pub fn circles(graph: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
+pub fn dependency_cycles(graph: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
     let reached: Vec<BTreeSet<usize>> = (0..graph.len())
         .map(|k| {
             let (mut seen, mut todo) = (BTreeSet::new(), vec![k]);
@@ -153,7 +153,7 @@ fn is_test(path: &Path) -> bool {
 }
 
 impl File {
-    fn read(source: &Path, path: PathBuf) -> File {
+    fn read_file_imports(source: &Path, path: PathBuf) -> File {
         let text = fs::read_to_string(&path).unwrap();
         let path = path.strip_prefix(source).unwrap().to_path_buf();
         let mut module: Module = path
@@ -169,7 +169,7 @@ impl File {
 
     /// Parses the text of a source file into its tokens, definitions and imports.
     fn parse(text: &str) -> File {
-        let all = words(text.split("#[cfg(test)]\nmod tests {").next().unwrap());
+        let all = split_into_tokens(text.split("#[cfg(test)]\nmod tests {").next().unwrap());
         let mut file = File {
             path: PathBuf::new(),
             module: Vec::new(),
@@ -184,7 +184,7 @@ impl File {
                     let end = at + all[at..].iter().position(|t| t == ";").unwrap();
                     let passes_on = at > 0 && matches!(all[at - 1].as_str(), "pub" | ")");
                     let mut list = Vec::new();
-                    tree(&all[at + 1..end], &mut 0, &[], &mut list);
+                    collect_import_leaves(&all[at + 1..end], &mut 0, &[], &mut list);
                     file.imports.extend(list.into_iter().map(|(name, path)| (name, path, passes_on)));
                     at = end + 1;
                     continue;
@@ -204,7 +204,12 @@ impl File {
 }
 
 /// Collects the leaves of an import: local name and path.
-fn tree(tokens: &[String], at: &mut usize, before: &[String], list: &mut Vec<(String, Vec<String>)>) {
+fn collect_import_leaves(
+    tokens: &[String],
+    at: &mut usize,
+    before: &[String],
+    list: &mut Vec<(String, Vec<String>)>,
+) {
     let mut path = before.to_vec();
     while let Some(token) = tokens.get(*at) {
         *at += 1;
@@ -212,7 +217,7 @@ fn tree(tokens: &[String], at: &mut usize, before: &[String], list: &mut Vec<(St
             "::" => {}
             "{" => {
                 while tokens.get(*at).is_some_and(|t| t != "}") {
-                    tree(tokens, at, &path, list);
+                    collect_import_leaves(tokens, at, &path, list);
                 }
                 *at += 1;
                 while tokens.get(*at).is_some_and(|t| t == ",") {
@@ -261,7 +266,7 @@ fn path_at(tokens: &[String], mut at: usize) -> Vec<String> {
 }
 
 /// Splits code into tokens; `::` is one token. Comments, strings and characters are omitted.
-fn words(text: &str) -> Vec<String> {
+fn split_into_tokens(text: &str) -> Vec<String> {
     let c: Vec<char> = text.chars().collect();
     let (mut at, mut found) = (0, Vec::new());
     while at < c.len() {
@@ -316,5 +321,5 @@ fn circles_are_what_reaches_itself() {
         .into_iter()
         .map(|list: Vec<usize>| list.into_iter().collect())
         .collect();
-    assert_eq!(circles(&graph), [[0, 1, 2]]);
+    assert_eq!(dependency_cycles(&graph), [[0, 1, 2]]);
 }

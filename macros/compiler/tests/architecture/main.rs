@@ -2,7 +2,7 @@
 
 mod imports;
 
-use imports::{Imports, circles};
+use imports::{Imports, dependency_cycles};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ const INVARIANT: &str = "- Architecture invariant: ";
 
 /// Returns the permitted modules of each module, from the README's lines "`a` uses `b` and `c`; `d` uses
 /// `e`."
-fn invariants() -> BTreeMap<String, Vec<String>> {
+fn permitted_modules() -> BTreeMap<String, Vec<String>> {
     let readme = fs::read_to_string(Path::new(ROOT).join("README.md")).unwrap();
     let clauses =
         readme.lines().filter_map(|line| line.strip_prefix(INVARIANT)).flat_map(|line| line.split(';'));
@@ -27,7 +27,7 @@ fn invariants() -> BTreeMap<String, Vec<String>> {
 
 /// Returns all source files of the crate, each with its module. The pipeline, in the files of the crate's
 /// root, may use all modules.
-fn sources() -> Vec<(String, PathBuf)> {
+fn source_files_with_modules() -> Vec<(String, PathBuf)> {
     let source = Path::new(ROOT).join("src");
     let mut files = Vec::new();
     let mut todo = vec![source.clone()];
@@ -50,7 +50,7 @@ fn sources() -> Vec<(String, PathBuf)> {
 }
 
 /// Returns the code without comments and unit tests. Unit tests may use any module.
-fn code(path: &Path) -> String {
+fn code_without_tests(path: &Path) -> String {
     let is_test = path.components().any(|c| c.as_os_str() == "tests") || path.ends_with("tests.rs");
     let text = if is_test { String::new() } else { fs::read_to_string(path).unwrap() };
     let text = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
@@ -58,7 +58,7 @@ fn code(path: &Path) -> String {
 }
 
 /// Returns the modules that a piece of code names: `crate::a::…`, `crate::{a, b::…}`.
-fn modules(code: &str) -> Vec<String> {
+fn modules_named_in_code(code: &str) -> Vec<String> {
     let leading_word =
         |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
     let mut found = Vec::new();
@@ -88,9 +88,9 @@ fn modules(code: &str) -> Vec<String> {
 
 #[test]
 fn a_stage_imports_only_what_stands_before_it() {
-    let invariants = invariants();
+    let invariants = permitted_modules();
     let mut violations = Vec::new();
-    for (module, path) in sources() {
+    for (module, path) in source_files_with_modules() {
         if ["lib", "source", "declarations"].contains(&module.as_str()) {
             continue;
         }
@@ -98,7 +98,7 @@ fn a_stage_imports_only_what_stands_before_it() {
             violations.push(format!("the README says nothing of `{module}`"));
             continue;
         };
-        for used in modules(&code(&path)) {
+        for used in modules_named_in_code(&code_without_tests(&path)) {
             if used != module && !allowed.contains(&used) {
                 violations.push(format!("{}: `{module}` uses `{used}`", path.display()));
             }
@@ -108,7 +108,7 @@ fn a_stage_imports_only_what_stands_before_it() {
 }
 
 /// Returns the stages in the order of the README's table.
-fn stages() -> Vec<String> {
+fn stages_of_readme() -> Vec<String> {
     let readme = fs::read_to_string(Path::new(ROOT).join("README.md")).unwrap();
     let table = readme.lines().skip_while(|line| !line.starts_with("| stage |")).skip(2);
     let rows = table.map_while(|line| line.strip_prefix("| `"));
@@ -117,7 +117,7 @@ fn stages() -> Vec<String> {
 
 #[test]
 fn a_stage_uses_what_stands_above_it() {
-    let (stages, invariants) = (stages(), invariants());
+    let (stages, invariants) = (stages_of_readme(), permitted_modules());
     assert!(invariants.keys().all(|stage| stages.contains(stage)), "missing in the table: {invariants:?}");
     for (at, stage) in stages.iter().enumerate() {
         for used in invariants.get(stage).into_iter().flatten() {
@@ -131,12 +131,12 @@ const MOST_IN_A_CIRCLE: usize = 3;
 
 #[test]
 fn circles_of_imports_are_small() {
-    let imports = Imports::read(&Path::new(ROOT).join("src"));
+    let imports = Imports::read_imports(&Path::new(ROOT).join("src"));
     let format_import_cycle = |circle: &Vec<usize>| {
-        let names: Vec<String> = circle.iter().map(|file| imports.name(*file)).collect();
+        let names: Vec<String> = circle.iter().map(|file| imports.relative_file_path(*file)).collect();
         format!("{}: {}", circle.len(), names.join(" "))
     };
-    let all = circles(&imports.graph());
+    let all = dependency_cycles(&imports.dependency_graph());
     let list: Vec<String> = all.iter().map(format_import_cycle).collect();
     println!("{}", list.join("\n"));
     assert!(all.iter().all(|circle| circle.len() <= MOST_IN_A_CIRCLE), "{}", list.join("\n"));
@@ -144,7 +144,7 @@ fn circles_of_imports_are_small() {
 
 #[test]
 fn tokens_end_at_the_mechanism() {
-    for (module, path) in sources() {
+    for (module, path) in source_files_with_modules() {
         let words: &[&str] = match module.as_str() {
             "expr" | "mechanism" | "kinematics" | "passes" | "vectorise" | "mechanics" | "lower" => {
                 &["proc_macro2", "syn::", "quote!", "Span"]
@@ -152,7 +152,7 @@ fn tokens_end_at_the_mechanism() {
             "resolve" => &["syn::", "quote!"],
             _ => continue,
         };
-        let code = code(&path).replace("crate::syntax::", "");
+        let code = code_without_tests(&path).replace("crate::syntax::", "");
         for word in words {
             assert!(!code.contains(word), "{}: `{word}` in `{module}`", path.display());
         }
@@ -161,8 +161,8 @@ fn tokens_end_at_the_mechanism() {
 
 #[test]
 fn output_does_not_depend_on_the_order_of_a_hash_table() {
-    for (_, path) in sources() {
-        let code = code(&path);
+    for (_, path) in source_files_with_modules() {
+        let code = code_without_tests(&path);
         for word in ["HashMap", "HashSet", "RandomState"] {
             assert!(!code.contains(word), "{}: `{word}`", path.display());
         }
@@ -173,6 +173,6 @@ fn output_does_not_depend_on_the_order_of_a_hash_table() {
 fn imports_are_read_as_rust_reads_them() {
     let code = "use crate::diag::{A, b}; use crate::{expr, mechanism::{Model, x}, lower::y}; let z = \
                 crate::emit::f();";
-    assert_eq!(modules(code), ["diag", "expr", "mechanism", "lower", "emit"]);
-    assert_eq!(invariants()["import"], ["diag", "hull", "syntax"]);
+    assert_eq!(modules_named_in_code(code), ["diag", "expr", "mechanism", "lower", "emit"]);
+    assert_eq!(permitted_modules()["import"], ["diag", "hull", "syntax"]);
 }

@@ -133,20 +133,20 @@ impl Random {
 }
 
 /// Returns the arguments and the item of a mechanism in the list.
-fn split(text: &str) -> (TokenStream, TokenStream) {
+fn split_listed_mechanism(text: &str) -> (TokenStream, TokenStream) {
     let (arguments, item) = text.split_once(';').unwrap();
     (arguments.parse().unwrap(), item.parse().unwrap())
 }
 
 /// Applies one random mutation to a token stream.
-fn mutate(tokens: TokenStream, words: &[TokenTree], random: &mut Random) -> TokenStream {
+fn mutate_tokens(tokens: TokenStream, words: &[TokenTree], random: &mut Random) -> TokenStream {
     let mut list: Vec<TokenTree> = tokens.into_iter().collect();
     let groups: Vec<usize> = (0..list.len()).filter(|k| matches!(list[*k], TokenTree::Group(_))).collect();
     // Most of the tokens are inside groups.
     if !groups.is_empty() && random.index_below(5) > 0 {
         let at = groups[random.index_below(groups.len())];
         if let TokenTree::Group(group) = &list[at] {
-            let mut inside = Group::new(group.delimiter(), mutate(group.stream(), words, random));
+            let mut inside = Group::new(group.delimiter(), mutate_tokens(group.stream(), words, random));
             inside.set_span(group.span());
             list[at] = inside.into();
         }
@@ -209,12 +209,12 @@ fn mutations_neither_panic_nor_break_the_output() {
             WORDS.split(' ').flat_map(|w| w.parse::<TokenStream>().ok()).flatten().collect();
         let mut random = Random(1);
         for round in 0..600 {
-            let (mut arguments, mut item) = split(MECHANISMS[round % MECHANISMS.len()]);
+            let (mut arguments, mut item) = split_listed_mechanism(MECHANISMS[round % MECHANISMS.len()]);
             for _ in 0..=random.index_below(4) {
                 if random.index_below(8) == 0 {
-                    arguments = mutate(arguments, &words, &mut random);
+                    arguments = mutate_tokens(arguments, &words, &mut random);
                 } else {
-                    item = mutate(item, &words, &mut random);
+                    item = mutate_tokens(item, &words, &mut random);
                 }
             }
             let text = format!("round {round}: #[mechanism({arguments})] {item}");

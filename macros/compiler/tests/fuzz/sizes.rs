@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Returns the fields of a chain of bodies with pins.
-fn chain(n: usize, kind: &str) -> String {
+fn chain_fields(n: usize, kind: &str) -> String {
     let mut text = String::new();
     for k in 0..n {
         let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at(0.5 * x)", k - 1) };
@@ -24,20 +24,20 @@ fn chain(n: usize, kind: &str) -> String {
     text
 }
 
-fn list(n: usize, item: impl Fn(usize) -> String) -> String {
+fn concatenate_items(n: usize, item: impl Fn(usize) -> String) -> String {
     (0..n).map(item).collect()
 }
 
 /// Returns the fields of a planar chain of `pins` pins with `ties` further pins to the ground.
 fn tied_chain(pins: usize, ties: usize) -> String {
-    let bodies = list(pins, |k| {
+    let bodies = concatenate_items(pins, |k| {
         let parent = if k == 0 { "ground".to_string() } else { format!("b{}.at(x)", k - 1) };
         format!(
             "#[body(mass = 1, inertia = rod(1, 1, x))] b{k}: Body, \
              #[joint({parent} -> b{k}, about = z)] j{k}: Pin,\n"
         )
     });
-    let ends = list(ties, |k| {
+    let ends = concatenate_items(ties, |k| {
         let (body, x, y) = ((2 * k + 3) % pins, (2 * k) % 7, k % 3);
         format!("#[joint(b{body}.at(x) -> ground.at({x} * x + {y} * y), about = z)] tie{k}: Pin,\n")
     });
@@ -88,58 +88,70 @@ fn great_numbers_of_things_end() {
             )
         }),
         ("inertias", with_inertia(&vec!["sphere(m, 1)"; 390].join(" + "))),
-        ("parameters", format!("struct S {{ {} }}", list(10_000, |k| format!("p{k}: f64,")))),
+        ("parameters", format!("struct S {{ {} }}", concatenate_items(10_000, |k| format!("p{k}: f64,")))),
         ("parameters in use", {
-            let sum = list(190, |k| format!("+ p{k}"));
+            let sum = concatenate_items(190, |k| format!("+ p{k}"));
             format!(
                 "struct S {{ {} #[body(mass = 1 {sum})] b: Body, #[joint(ground -> b, along = x)] j: Sleeve \
                  }}",
-                list(190, |k| format!("p{k}: f64,"))
+                concatenate_items(190, |k| format!("p{k}: f64,"))
             )
         }),
         ("parameters of one name", format!("struct S {{ {} }}", "p: f64,".repeat(10_000))),
-        ("unknown things", format!("struct S {{ {} }}", list(10_000, |k| format!("p{k}: Thing,")))),
-        ("bodies", format!("struct S {{ {} }}", list(10_000, |k| format!("#[body(mass = 1)] b{k}: Body,")))),
+        (
+            "unknown things",
+            format!("struct S {{ {} }}", concatenate_items(10_000, |k| format!("p{k}: Thing,"))),
+        ),
+        (
+            "bodies",
+            format!(
+                "struct S {{ {} }}",
+                concatenate_items(10_000, |k| format!("#[body(mass = 1)] b{k}: Body,"))
+            ),
+        ),
         ("particles", {
-            let all = list(200, |k| format!("#[particle(mass = 1, at = b.at({k} * x))] p{k}: Particle,"));
+            let all = concatenate_items(200, |k| {
+                format!("#[particle(mass = 1, at = b.at({k} * x))] p{k}: Particle,")
+            });
             format!(
                 "struct S {{ #[body(mass = 1)] b: Body, #[joint(ground -> b, along = x)] j: Sleeve, {all} }}"
             )
         }),
         ("joints of one body", {
-            let all = list(5_000, |k| format!("#[joint(ground -> b, along = x)] j{k}: Sleeve,"));
+            let all = concatenate_items(5_000, |k| format!("#[joint(ground -> b, along = x)] j{k}: Sleeve,"));
             format!("struct S {{ #[body(mass = 1)] b: Body, {all} }}")
         }),
         ("force elements", {
-            let all = list(2_000, |k| format!("#[acts(on = j, damping = {k})] d{k}: Dashpot,"));
+            let all = concatenate_items(2_000, |k| format!("#[acts(on = j, damping = {k})] d{k}: Dashpot,"));
             format!(
                 "struct S {{ #[body(mass = 1)] b: Body, #[joint(ground -> b, along = x)] j: Sleeve, {all} }}"
             )
         }),
         ("inputs", {
-            let all = list(500, |k| format!("#[acts(on = b.at({k} * y), along = x)] f{k}: Force,"));
+            let all =
+                concatenate_items(500, |k| format!("#[acts(on = b.at({k} * y), along = x)] f{k}: Force,"));
             format!(
                 "struct S {{ #[body(mass = 1)] b: Body, #[joint(ground -> b, along = x)] j: Sleeve, {all} }}"
             )
         }),
-        ("arguments", with_mass(&list(10_000, |k| format!("1, a{k} = 1,")))),
+        ("arguments", with_mass(&concatenate_items(10_000, |k| format!("1, a{k} = 1,")))),
         ("attributes", format!("struct S {{ {} b: Body }}", "#[body(mass = 1)]".repeat(10_000))),
-        ("a long chain", format!("struct S {{ {} }}", chain(2_000, "Pin"))),
-        ("a long chain of welds", format!("struct S {{ {} }}", chain(1_000, "Weld"))),
+        ("a long chain", format!("struct S {{ {} }}", chain_fields(2_000, "Pin"))),
+        ("a long chain of welds", format!("struct S {{ {} }}", chain_fields(1_000, "Weld"))),
         (
             "a chain of welds on a pin",
             format!(
                 "struct S {{ {} {} }}",
-                chain(1, "Pin"),
-                chain(900, "Weld").replace("b0: Body", "c0: Body").replace("ground ->", "b0 ->")
+                chain_fields(1, "Pin"),
+                chain_fields(900, "Weld").replace("b0: Body", "c0: Body").replace("ground ->", "b0 ->")
             ),
         ),
         ("a chain tied to the ground", tied_chain(85, 41)),
         ("a chain tied to the ground a few times", tied_chain(40, 4)),
         ("a chain tied to the ground everywhere", tied_chain(100, 50)),
         ("a chain tied to the ground too often", tied_chain(20, 100)),
-        ("a chain of sleeves", format!("struct S {{ {} }}", chain(40, "Sleeve"))),
-        ("long generics", format!("struct S<{}> {{}}", list(10_000, |k| format!("T{k},")))),
+        ("a chain of sleeves", format!("struct S {{ {} }}", chain_fields(40, "Sleeve"))),
+        ("long generics", format!("struct S<{}> {{}}", concatenate_items(10_000, |k| format!("T{k},")))),
         ("deep types", format!("struct S {{ a: {}f64{} }}", "Vec<".repeat(10_000), ">".repeat(10_000))),
         ("references", format!("struct S {{ a: {}f64 }}", "&".repeat(10_000))),
         ("long names", with_mass(&"m".repeat(100_000))),
@@ -163,7 +175,7 @@ fn too_many_loops_are_refused_with_a_reason() {
 
 /// Returns a mechanism whose mass depends on a chain of `n` definitions, each of which uses the previous one
 /// twice.
-fn definitions(start: &str, n: usize) -> String {
+fn nested_definitions_source(start: &str, n: usize) -> String {
     let chain = (0..n).fold(format!("#[define({start})] d0: Scalar,"), |text, k| {
         format!("{text} #[define(sin(d{k}) * cos(d{k}))] d{}: Scalar,", k + 1)
     });
@@ -175,10 +187,11 @@ fn definitions(start: &str, n: usize) -> String {
 
 /// Returns a mechanism with identical carts, each driven by a chain of `n` definitions of its own coordinate.
 /// The first two carts are coupled.
-fn carts(n: usize) -> String {
+fn coupled_carts_source(n: usize) -> String {
     let cart_declarations = |name: &str| {
-        let laws =
-            list(n, |k| format!("#[define(2 * sin({name}{k} + 0.3) - 0.1)] {name}{}: Scalar, ", k + 1));
+        let laws = concatenate_items(n, |k| {
+            format!("#[define(2 * sin({name}{k} + 0.3) - 0.1)] {name}{}: Scalar, ", k + 1)
+        });
         format!(
             "#[body(mass = 1)] {name}: Body, #[joint(ground -> {name}, along = x)] at_{name}: Sleeve,
              #[define(at_{name})] {name}0: Scalar, {laws}
@@ -258,12 +271,12 @@ fn sharing_does_not_explode() {
             with_mass("m").replace("j: Sleeve", "j: Sleeve, #[joint(b -> c, along = 1e-300 * x)] k: Pin"),
         ),
         ("a sum of many parameters", sum_of_parameters(40, 250)),
-        ("definitions that name another twice", definitions("m", 60)),
-        ("definitions of a mistake", definitions("nothing", 60)),
-        ("definitions one in another", definitions("m", 200)),
-        ("a spring between alike carts", carts(0)),
-        ("laws of alike carts", carts(20)),
-        ("long laws of alike carts", carts(1500)),
+        ("definitions that name another twice", nested_definitions_source("m", 60)),
+        ("definitions of a mistake", nested_definitions_source("nothing", 60)),
+        ("definitions one in another", nested_definitions_source("m", 200)),
+        ("a spring between alike carts", coupled_carts_source(0)),
+        ("laws of alike carts", coupled_carts_source(20)),
+        ("long laws of alike carts", coupled_carts_source(1500)),
     ];
     run_cases(cases);
 }
@@ -287,7 +300,7 @@ fn with_type(text: &str) -> String {
 }
 
 /// Returns an expression with `n` levels of nesting.
-fn nested(n: usize, before: &str, inside: &str, after: &str) -> String {
+fn nested_expression(n: usize, before: &str, inside: &str, after: &str) -> String {
     before.repeat(n) + inside + &after.repeat(n)
 }
 
@@ -297,17 +310,25 @@ fn nesting_of_every_kind_fits_the_stack() {
     let mut cases: Vec<(String, String)> = Vec::new();
     for n in [40, 46, 20_000] {
         let mut add = |name: &str, item: String| cases.push((format!("{n} {name}"), item));
-        let pieces = list(n, |k| format!("if m < {k} {{ {k} }} else "));
+        let pieces = concatenate_items(n, |k| format!("if m < {k} {{ {k} }} else "));
         add("pieces", with_mass(&format!("{pieces} {{ m }}")));
-        add("pieces in pieces", with_mass(&nested(n.min(10_000), "if m < 1 { ", "m", " } else { 1 }")));
+        add(
+            "pieces in pieces",
+            with_mass(&nested_expression(n.min(10_000), "if m < 1 { ", "m", " } else { 1 }")),
+        );
         add(
             "branches in braces",
-            with_mass(&nested(n.min(10_000), "if m < 1 { 1 } else if m < 2 { 2 } else { ", "m", " }")),
+            with_mass(&nested_expression(
+                n.min(10_000),
+                "if m < 1 { 1 } else if m < 2 { 2 } else { ",
+                "m",
+                " }",
+            )),
         );
-        add("signs in brackets", with_mass(&nested(n / 2, "-(", "m", ")")));
-        add("runs of signs in brackets", with_mass(&nested(n / 4, "- - - (", "m", ")")));
+        add("signs in brackets", with_mass(&nested_expression(n / 2, "-(", "m", ")")));
+        add("runs of signs in brackets", with_mass(&nested_expression(n / 4, "- - - (", "m", ")")));
         for function in ["sin", "sqrt", "abs"] {
-            add(function, with_mass(&nested(n, &format!("{function}("), "m", ")")));
+            add(function, with_mass(&nested_expression(n, &format!("{function}("), "m", ")")));
         }
         for (before, after) in [
             ("max(m, ", ")"),
@@ -324,13 +345,13 @@ fn nesting_of_every_kind_fits_the_stack() {
         ] {
             // Each bracket of a level counts.
             let brackets = before.matches(['(', '[']).count();
-            add(before, with_mass(&nested(n.min(10_000) / brackets, before, "m", after)));
+            add(before, with_mass(&nested_expression(n.min(10_000) / brackets, before, "m", after)));
         }
-        add("references", with_type(&nested(n, "&mut ", "f64", "")));
-        add("pointers", with_type(&nested(n, "*const ", "f64", "")));
-        add("functions", with_type(&nested(n / 2, "fn() -> ", "f64", "")));
-        add("lifetimes of functions", with_type(&nested(n / 8, "for<'a> fn() -> ", "f64", "")));
-        add("generics in tuples", with_type(&nested(n / 4, "Vec<(", "f64", ")>")));
+        add("references", with_type(&nested_expression(n, "&mut ", "f64", "")));
+        add("pointers", with_type(&nested_expression(n, "*const ", "f64", "")));
+        add("functions", with_type(&nested_expression(n / 2, "fn() -> ", "f64", "")));
+        add("lifetimes of functions", with_type(&nested_expression(n / 8, "for<'a> fn() -> ", "f64", "")));
+        add("generics in tuples", with_type(&nested_expression(n / 4, "Vec<(", "f64", ")>")));
         for operand in
             ["1 + ", "return ", "|a| ", "!", "&mut ", "1 .. ", "a = ", "if a {} else ", "break 'a "]
         {

@@ -3,7 +3,7 @@
 use syn::{Expr, Item, Stmt};
 
 /// Returns the items of generated code. A block `const _: () = { … };` is replaced by the items in it.
-pub fn items(file: syn::File) -> Vec<Item> {
+pub fn items_of_generated_code(file: syn::File) -> Vec<Item> {
     let inner_items = |item: Item| match item {
         Item::Const(block) if block.ident == "_" => match *block.expr {
             Expr::Block(block) => {

@@ -1,6 +1,6 @@
 //! Tests of messages about angles that are probably meant in degrees.
 
-use super::{ARM, Row, answers, messages};
+use super::{ARM, Row, check_error_rows, compiler_messages};
 
 const ROWS: &[Row] = &[
     (
@@ -64,7 +64,7 @@ const ROWS: &[Row] = &[
 
 #[test]
 fn degrees_are_asked_for() {
-    answers(
+    check_error_rows(
         |said| (String::new(), format!("{ARM} #[body(mass = 1, inertia = sphere(1, 1))] tool: Body, {said}")),
         ROWS,
     );
@@ -92,7 +92,7 @@ fn angles_that_are_meant_pass() {
             #[acts(on = wrist, stiffness = 1, free_angle = {constant})] coil: Spring,
             #[frame(tool, x({angle}))] turned: Frame"
         );
-        assert_eq!(messages("", &fields), Vec::<String>::new(), "{angle}");
+        assert_eq!(compiler_messages("", &fields), Vec::<String>::new(), "{angle}");
     }
 }
 

@@ -1,6 +1,6 @@
 //! Names of arguments in the terminology of other tools.
 
-use super::{ARM, CART, Row, answers};
+use super::{ARM, CART, Row, check_error_rows};
 
 /// Wrong arguments of bodies, with the expected messages.
 const BODIES: &[Row] = &[
@@ -32,7 +32,7 @@ const BODIES: &[Row] = &[
 
 #[test]
 fn bodies() {
-    answers(
+    check_error_rows(
         |said| {
             let tool = format!("#[body({said})] tool: Body, #[joint(arm -> tool, about = z)] wrist: Pin");
             (String::new(), format!("{ARM} {tool}"))
@@ -211,7 +211,7 @@ const ACTIONS: &[Row] = &[
 
 #[test]
 fn actions() {
-    answers(|said| (String::new(), format!("{ARM} {said}")), ACTIONS);
+    check_error_rows(|said| (String::new(), format!("{ARM} {said}")), ACTIONS);
 }
 
 /// Wrong arguments of other elements, with the expected messages.
@@ -299,5 +299,5 @@ const OTHERS: &[Row] = &[
 
 #[test]
 fn others() {
-    answers(|said| (String::new(), format!("{CART} {said}")), OTHERS);
+    check_error_rows(|said| (String::new(), format!("{CART} {said}")), OTHERS);
 }

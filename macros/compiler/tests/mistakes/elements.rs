@@ -1,6 +1,6 @@
 //! Types of fields in the terminology of other tools.
 
-use super::{ARM, CART, Row, answers};
+use super::{ARM, CART, Row, check_error_rows};
 
 /// Type names of other tools, with the element of the language that corresponds to each.
 const ONE: &[(&str, &str)] = &[
@@ -62,7 +62,7 @@ fn words_of_other_tools_are_understood() {
         let help = format!("did you mean `{meant}`?");
         for attribute in ["", "#[joint(ground -> arm, about = z)] ", "#[acts(on = hinge)] "] {
             let fields = format!("{ARM} {attribute}other: {said}");
-            let found = super::messages("", &fields);
+            let found = super::compiler_messages("", &fields);
             let good = matches!(found.as_slice(), [one] if one.starts_with(&message) && one.contains(&help));
             assert!(good, "{fields}\nexpected {help}\nfound {}", found.join("\n"));
         }
@@ -104,5 +104,5 @@ const OTHERS: &[Row] = &[
 
 #[test]
 fn other_things_are_said_in_another_way() {
-    answers(|said| (String::new(), format!("{CART} other: {said}")), OTHERS);
+    check_error_rows(|said| (String::new(), format!("{CART} other: {said}")), OTHERS);
 }

@@ -1,9 +1,9 @@
 //! Declared equilibria that are invalid or have no linear equations.
 
-use super::{Row, answers, messages};
+use super::{Row, check_error_rows, compiler_messages};
 
 /// Returns the source of a pendulum with a motor and one declared equilibrium, for tests of error messages.
-fn pendulum(said: &str) -> (String, String) {
+fn pendulum_setting(said: &str) -> (String, String) {
     let fields = "m: f64, l: f64,
         #[body(mass = m, com = -l * y, inertia = sphere(m, l))] arm: Body,
         #[joint(ground -> arm, about = z)] hinge: Pin,
@@ -40,11 +40,11 @@ const ROWS: &[Row] = &[
 
 #[test]
 fn what_is_no_equilibrium_is_said() {
-    answers(pendulum, ROWS);
+    check_error_rows(pendulum_setting, ROWS);
 }
 
 /// Returns the source of a cart on a rail with further fields, for tests of error messages.
-fn carriage(said: &str) -> (String, String) {
+fn carriage_setting(said: &str) -> (String, String) {
     let fields = "m: f64, k: f64,
         #[body(mass = m, inertia = sphere(m, 1))] cart: Body,
         #[joint(ground -> cart, along = x)] rail: Sleeve,";
@@ -92,7 +92,7 @@ const REFUSED: &[Row] = &[
 
 #[test]
 fn what_has_no_linear_equations_is_said() {
-    answers(carriage, REFUSED);
+    check_error_rows(carriage_setting, REFUSED);
 }
 
 #[test]
@@ -103,10 +103,10 @@ fn orientations_are_unit() {
             #[equilibrium({q})] rest: Equilibrium"
         )
     };
-    let found = messages("", &fields_with_equilibrium("tip.qx = 1"));
+    let found = compiler_messages("", &fields_with_equilibrium("tip.qx = 1"));
     assert!(found.len() == 1 && found[0].contains("the quaternion of `tip.qx` in `rest`"), "{found:?}");
-    assert_eq!(messages("", &fields_with_equilibrium("tip.qx = 1, tip.qw = 0")), [""; 0]);
-    let found = messages("", &fields_with_equilibrium("tip = 1"));
+    assert_eq!(compiler_messages("", &fields_with_equilibrium("tip.qx = 1, tip.qw = 0")), [""; 0]);
+    let found = compiler_messages("", &fields_with_equilibrium("tip = 1"));
     assert!(found.len() == 1 && found[0].contains("write `tip.qx = …`"), "{found:?}");
 }
 
@@ -114,7 +114,7 @@ fn orientations_are_unit() {
 fn kinematic_mechanisms_have_no_linear_equations() {
     let fields = "#[body] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin,
         #[equilibrium] rest: Equilibrium";
-    let found = messages("inertia = none", fields);
+    let found = compiler_messages("inertia = none", fields);
     assert!(found.len() == 1 && found[0].starts_with("linear equations of motion need inertia"), "{found:?}");
 }
 
@@ -122,7 +122,7 @@ fn kinematic_mechanisms_have_no_linear_equations() {
 #[test]
 fn kinematic_mechanisms_have_no_equations_of_motion() {
     let fields = "#[body] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin";
-    let found = messages("inertia = none, equations = hamilton", fields);
+    let found = compiler_messages("inertia = none, equations = hamilton", fields);
     assert!(
         found.len() == 1 && found[0].starts_with("without inertia there are no equations of motion"),
         "{found:?}"

@@ -1,6 +1,6 @@
 //! Expressions: functions, names and numbers in the terminology of other tools.
 
-use super::{ARM, Row, answers};
+use super::{ARM, Row, check_error_rows};
 
 /// Values of an output of an arm on a hinge, with a parameter `theta` and a length `l`.
 const SCALARS: &[Row] = &[
@@ -200,7 +200,7 @@ const SCALARS: &[Row] = &[
 
 #[test]
 fn scalars() {
-    answers(
+    check_error_rows(
         |said| {
             let used = "#[acts(on = hinge, stiffness = l, free_angle = theta)] coil: Spring";
             (String::new(), format!("l: f64, theta: f64, {ARM} {used}, #[output({said})] seen: Scalar"))
@@ -232,7 +232,7 @@ const VECTORS: &[Row] = &[
 
 #[test]
 fn vectors() {
-    answers(
+    check_error_rows(
         |said| {
             let arm = format!("#[body(mass = 1, com = {said}, inertia = rod(1, l, y))] arm: Body");
             (String::new(), format!("l: f64, {arm}, #[joint(ground -> arm, about = z)] hinge: Pin"))
@@ -281,7 +281,7 @@ const INERTIAS: &[Row] = &[
 
 #[test]
 fn inertias() {
-    answers(
+    check_error_rows(
         |said| {
             let arm = format!("#[body(mass = m, com = l * y, inertia = {said})] arm: Body");
             (String::new(), format!("m: f64, l: f64, {arm}, #[joint(ground -> arm, about = z)] hinge: Pin"))

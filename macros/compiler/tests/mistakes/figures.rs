@@ -1,6 +1,6 @@
 //! Coefficients that are outside the range of computations.
 
-use super::{Row, answers, messages};
+use super::{Row, check_error_rows, compiler_messages};
 
 const ROWS: &[Row] = &[
     (
@@ -29,7 +29,7 @@ const ROWS: &[Row] = &[
 
 #[test]
 fn figures_leave_room() {
-    answers(
+    check_error_rows(
         |said| {
             let arm = format!("#[body({said})] arm: Body");
             (String::new(), format!("{arm}, #[joint(ground -> arm, about = z)] hinge: Pin"))
@@ -46,7 +46,7 @@ fn products_of_figures_leave_room() {
         "the values of this mechanism are too large",
         "a product of masses, lengths or forces in its equations is not a finite number",
     )];
-    answers(
+    check_error_rows(
         |said| {
             let arm = "#[body(mass = 1, com = x)] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin";
             (String::new(), format!("{arm}, #[acts(on = hinge, value = {said})] push: Torque"))
@@ -68,7 +68,7 @@ const SINGLE: &[Row] = &[
 
 #[test]
 fn figures_leave_room_in_single_precision() {
-    answers(
+    check_error_rows(
         |said| {
             let arm = format!("#[body({said})] arm: Body");
             ("scalar = f32".to_string(), format!("{arm}, #[joint(ground -> arm, about = z)] hinge: Pin"))
@@ -90,6 +90,10 @@ fn figures_of_planets_and_of_small_machines_pass() {
             "#[body(mass = {mass}, com = {length} * x, inertia = rod({mass}, {length}, x))] arm: Body"
         );
         let fields = format!("{arm}, #[joint(ground.at({length} * y) -> arm, about = z)] hinge: Pin");
-        assert_eq!(messages(&format!("scalar = {scalar}"), &fields), Vec::<String>::new(), "{mass} kg");
+        assert_eq!(
+            compiler_messages(&format!("scalar = {scalar}"), &fields),
+            Vec::<String>::new(),
+            "{mass} kg"
+        );
     }
 }

@@ -1,12 +1,12 @@
 //! Tests of errors in robot files: an error in many places is reported once, and a missing file causes no
 //! further error.
 
-use super::messages;
+use super::compiler_messages;
 use std::fs;
 use std::path::Path;
 
 /// Returns the messages of a robot whose joints have these origins and axes.
-fn robot(name: &str, xyz: &str, axis: &str) -> Vec<String> {
+fn robot_messages(name: &str, xyz: &str, axis: &str) -> Vec<String> {
     let inertial_element = |com: &str| {
         format!(
             "<inertial><origin xyz=\"{com}\"/><mass value=\"1\"/>
@@ -29,24 +29,26 @@ fn robot(name: &str, xyz: &str, axis: &str) -> Vec<String> {
     );
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     fs::write(path, text).unwrap();
-    messages(&format!("urdf = \"{name}\""), "")
+    compiler_messages(&format!("urdf = \"{name}\""), "")
 }
 
 #[test]
 fn commas_are_one_mistake() {
     for (name, xyz, axis) in [("commas.urdf", "0, 0, 1", "0, 0, 1"), ("decimal.urdf", "0,5 0 1", "0 0 1")] {
-        let found = robot(name, xyz, axis);
+        let found = robot_messages(name, xyz, axis);
         let good = matches!(found.as_slice(), [one] if one.contains("expected 3 numbers in `xyz`, found")
             && one.contains("spaces between the numbers instead of commas"));
         assert!(good, "{found:#?}");
     }
-    assert_eq!(robot("spaces.urdf", "0 0 1", "0 0 1"), Vec::<String>::new());
+    assert_eq!(robot_messages("spaces.urdf", "0 0 1", "0 0 1"), Vec::<String>::new());
 }
 
 #[test]
 fn a_wrong_path_is_one_mistake() {
-    let found =
-        messages("urdf = \"no_such_robot.urdf\", lock = [\"a\"]", "#[acts(on = elbow)] motor: Torque");
+    let found = compiler_messages(
+        "urdf = \"no_such_robot.urdf\", lock = [\"a\"]",
+        "#[acts(on = elbow)] motor: Torque",
+    );
     let good = matches!(found.as_slice(), [one] if one.starts_with("there is no file `no_such_robot.urdf`")
         && one.contains("= help: "));
     assert!(good, "{found:#?}");
@@ -88,7 +90,7 @@ fn figures_that_are_parameters_are_those_of_the_file() {
     fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join("figures.urdf"), ROBOT).unwrap();
     let mut wrong = Vec::new();
     for (said, message, help) in PARAMETERS {
-        let found = messages(&format!("urdf = \"figures.urdf\", parameters = {said}"), "");
+        let found = compiler_messages(&format!("urdf = \"figures.urdf\", parameters = {said}"), "");
         let good = matches!(found.as_slice(), [one] if one.lines().next().is_some_and(|line| line.ends_with(message))
             && one.contains(help));
         if !good {
@@ -102,7 +104,7 @@ fn figures_that_are_parameters_are_those_of_the_file() {
         "[inertial, placement, damping(\"turn\"), friction]",
         "[placement,]",
     ] {
-        let found = messages(&format!("urdf = \"figures.urdf\", parameters = {good}, prepare"), "");
+        let found = compiler_messages(&format!("urdf = \"figures.urdf\", parameters = {good}, prepare"), "");
         assert_eq!(found, Vec::<String>::new(), "{good}");
     }
     let rest = [
@@ -115,7 +117,7 @@ fn figures_that_are_parameters_are_those_of_the_file() {
             true => field.to_string(),
             false => super::ARM.to_string(),
         };
-        let found = messages(attribute, &fields);
+        let found = compiler_messages(attribute, &fields);
         assert!(matches!(found.as_slice(), [one] if one.starts_with(message)), "{attribute}: {found:#?}");
     }
 }
@@ -162,7 +164,7 @@ fn collision_geometry_is_read_when_it_is_named() {
             "" => "#[contact(ground.plane(z), collision())] floor: Contact".to_string(),
             link => format!("#[contact({link}.collision(), ground.plane(z))] floor: Contact"),
         };
-        let found = messages(&format!("urdf = \"{name}\""), &contact);
+        let found = compiler_messages(&format!("urdf = \"{name}\""), &contact);
         let good = match found.as_slice() {
             [] => message.is_empty(),
             [one] => !message.is_empty() && one.contains(message),

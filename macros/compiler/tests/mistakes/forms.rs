@@ -1,9 +1,9 @@
 //! Forms of the equations that do not exist for a mechanism.
 
-use super::{Row, answers};
+use super::{Row, check_error_rows};
 
 /// Inserts the text before `|` into the attribute and the text after it into the fields.
-fn setting(said: &str) -> (String, String) {
+fn mechanism_setting(said: &str) -> (String, String) {
     let (words, fields) = said.split_once('|').unwrap_or((said, ""));
     let own =
         "m: f64, #[body(mass = m)] cart: Body, #[body(mass = m, com = y, inertia = sphere(m, 1))] arm: Body,
@@ -62,13 +62,13 @@ fn mechanisms_without_a_form_say_which_they_have() {
             "without inertia there are no dynamics",
         ),
     ];
-    answers(setting, ROWS);
+    check_error_rows(mechanism_setting, ROWS);
 }
 
 /// Checks that Routh's equations of four coupled cyclic coordinates are rejected as too long to print.
 #[test]
 fn equations_of_routh_that_are_too_long_are_not_printed() {
-    fn setting(words: &str) -> (String, String) {
+    fn cyclic_coordinates_setting(words: &str) -> (String, String) {
         let mut fields = "#[body(mass = 1, inertia = sphere(1, 1))] cart0: Body, \
                           #[joint(ground -> cart0, along = x)] rail0: Sleeve,"
             .to_string();
@@ -87,13 +87,13 @@ fn equations_of_routh_that_are_too_long_are_not_printed() {
          inertia, or thousands of terms",
         "the option `routh` generates them",
     )];
-    answers(setting, ROWS);
+    check_error_rows(cyclic_coordinates_setting, ROWS);
 }
 
 /// A sliding contact has a normal force, which independent speeds do not eliminate.
 #[test]
 fn contacts_that_slip_have_no_equations_of_kane() {
-    fn setting(words: &str) -> (String, String) {
+    fn sliding_contact_setting(words: &str) -> (String, String) {
         let fields = "#[body(mass = 1, inertia = disk(1, 0.2, z))] disk: Body, #[joint(ground -> disk, about = z)] pose: Planar,
             #[constraint(slips(disk.circle(0.2, z), ground.plane(y)), friction = 0.3, speed = 0.01)] contact: Slipping,
             #[constraint(pose.x = 0.1 * pose.angle)] wire: Holonomic,";
@@ -104,13 +104,13 @@ fn contacts_that_slip_have_no_equations_of_kane() {
         "the equations of a slipping contact contain its normal force, which is a multiplier",
         "write `equations = lagrange`",
     )];
-    answers(setting, ROWS);
+    check_error_rows(sliding_contact_setting, ROWS);
 }
 
 /// Pins about skew axes, with a nonholonomic constraint on the last link.
 #[test]
 fn equations_of_kane_that_are_too_long_are_not_printed() {
-    fn pins(words: &str) -> (String, String) {
+    fn pin_chain_setting(words: &str) -> (String, String) {
         let link_declarations = |k: usize| {
             let parent = if k == 0 { "ground".to_string() } else { format!("link{}.at(0.4 * x)", k - 1) };
             format!(
@@ -128,14 +128,14 @@ fn equations_of_kane_that_are_too_long_are_not_printed() {
         "Kane's equations of this mechanism have thousands of terms",
         "or declare generalized speeds in which the equations are shorter",
     )];
-    answers(pins, ROWS);
+    check_error_rows(pin_chain_setting, ROWS);
 }
 
 /// A plate on three cranks that remain parallel. One constraint is redundant in every parallel configuration,
 /// but none may be dropped where the cranks are not parallel.
 #[test]
 fn constraints_that_depend_on_each_other_have_no_equations_of_kane() {
-    fn cranks(words: &str) -> (String, String) {
+    fn crank_linkage_setting(words: &str) -> (String, String) {
         let cranks = (0..3).map(|k| {
             format!(
                 "#[body(mass = 1, com = y / 2, inertia = rod(1, 1, y))] crank{k}: Body,
@@ -156,14 +156,14 @@ fn constraints_that_depend_on_each_other_have_no_equations_of_kane() {
          configuration",
         "write `equations = lagrange`, which keeps all constraints with multipliers",
     )];
-    answers(cranks, ROWS);
+    check_error_rows(crank_linkage_setting, ROWS);
 }
 
 /// The canonical equations are not defined for forces that depend on accelerations.
 #[test]
 fn forces_of_accelerations_leave_no_momenta() {
     fn added_force(words: &str) -> (String, String) {
-        setting(&format!(
+        mechanism_setting(&format!(
             "{words}|#[acts(on = rail, value = -m * dot(a(arm / ground / ground), x))] added: Force,"
         ))
     }
@@ -180,11 +180,11 @@ fn forces_of_accelerations_leave_no_momenta() {
         ("second_derivatives", SECOND, HELP),
         ("momentum_derivatives", MOMENTA, HELP),
     ];
-    answers(added_force, ROWS);
+    check_error_rows(added_force, ROWS);
 }
 
 /// Returns `count` carts on separate rails, with forces on the first `forces` of them.
-fn carts(count: usize, forces: usize) -> String {
+fn carts_with_forces(count: usize, forces: usize) -> String {
     let cart_declarations = |k: usize| {
         format!(
             "m{k}: f64, #[body(mass = m{k})] cart{k}: Body, \
@@ -198,8 +198,8 @@ fn carts(count: usize, forces: usize) -> String {
 #[test]
 fn what_would_be_too_long_is_not_written() {
     const HELP: &str = "request it for a smaller mechanism";
-    answers(
-        |words| (words.to_string(), carts(68, 68)),
+    check_error_rows(
+        |words| (words.to_string(), carts_with_forces(68, 68)),
         &[
             (
                 "sensitivities",
@@ -223,7 +223,7 @@ fn equations_of_thousands_of_terms_are_not_printed() {
         };
         (words.to_string(), (0..5).map(link_declarations).collect::<String>())
     };
-    answers(
+    check_error_rows(
         chain_with_options,
         &[(
             "equations = lagrange",

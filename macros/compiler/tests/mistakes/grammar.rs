@@ -1,6 +1,6 @@
 //! Syntax errors in attributes and in the struct.
 
-use super::{ARM, Row, answers};
+use super::{ARM, Row, check_error_rows};
 
 const ROWS: &[Row] = &[
     ("#[body(mass = 1 com = x)] tool: Body", "expected `,`", "write `…, com = …`"),
@@ -52,5 +52,5 @@ const ROWS: &[Row] = &[
 
 #[test]
 fn slips() {
-    answers(|said| (String::new(), format!("{ARM} {said}")), ROWS);
+    check_error_rows(|said| (String::new(), format!("{ARM} {said}")), ROWS);
 }

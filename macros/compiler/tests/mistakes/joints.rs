@@ -1,6 +1,6 @@
 //! Tests of error messages about the endpoints and axes of joints.
 
-use super::{Row, answers};
+use super::{Row, check_error_rows};
 
 const ROWS: &[Row] = &[
     (
@@ -231,7 +231,7 @@ const ROWS: &[Row] = &[
 
 #[test]
 fn joints() {
-    answers(
+    check_error_rows(
         |said| {
             (
                 String::new(),

@@ -1,6 +1,6 @@
 //! Instant centres, curves, cables and vector fields: missing, unknown or nonexistent quantities.
 
-use super::{ARM, Row, answers, messages};
+use super::{ARM, Row, check_error_rows, compiler_messages};
 
 /// Vector outputs of a mechanism with an arm on a hinge, a bead on a curve with parameter `s`, and a free
 /// stone.
@@ -121,8 +121,8 @@ const MORE: &str = "s: Coordinate,
 
 #[test]
 fn points_of_motions() {
-    answers(|said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Vector")), VECTORS);
-    answers(|said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Scalar")), SCALARS);
+    check_error_rows(|said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Vector")), VECTORS);
+    check_error_rows(|said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Scalar")), SCALARS);
 }
 
 /// Matrix outputs of a mechanism with an arm on a hinge, a bead on a curve with parameter `s`, and a free
@@ -154,13 +154,16 @@ const MATRICES: &[Row] = &[
 
 #[test]
 fn matrices() {
-    answers(|said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Matrix")), MATRICES);
+    check_error_rows(
+        |said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Matrix")),
+        MATRICES,
+    );
     let scalars: &[Row] = &[
         ("identity()", "expected a scalar, found a matrix", "declare it as a `Matrix`"),
         ("norm(identity())", "expected a vector, found a matrix", "`M * v`"),
         ("sin(skew(x))", "expected a scalar, found a matrix", "`trace(M)`"),
     ];
-    answers(|said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Scalar")), scalars);
+    check_error_rows(|said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Scalar")), scalars);
     let fields: &[Row] = &[
         (
             "#[define(x)] named: Matrix",
@@ -179,7 +182,7 @@ fn matrices() {
             "definitions, outputs and forces",
         ),
     ];
-    answers(|said| (String::new(), format!("{ARM} {MORE} {said}")), fields);
+    check_error_rows(|said| (String::new(), format!("{ARM} {MORE} {said}")), fields);
 }
 
 /// Further fields of a mechanism with an arm on a hinge, a bead on a curve with parameter `s`, and a free
@@ -248,14 +251,14 @@ const FIELDS: &[Row] = &[
 
 #[test]
 fn frames_elements_and_inertias() {
-    answers(|said| (String::new(), format!("{ARM} {MORE} {said}")), FIELDS);
+    check_error_rows(|said| (String::new(), format!("{ARM} {MORE} {said}")), FIELDS);
 }
 
 /// Units of curvature and of cable lengths are inferred from the expressions around them.
 #[test]
 fn units_are_inferred() {
     let assert_no_messages = |fields: &str| {
-        let found = messages("", &format!("{ARM} {fields}"));
+        let found = compiler_messages("", &format!("{ARM} {fields}"));
         assert_eq!(found, Vec::<String>::new(), "{fields}");
     };
     assert_no_messages(
@@ -275,7 +278,7 @@ fn units_are_inferred() {
         "l: f64, #[output(norm(instant_center(arm / ground) + l * l * x) + l)] seen: Scalar",
     ];
     for fields in wrong {
-        let found = messages("", &format!("{ARM} {fields}"));
+        let found = compiler_messages("", &format!("{ARM} {fields}"));
         let is_unit_message =
             |message: &String| message.contains("a length (m)") || message.contains("a mass (kg)");
         assert!(found.len() == 1 && found.iter().all(is_unit_message), "{fields}: {found:?}");

@@ -1,6 +1,6 @@
 //! Tests of error messages about options of `#[mechanism]`.
 
-use super::{ARM, Row, answers};
+use super::{ARM, Row, check_error_rows};
 
 const ROWS: &[Row] = &[
     (
@@ -52,5 +52,5 @@ const ROWS: &[Row] = &[
 
 #[test]
 fn options() {
-    answers(|said| (said.to_string(), ARM.to_string()), ROWS);
+    check_error_rows(|said| (said.to_string(), ARM.to_string()), ROWS);
 }

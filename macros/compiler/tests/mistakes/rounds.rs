@@ -1,7 +1,7 @@
 //! A syntax error and an error in another element are reported in the same compilation, if the second does
 //! not depend on the first.
 
-use super::{ARM, counts, messages};
+use super::{ARM, check_error_counts, compiler_messages};
 
 /// Fields of a test mechanism: an arm with a tool, a spring, a motor and an output.
 const PARTS: [&str; 12] = [
@@ -85,11 +85,11 @@ fn both_are_told() {
         ),
     ];
     let rows: Vec<(&str, &str, usize)> = rows.iter().map(|(fields, n)| ("", fields.as_str(), *n)).collect();
-    counts(&rows);
+    check_error_counts(&rows);
     // An option of the attribute.
-    counts(&[("gravty = -9.81 * y", &format!("{ARM} #[acts(on = hinges)] motor: Torque"), 2)]);
+    check_error_counts(&[("gravty = -9.81 * y", &format!("{ARM} #[acts(on = hinges)] motor: Torque"), 2)]);
     // A misspelt option may affect the other elements, so they are not checked.
-    counts(&[
+    check_error_counts(&[
         ("inertias = none", "#[body(mass = 1)] arm: Body, #[joint(ground -> arm, about = z)] hinge: Pin", 1),
         ("urfd = \"robot.urdf\"", "#[acts(on = elbow)] motor: Torque", 1),
     ]);
@@ -110,7 +110,7 @@ fn nothing_follows_from_a_mistake_of_grammar() {
         }
         for text in broken {
             let fields = fields_with(&[(k, &text)]);
-            let found = messages("gravity = -9.81 * y", &fields);
+            let found = compiler_messages("gravity = -9.81 * y", &fields);
             assert!(found.len() == 1, "{text}\nexpected one error, found\n{}", found.join("\n"));
         }
     }

@@ -1,6 +1,6 @@
 //! Tests of several errors at once: each is reported, but no error that is only a consequence of another one.
 
-use super::{ARM, counts, messages};
+use super::{ARM, check_error_counts, compiler_messages};
 
 const TOOL: &str = "#[body(mass = 1, inertia = sphere(1, 1))] tool: Body,";
 
@@ -68,7 +68,7 @@ fn independent_mistakes_are_said_at_once() {
         ),
     ];
     let rows: Vec<(&str, &str, usize)> = rows.iter().map(|(fields, n)| ("", fields.as_str(), *n)).collect();
-    counts(&rows);
+    check_error_counts(&rows);
 }
 
 /// Checks that a conflict between two positions is one error, with the second position as a note.
@@ -92,7 +92,7 @@ fn conflicts_are_one_error_with_a_note() {
             "another field has this name",
         ),
     ] {
-        let found = messages("", fields);
+        let found = compiler_messages("", fields);
         let good = matches!(found.as_slice(), [one] if one.contains("= note: ") && one.contains(note));
         assert!(good, "{fields}\nexpected the note {note}\nfound {}", found.join("\n"));
     }
@@ -107,7 +107,7 @@ fn too_many_degrees_of_freedom_are_told_what_to_do() {
             "#[body(mass = 1, com = x)] b{k}: Body, #[joint({parent} -> b{k}, about = z)] j{k}: Pin,"
         );
     }
-    let found = messages("", &fields);
+    let found = compiler_messages("", &fields);
     let good = matches!(found.as_slice(), [one] if one.starts_with("132 degrees of freedom, more than 128")
         && one.contains("= help: the generated code has no loops")
         && one.contains("divide the mechanism"));

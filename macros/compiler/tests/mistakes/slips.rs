@@ -1,7 +1,7 @@
 //! Tests of errors by users who know Rust, other tools or mechanics, but not yet the language. Each causes
 //! one error with help.
 
-use super::{ARM, Row, messages};
+use super::{ARM, Row, compiler_messages};
 use std::path::Path;
 
 /// Erroneous sources: arguments of the attribute, and fields added to an arm on a hinge.
@@ -107,7 +107,7 @@ const SLIPS: &[(&str, &str)] = &[
 fn each_is_one_error_with_help() {
     let mut wrong = Vec::new();
     for (attribute, fields) in SLIPS {
-        let found = messages(attribute, &format!("{ARM} {fields}"));
+        let found = compiler_messages(attribute, &format!("{ARM} {fields}"));
         if !matches!(found.as_slice(), [one] if one.contains("= help: ")) {
             wrong.push(format!("{attribute} {fields}\n{}", found.join("\n  and ")));
         }
@@ -143,7 +143,7 @@ const POINTERS: &[Row] = &[
 
 #[test]
 fn each_points_at_what_was_meant() {
-    super::answers(|fields| (String::new(), format!("{ARM} {fields}")), POINTERS);
+    super::check_error_rows(|fields| (String::new(), format!("{ARM} {fields}")), POINTERS);
 }
 
 /// Invalid options for an imported robot file, with the expected messages.
@@ -162,10 +162,10 @@ fn options_of_a_file_are_written_as_they_are_meant() {
     std::fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join("options.urdf"), robot).unwrap();
     let options_without_fields =
         |options: &str| (format!("urdf = \"options.urdf\", {options}"), String::new());
-    super::answers(options_without_fields, OPTIONS);
+    super::check_error_rows(options_without_fields, OPTIONS);
 }
 
 #[test]
 fn gravity_may_name_the_axes_of_the_ground() {
-    assert_eq!(messages("gravity = -9.81 * ground.y", ARM), Vec::<String>::new());
+    assert_eq!(compiler_messages("gravity = -9.81 * ground.y", ARM), Vec::<String>::new());
 }

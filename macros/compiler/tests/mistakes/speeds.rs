@@ -1,8 +1,8 @@
 //! Tests of error messages about invalid generalized speeds.
 
-use super::{Row, answers};
+use super::{Row, check_error_rows};
 
-fn setting(fields: &str) -> (String, String) {
+fn mechanism_setting(fields: &str) -> (String, String) {
     let own = "a: f64,
         #[body(mass = 1)] cart: Body, #[body(mass = 1, com = y, inertia = sphere(1, 1))] arm: Body,
         #[joint(ground -> cart, along = x)] rail: Sleeve, #[joint(cart -> arm, about = z)] hinge: Pin,
@@ -66,5 +66,5 @@ fn speeds_that_are_none() {
         ),
         ("#[speed(rate(rail))] u: GeneralizedSpeed,", "unknown element type `GeneralizedSpeed`", "Speed"),
     ];
-    answers(setting, ROWS);
+    check_error_rows(mechanism_setting, ROWS);
 }

@@ -7,7 +7,7 @@
 
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::{compile, read};
+use linkwork_compiler::{compile, read_source};
 use proc_macro2::{Span, TokenStream, TokenTree};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 const MARKS: [char; 2] = ['‹', '›'];
 
 /// Returns the folder of the tables and of the robots' files.
-fn folder() -> PathBuf {
+fn tables_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/mistakes")
 }
 
@@ -28,7 +28,7 @@ struct Said {
 }
 
 /// Returns the error messages of the compiler for the source `#[mechanism(…)] item`, ordered by position.
-fn said(source: &str) -> Vec<Said> {
+fn messages_of_mechanism(source: &str) -> Vec<Said> {
     let mut tokens = source.parse::<TokenStream>().expect("these are tokens").into_iter().skip(1);
     let Some(TokenTree::Group(attribute)) = tokens.next() else { panic!("{source} has no attribute") };
     let arguments = attribute.stream().into_iter().find_map(|token| match token {
@@ -36,7 +36,9 @@ fn said(source: &str) -> Vec<Said> {
         _ => None,
     });
     let mut cx = Diagnostics::new();
-    if let Some(source) = read(arguments.unwrap_or_default(), tokens.collect(), &folder(), &mut cx) {
+    if let Some(source) =
+        read_source(arguments.unwrap_or_default(), tokens.collect(), &tables_folder(), &mut cx)
+    {
         compile(&source, &Graph::new(), &mut cx);
     }
     let texts = cx.messages();
@@ -57,9 +59,9 @@ fn said(source: &str) -> Vec<Said> {
 }
 
 /// Returns a row of a table: the source with marks, followed by the messages.
-fn row(before: &str, row: &str, after: &str) -> String {
+fn table_row_with_messages(before: &str, row: &str, after: &str) -> String {
     let source = format!("{before}{row}{after}");
-    let found = said(&source);
+    let found = messages_of_mechanism(&source);
     let mut marked = String::new();
     for (k, letter) in source.char_indices().chain([(source.len(), ' ')]) {
         if k < before.len() || k > before.len() + row.len() {
@@ -89,7 +91,7 @@ fn row(before: &str, row: &str, after: &str) -> String {
 }
 
 /// Returns a table with the current messages of all rows.
-fn table(text: &str) -> String {
+fn table_with_messages(text: &str) -> String {
     let (mut before, mut after) = (String::new(), "");
     let mut blocks = Vec::new();
     for block in text.trim_end().split("\n\n") {
@@ -103,7 +105,7 @@ fn table(text: &str) -> String {
             continue;
         }
         let source: Vec<&str> = block.lines().filter(|line| !line.starts_with("    ")).collect();
-        blocks.push(row(&before, &source.join("\n").replace(MARKS, ""), after));
+        blocks.push(table_row_with_messages(&before, &source.join("\n").replace(MARKS, ""), after));
     }
     blocks.join("\n\n") + "\n"
 }
@@ -112,10 +114,10 @@ fn table(text: &str) -> String {
 fn messages_and_their_tokens() {
     let mut wrong = Vec::new();
     let mut count = 0;
-    for file in fs::read_dir(folder().join("tables")).unwrap() {
+    for file in fs::read_dir(tables_folder().join("tables")).unwrap() {
         let path = file.unwrap().path();
         let expected = fs::read_to_string(&path).unwrap();
-        let found = table(&expected);
+        let found = table_with_messages(&expected);
         if std::env::var_os("LINKWORK_WRITE").is_some() {
             fs::write(&path, &found).unwrap();
         }

@@ -9,30 +9,30 @@ use linkwork_compiler::expr::{Expr, Graph, Mat3, Vec3};
 use linkwork_compiler::mechanism::{Coordinate, Link, LinkId, Model, Motion, Pose, Quantity};
 use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::syntax::{Base, FileFormat, FileOptions, Inertias, InputOption, Name};
-use linkwork_compiler::{import, read};
+use linkwork_compiler::{import, read_source};
 use std::path::Path;
 
 /// Compares the model of a mechanism with these fields; indentation is ignored.
-fn check(fields: &str, expected: &str) {
-    compare(&facts(fields, None), expected);
+fn check_model(fields: &str, expected: &str) {
+    compare_texts(&facts_text(fields, None), expected);
 }
 
 /// Compares the model of a URDF file with these contents of `<robot>`; indentation is ignored.
 fn check_urdf(inside: &str, expected: &str) {
-    compare(&facts("", Some(&format!("<robot name=\"r\">{inside}</robot>"))), expected);
+    compare_texts(&facts_text("", Some(&format!("<robot name=\"r\">{inside}</robot>"))), expected);
 }
 
-fn compare(actual: &str, expected: &str) {
+fn compare_texts(actual: &str, expected: &str) {
     let trimmed_lines = |text: &str| -> Vec<String> {
         text.lines().map(|line| line.trim().to_string()).filter(|line| !line.is_empty()).collect()
     };
     assert!(trimmed_lines(actual) == trimmed_lines(expected), "expected\n{expected}\nfound\n{actual}");
 }
 
-fn facts(fields: &str, urdf: Option<&str>) -> String {
+fn facts_text(fields: &str, urdf: Option<&str>) -> String {
     let mut cx = Diagnostics::new();
     let item = format!("struct S {{ {fields} }}").parse().unwrap();
-    let Some(mut source) = read("".parse().unwrap(), item, Path::new(""), &mut cx) else {
+    let Some(mut source) = read_source("".parse().unwrap(), item, Path::new(""), &mut cx) else {
         return cx.messages().join("\n");
     };
     if let Some(text) = urdf {
@@ -54,7 +54,7 @@ fn facts(fields: &str, urdf: Option<&str>) -> String {
             collisions: false,
             visuals: false,
         };
-        if let Some(imported) = import::import(text, Path::new(""), &options, &mut cx) {
+        if let Some(imported) = import::import_file(text, Path::new(""), &options, &mut cx) {
             source.mechanism.description.bodies = imported.bodies;
             source.mechanism.description.joints = imported.joints;
         }
@@ -63,12 +63,12 @@ fn facts(fields: &str, urdf: Option<&str>) -> String {
     let model =
         if cx.is_empty() { build_model(&source.mechanism.description, &graph, &mut cx) } else { None };
     match model {
-        Some(model) => render(&model),
+        Some(model) => model_text(&model),
         None => cx.messages().join("\n"),
     }
 }
 
-fn render(model: &Model<'_>) -> String {
+fn model_text(model: &Model<'_>) -> String {
     let mut text = format!("q: {}\n", model.configuration.join(" "));
     let velocities: Vec<&str> = model.velocities.iter().map(|(name, _)| name.as_str()).collect();
     if velocities != model.configuration {
@@ -79,10 +79,10 @@ fn render(model: &Model<'_>) -> String {
         text += &format!("u: {}\n", inputs.join(" "));
     }
     for (k, link) in model.links.iter().enumerate() {
-        text += &format!("link {k} on {}{}\n", link_text(link.parent), motion(link, model));
+        text += &format!("link {k} on {}{}\n", link_text(link.parent), motion_text(link, model));
     }
     for frame in &model.frames {
-        text += &format!("frame {} on {}{}\n", frame.name, link_text(frame.link), pose(&frame.pose));
+        text += &format!("frame {} on {}{}\n", frame.name, link_text(frame.link), pose_text(&frame.pose));
     }
     text
 }
@@ -91,7 +91,7 @@ fn link_text(link: Option<LinkId>) -> String {
     link.map_or("ground".to_string(), |link| link.0.to_string())
 }
 
-fn motion(link: &Link<'_>, model: &Model<'_>) -> String {
+fn motion_text(link: &Link<'_>, model: &Model<'_>) -> String {
     let coordinate_text = |c: &Coordinate| {
         let name = &model.configuration[c.q.0];
         match (c.ratio, c.offset) {
@@ -101,17 +101,17 @@ fn motion(link: &Link<'_>, model: &Model<'_>) -> String {
     };
     let how = match &link.motion {
         Motion::Turn { axis, coordinate } => {
-            format!("turns about {} by {}", vector(*axis), coordinate_text(coordinate))
+            format!("turns about {} by {}", vector_text(*axis), coordinate_text(coordinate))
         }
         Motion::Slide { axis, coordinate } => {
-            format!("slides along {} by {}", vector(*axis), coordinate_text(coordinate))
+            format!("slides along {} by {}", vector_text(*axis), coordinate_text(coordinate))
         }
         Motion::Helix { axis, pitch, coordinate } => {
             format!(
                 "turns about {} by {} with pitch {}",
-                vector(*axis),
+                vector_text(*axis),
                 coordinate_text(coordinate),
-                number(value(*pitch))
+                number_text(value_of_expression(*pitch))
             )
         }
         Motion::Ball { q, v } => format!("turns freely by q{q}, v{v}"),
@@ -119,47 +119,48 @@ fn motion(link: &Link<'_>, model: &Model<'_>) -> String {
         _ => "moves otherwise".to_string(),
     };
     let i = &link.inertia;
-    let mut text = format!("{} {how}", pose(&link.placement));
+    let mut text = format!("{} {how}", pose_text(&link.placement));
     if !i.mass.is_zero() {
-        text += &format!("; mass {}, moment {}", number(value(i.mass)), vector(i.moment));
+        text +=
+            &format!("; mass {}, moment {}", number_text(value_of_expression(i.mass)), vector_text(i.moment));
     }
     if i.tensor.diagonal.iter().any(|d| !d.is_zero()) {
-        text += &format!(", inertia {}", matrix(&i.tensor.full()));
+        text += &format!(", inertia {}", matrix_text(&i.tensor.full_matrix()));
     }
     text
 }
 
 /// Returns position and axes as text, without identity parts.
-fn pose(pose: &Pose<'_>) -> String {
+fn pose_text(pose: &Pose<'_>) -> String {
     let mut text = String::new();
     if !pose.translation.is_zero() {
-        text += &format!(" at {}", vector(pose.translation));
+        text += &format!(" at {}", vector_text(pose.translation));
     }
     if !pose.rotation.is_identity() {
-        text += &format!(" rotated {}", matrix(&pose.rotation.matrix()));
+        text += &format!(" rotated {}", matrix_text(&pose.rotation.rotation_matrix()));
     }
     text
 }
 
 /// Evaluates an expression. The parameters have the values 2, 3, 4, …
-fn value(e: Expr<'_>) -> f64 {
+fn value_of_expression(e: Expr<'_>) -> f64 {
     eval_one(e, &|symbol| match Quantity::from_symbol(symbol) {
         Quantity::Parameter(k) => k as f64 + 2.0,
         other => unreachable!("{other:?} in a model of numbers"),
     })
 }
 
-fn number(x: f64) -> String {
+fn number_text(x: f64) -> String {
     let rounded = (x * 1e6).round() / 1e6;
     (rounded + 0.0).to_string()
 }
 
-fn vector(v: Vec3<'_>) -> String {
-    format!("[{}]", v.0.map(|c| number(value(c))).join(", "))
+fn vector_text(v: Vec3<'_>) -> String {
+    format!("[{}]", v.0.map(|c| number_text(value_of_expression(c))).join(", "))
 }
 
-fn matrix(m: &Mat3<'_>) -> String {
-    format!("[{}]", m.0.map(|row| vector(Vec3(row))).join(", "))
+fn matrix_text(m: &Mat3<'_>) -> String {
+    format!("[{}]", m.0.map(|row| vector_text(Vec3(row))).join(", "))
 }
 
 const BODY: &str = "#[body(mass = 1, inertia = sphere(1, 1))]";
@@ -184,12 +185,12 @@ fn coordinates_are_named_after_their_joints_in_the_order_of_declaration() {
         let fields = format!("{BODY} b: Body, #[joint(ground -> b, {axes})] j: {kind},");
         let expected =
             if v.is_empty() { vec![format!("q: {q}")] } else { vec![format!("q: {q}"), format!("v: {v}")] };
-        let found = facts(&fields, None);
+        let found = facts_text(&fields, None);
         let names: Vec<&str> = found.lines().take(expected.len()).map(str::trim).collect();
         assert_eq!(names, expected.iter().map(|line| line.trim()).collect::<Vec<_>>(), "{kind}: {found}");
     }
     // Joints are in the order of their declaration, links from the ground outwards.
-    check(
+    check_model(
         "#[body(mass = 1)] b: Body, #[body(mass = 1)] a: Body,
         #[joint(a -> b, along = y)] second: Sleeve,
         #[joint(ground -> a, along = x)] first: Sleeve,
@@ -206,7 +207,7 @@ fn coordinates_are_named_after_their_joints_in_the_order_of_declaration() {
 
 #[test]
 fn welded_bodies_become_one_link() {
-    check(
+    check_model(
         "#[body(mass = 1)] a: Body,
         #[body(mass = 2, com = x)] b: Body,
         #[particle(mass = 3, at = b.at(z))] p: Particle,
@@ -226,7 +227,7 @@ fn welded_bodies_become_one_link() {
 #[test]
 fn ends_are_placed_and_rotated() {
     // Both ends of the joint have the same frame, so the body's end coincides with the other end.
-    check(
+    check_model(
         "l: f64,
         #[body(mass = 1)] b: Body,
         #[joint(ground.at(l * x).rotated(x(pi / 2)) -> b.at(l * y), along = y)] rail: Sleeve,",
@@ -234,7 +235,7 @@ fn ends_are_placed_and_rotated() {
         link 0 on ground at [2, 0, 0] rotated [[1, 0, 0], [0, 0, -1], [0, 1, 0]] slides along [0, 1, 0] by rail; mass 1, moment [0, -2, 0], inertia [[4, 0, 0], [0, 0, 0], [0, 0, 4]]
         frame b on 0 at [0, -2, 0]",
     );
-    check(
+    check_model(
         "#[body(mass = 1, com = x)] b: Body,
         #[joint(ground -> b.rotated(z(pi / 2)), about = z)] pin: Pin,",
         "q: pin
@@ -247,7 +248,7 @@ fn ends_are_placed_and_rotated() {
         "eigenaxis(x, pi / 2), eigenaxis(z, pi / 2)",
         "[[0, -1, 0], [0, 0, -1], [1, 0, 0]]",
     ] {
-        check(
+        check_model(
             &format!("#[body(mass = 1)] b: Body, \
                       #[joint(ground.rotated({rotations}) -> b, along = x)] j: Sleeve,"),
             "q: j
@@ -260,27 +261,27 @@ fn ends_are_placed_and_rotated() {
 #[test]
 fn turning_axes_of_numbers_are_brought_onto_coordinate_axes() {
     // The frame of the body does not change: the rotation of the link's frame is compensated.
-    check(
+    check_model(
         "#[body(mass = 1, com = x)] b: Body, #[joint(ground -> b, about = [0.6, 0, 0.8])] pin: Pin,",
         "q: pin
         link 0 on ground rotated [[0.8, 0, 0.6], [0, 1, 0], [-0.6, 0, 0.8]] turns about [0, 0, 1] by pin; mass 1, moment [0.8, 0, 0.6], inertia [[0.36, 0, -0.48], [0, 1, 0], [-0.48, 0, 0.64]]
         frame b on 0 rotated [[0.8, 0, -0.6], [0, 1, 0], [0.6, 0, 0.8]]",
     );
-    check(
+    check_model(
         "#[body(mass = 1, com = x)] b: Body, #[joint(ground -> b, about = -z)] pin: Pin,",
         "q: pin
         link 0 on ground turns about [0, 0, -1] by pin; mass 1, moment [1, 0, 0], inertia [[0, 0, 0], [0, 1, 0], [0, 0, 1]]
         frame b on 0",
     );
     // An axis that depends on parameters is not transformed, and neither is the axis of a sliding joint.
-    check(
+    check_model(
         "a: f64, #[body(mass = 1, com = z)] b: Body, \
          #[joint(ground -> b, about = cos(a) * x + sin(a) * y)] pin: Pin,",
         "q: pin
         link 0 on ground turns about [-0.416147, 0.909297, 0] by pin; mass 1, moment [0, 0, 1], inertia [[1, 0, 0], [0, 1, 0], [0, 0, 0]]
         frame b on 0",
     );
-    check(
+    check_model(
         "#[body(mass = 1)] b: Body, #[joint(ground -> b, along = unit(3 * x + 4 * y))] rail: Sleeve,",
         "q: rail
         link 0 on ground slides along [0.6, 0.8, 0] by rail; mass 1, moment [0, 0, 0]
@@ -290,14 +291,14 @@ fn turning_axes_of_numbers_are_brought_onto_coordinate_axes() {
 
 #[test]
 fn joints_of_several_motions_are_chains() {
-    check(
+    check_model(
         &format!("{BODY} b: Body, #[joint(ground -> b, about = (z, x))] j: Universal,"),
         "q: j.first j.second
         link 0 on ground turns about [0, 0, 1] by j.first
         link 1 on 0 turns about [1, 0, 0] by j.second; mass 1, moment [0, 0, 0], inertia [[0.4, 0, 0], [0, 0.4, 0], [0, 0, 0.4]]
         frame b on 1",
     );
-    check(
+    check_model(
         "#[body(mass = 1)] b: Body, #[particle(mass = 1)] p: Particle,
         #[joint(ground -> b, along = (x, y))] table: Stage,
         #[joint(b.at(z) -> p, along = z)] lift: Sleeve,",
@@ -308,7 +309,7 @@ fn joints_of_several_motions_are_chains() {
         frame b on 1
         frame p on 2",
     );
-    check(
+    check_model(
         "#[body(mass = 1, com = x, inertia = sphere(1, 0))] nut: Body, \
          #[joint(ground -> nut, about = x, lead = 2 * pi)] j: Screw,",
         "q: j
@@ -374,7 +375,7 @@ fn a_link_with_inertia_has_mass() {
     );
     // Bodies that are fixed to the ground appear in no equation.
     let fixed = format!("<robot>{}</robot>", robot_with_joint_type("fixed"));
-    assert!(!facts("", Some(&fixed)).contains("no mass"));
+    assert!(!facts_text("", Some(&fixed)).contains("no mass"));
 }
 
 /// Checks that inconsistent moments of inertia of rounding-error magnitude, which exporters write for bodies
@@ -401,7 +402,7 @@ fn noise_is_no_inertia() {
         let text = robot_with_inertia(mass, moment);
         let moving = text.replace("JOINT", "revolute");
         match real {
-            true => assert!(facts("", Some(&format!("<robot>{moving}</robot>"))).starts_with("q: j\n")),
+            true => assert!(facts_text("", Some(&format!("<robot>{moving}</robot>"))).starts_with("q: j\n")),
             false => check_urdf(&moving, &inconsistent_inertia_message(moment)),
         }
         // Bodies that are fixed to the ground appear in no equation.
@@ -411,7 +412,7 @@ fn noise_is_no_inertia() {
 
 #[test]
 fn mistakes_are_reported_together_and_once() {
-    check(
+    check_model(
         "#[body(mass = -1)] a: Body, #[body(mass = 1, com = 2)] b: Body,
         #[joint(ground -> a, along = x + y)] first: Sleeve,
         #[joint(a -> b, about = 0 * z)] second: Pin,
@@ -428,11 +429,11 @@ fn mistakes_are_reported_together_and_once() {
         = help: the element that acts on it is a Torque",
     );
     // A body with a syntax error is still known to its joints.
-    check(
+    check_model(
         "#[body(mass = )] a: Body, #[joint(ground -> a, along = x)] rail: Sleeve,",
         "`mass` has no value\n= help: write `mass = …`",
     );
-    check(
+    check_model(
         "m: f64, #[body(mass = m * l)] a: Body, #[joint(ground -> a, along = x)] rail: Sleeve,",
         "unknown name `l`
         = help: expected `m`, `x`, `y`, `z` or `pi`
@@ -443,7 +444,7 @@ fn mistakes_are_reported_together_and_once() {
 #[test]
 fn elements_between_points_need_no_others() {
     let plain = "#[body(mass = 1, inertia = 1)] hull: Body, #[joint(ground -> hull)] pose: Free,";
-    let links = facts(plain, None);
+    let links = facts_text(plain, None);
     let links = links.lines().next().expect("there is a link");
     for element in [
         "stiffness = 3)] e: Spring",
@@ -451,7 +452,7 @@ fn elements_between_points_need_no_others() {
         "inertance = 3)] e: Inerter",
         "mu = 3)] e: Gravity",
     ] {
-        let found = facts(&format!("{plain} #[acts(between = (ground.at(x), hull), {element},"), None);
+        let found = facts_text(&format!("{plain} #[acts(between = (ground.at(x), hull), {element},"), None);
         assert!(found.starts_with(links), "{element}: {found}");
     }
 }

@@ -1,33 +1,33 @@
 //! Inertias of solids compared with quadrature, and sums and rotations of inertias.
 
-use super::value;
+use super::value_of_expression;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::read;
+use linkwork_compiler::read_source;
 use linkwork_compiler::resolve::build_model;
 use std::path::Path;
 
 /// Returns the inertia of a solid in the model.
-fn inertia(solid: &str) -> [[f64; 3]; 3] {
+fn inertia_of_solid(solid: &str) -> [[f64; 3]; 3] {
     let mut cx = Diagnostics::new();
     let item =
         format!("struct S {{ #[body(mass = 1, inertia = {solid})] b: Body, #[joint(ground -> b)] j: Free }}");
-    let source = read("".parse().unwrap(), item.parse().unwrap(), Path::new(""), &mut cx).unwrap();
+    let source = read_source("".parse().unwrap(), item.parse().unwrap(), Path::new(""), &mut cx).unwrap();
     let graph = Graph::new();
     let model = build_model(&source.mechanism.description, &graph, &mut cx);
     let model = model.unwrap_or_else(|| panic!("{solid}: {:?}", cx.messages()));
-    model.links[0].inertia.tensor.full().0.map(|row| row.map(value))
+    model.links[0].inertia.tensor.full_matrix().0.map(|row| row.map(value_of_expression))
 }
 
 fn assert_near(solid: &str, expected: [[f64; 3]; 3], tolerance: f64) {
-    let found = inertia(solid);
+    let found = inertia_of_solid(solid);
     let scale = expected.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
     for (a, b) in found.iter().flatten().zip(expected.iter().flatten()) {
         assert!((a - b).abs() <= tolerance * scale, "{solid}: {found:?}, expected {expected:?}");
     }
 }
 
-fn diagonal(d: [f64; 3]) -> [[f64; 3]; 3] {
+fn diagonal_matrix(d: [f64; 3]) -> [[f64; 3]; 3] {
     [[d[0], 0.0, 0.0], [0.0, d[1], 0.0], [0.0, 0.0, d[2]]]
 }
 
@@ -70,10 +70,18 @@ fn solids_of_revolution_agree_with_quadrature() {
         ("shell(3, 0.5)", of_revolution(-0.5, 0.5, radius_of_ball(0.5), radius_of_ball(0.5 - thin)), 1e-4),
     ];
     for (solid, (axial, transverse), tolerance) in table {
-        assert_near(solid, diagonal([transverse, transverse, axial]), tolerance);
+        assert_near(solid, diagonal_matrix([transverse, transverse, axial]), tolerance);
         if solid.contains("z)") {
-            assert_near(&solid.replace("z)", "x)"), diagonal([axial, transverse, transverse]), tolerance);
-            assert_near(&solid.replace("z)", "-y)"), diagonal([transverse, axial, transverse]), tolerance);
+            assert_near(
+                &solid.replace("z)", "x)"),
+                diagonal_matrix([axial, transverse, transverse]),
+                tolerance,
+            );
+            assert_near(
+                &solid.replace("z)", "-y)"),
+                diagonal_matrix([transverse, axial, transverse]),
+                tolerance,
+            );
             // Moments `a` about n and `t` about its normals: t 1 + (a − t) n nᵀ.
             let n = [1.0 / 3.0, 2.0 / 3.0, -2.0 / 3.0];
             let tensor = std::array::from_fn(|i| {
@@ -91,7 +99,7 @@ fn solids_of_three_lengths_agree_with_quadrature() {
     // Second moments of a box by the two-point rule, which is exact for them.
     let second_moment = |a: f64| (a / 2.0 / 3.0_f64.sqrt()).powi(2);
     let from_second =
-        |m: f64, s: [f64; 3]| diagonal([m * (s[1] + s[2]), m * (s[0] + s[2]), m * (s[0] + s[1])]);
+        |m: f64, s: [f64; 3]| diagonal_matrix([m * (s[1] + s[2]), m * (s[0] + s[2]), m * (s[0] + s[1])]);
     let cuboid = from_second(3.0, [0.5, 1.0, 2.0].map(second_moment));
     assert_near("cuboid(3, 0.5, 1, 2)", cuboid, 1e-12);
     assert_near("box(3, 0.5, 1, 2)", cuboid, 1e-12);
@@ -100,15 +108,15 @@ fn solids_of_three_lengths_agree_with_quadrature() {
     let (moment, _) = of_revolution(-1.0, 1.0, |z| (1.0 - z * z).max(0.0).sqrt(), |_| 0.0);
     let second = [0.5_f64, 1.0, 2.0].map(|a| a * a * moment / 2.0 / 3.0);
     assert_near("ellipsoid(3, 0.5, 1, 2)", from_second(3.0, second), 1e-8);
-    assert_near("diagonal(2, 3, 4)", diagonal([2.0, 3.0, 4.0]), 0.0);
+    assert_near("diagonal(2, 3, 4)", diagonal_matrix([2.0, 3.0, 4.0]), 0.0);
 }
 
 #[test]
 fn inertias_are_added_and_rotated() {
-    assert_near("diagonal(2, 3, 4).rotated(z(pi / 2))", diagonal([3.0, 2.0, 4.0]), 1e-15);
+    assert_near("diagonal(2, 3, 4).rotated(z(pi / 2))", diagonal_matrix([3.0, 2.0, 4.0]), 1e-15);
     // R I Rᵀ with R = R_x(π/2) R_z(π/2), whose columns are the rotated axes (0, 0, 1), (−1, 0, 0), (0, −1,
     // 0).
-    assert_near("diagonal(2, 3, 4).rotated(x(pi / 2), z(pi / 2))", diagonal([3.0, 4.0, 2.0]), 1e-15);
+    assert_near("diagonal(2, 3, 4).rotated(x(pi / 2), z(pi / 2))", diagonal_matrix([3.0, 4.0, 2.0]), 1e-15);
     let (c, s) = (0.3_f64.cos(), 0.3_f64.sin());
     let rotated =
         [[2.0 * c * c + 3.0 * s * s, -c * s, 0.0], [-c * s, 2.0 * s * s + 3.0 * c * c, 0.0], [0.0, 0.0, 4.0]];
@@ -116,7 +124,7 @@ fn inertias_are_added_and_rotated() {
     assert_near("diagonal(2, 3, 4).rotated(eigenaxis(z, 0.3))", rotated, 1e-15);
     assert_near(
         "rod(1, 1, x).rotated(z(pi / 2)) + sphere(1, 1)",
-        diagonal([29.0, 24.0, 29.0].map(|x| x / 60.0)),
+        diagonal_matrix([29.0, 24.0, 29.0].map(|x| x / 60.0)),
         1e-15,
     );
     assert_near(

@@ -3,12 +3,12 @@
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::language::{ArgumentKind, SurfaceId};
-use linkwork_compiler::read;
+use linkwork_compiler::read_source;
 use linkwork_compiler::resolve::build_model;
 use std::path::Path;
 
 /// Returns a surface of a body with plausible arguments, or the body itself, which is a point.
-fn written(body: &str, surface: Option<SurfaceId>) -> String {
+fn surface_text(body: &str, surface: Option<SurfaceId>) -> String {
     let Some(id) = surface else { return body.to_string() };
     let arguments = id.row().arguments.iter().map(|argument| match (argument.kind, id) {
         (ArgumentKind::Direction, _) => "z".to_string(),
@@ -24,14 +24,14 @@ fn written(body: &str, surface: Option<SurfaceId>) -> String {
 }
 
 /// Returns the errors of a mechanism with a pair of surfaces.
-fn errors(pair: &str) -> String {
+fn errors_of_surface_pair(pair: &str) -> String {
     let coordinates = if pair.contains("surface(") { "u: Coordinate, w: Coordinate," } else { "" };
     let item = format!(
         "struct S {{ {coordinates} #[body(mass = 1, inertia = sphere(1, 1))] b: Body,
             #[joint(ground.at([0.1, 0.2, 0.5]) -> b)] j: Free, {pair} }}"
     );
     let mut cx = Diagnostics::new();
-    let source = read("".parse().unwrap(), item.parse().unwrap(), Path::new(""), &mut cx).unwrap();
+    let source = read_source("".parse().unwrap(), item.parse().unwrap(), Path::new(""), &mut cx).unwrap();
     build_model(&source.mechanism.description, &Graph::new(), &mut cx);
     cx.messages().join("\n")
 }
@@ -40,18 +40,18 @@ fn errors(pair: &str) -> String {
 fn listed_pairs_of_surfaces_are_supported() {
     let mut wrong = Vec::new();
     let mut check = |attribute: &str, is_listed: bool| {
-        let found = errors(attribute);
+        let found = errors_of_surface_pair(attribute);
         if found.contains("the contact point of these surfaces is not supported") == is_listed {
             wrong.push(format!("{attribute}: {found}"));
         }
     };
     for below in SurfaceId::ALL.iter().copied() {
-        let base = written("ground", Some(below));
+        let base = surface_text("ground", Some(below));
         for above in SurfaceId::ALL.iter().copied() {
             let pairs = [(above, below), (below, above)];
             let touches = pairs.iter().any(|(a, b)| b.row().contacts.contains(&Some(*a)));
             let rolls = pairs.iter().any(|(a, b)| b.row().rollers.contains(a));
-            let moving = written("b", Some(above));
+            let moving = surface_text("b", Some(above));
             check(&format!("#[contact({moving}, {base})] c: Contact"), touches);
             check(&format!("#[constraint(rolls({moving}, {base}))] c: Rolling"), rolls);
         }

@@ -5,11 +5,11 @@
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::lower::{Op, Program};
-use linkwork_compiler::{compile, read};
+use linkwork_compiler::{compile, read_source};
 use std::path::Path;
 
 /// Compiles a mechanism and returns the programs of the named functions.
-fn programs(arguments: &str, item: &str, functions: &[&str]) -> Vec<Program> {
+fn compiled_programs(arguments: &str, item: &str, functions: &[&str]) -> Vec<Program> {
     programs_and_nodes(arguments, item, functions).0
 }
 
@@ -19,7 +19,7 @@ fn programs_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<P
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
-    let source = read(parse_tokens(arguments), parse_tokens(item), folder, &mut cx);
+    let source = read_source(parse_tokens(arguments), parse_tokens(item), folder, &mut cx);
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
@@ -30,7 +30,7 @@ fn programs_and_nodes(arguments: &str, item: &str, functions: &[&str]) -> (Vec<P
     (functions.iter().map(find_program).collect(), graph.len())
 }
 
-fn chain(n: usize, symbolic: bool) -> String {
+fn chain_source(n: usize, symbolic: bool) -> String {
     let mut item = String::from("pub struct Chain {");
     for k in 0..n {
         let (m, l) = if symbolic {
@@ -56,9 +56,9 @@ fn chain(n: usize, symbolic: bool) -> String {
 
 const MAIN: [&str; 4] = ["inverse_dynamics", "bias_forces", "mass_matrix", "forward_dynamics"];
 
-fn totals(arguments: &str, item: &str) -> [usize; 4] {
-    let all = programs(arguments, item, &MAIN);
-    std::array::from_fn(|k| all[k].counts.total())
+fn main_operation_counts(arguments: &str, item: &str) -> [usize; 4] {
+    let all = compiled_programs(arguments, item, &MAIN);
+    std::array::from_fn(|k| all[k].counts.total_operations())
 }
 
 /// Checks that no operation count exceeds its bound.
@@ -67,7 +67,7 @@ fn at_most(found: &[usize], bounds: &[usize], what: &str) {
 }
 
 /// Returns the number of instructions after fusion of products and sums, without sines and cosines.
-fn instructions(program: &Program) -> usize {
+fn count_fused_instructions(program: &Program) -> usize {
     let operations = program.instructions.iter().filter(|op| !matches!(op, Op::Lane(..) | Op::Join(..)));
     operations.count() - program.counts.calls
 }
@@ -76,10 +76,13 @@ fn instructions(program: &Program) -> usize {
 /// instructions after fusion. With `lanes`, the programs with lanes for identical limbs are counted.
 fn of_robot(name: &str, options: &str, lanes: bool) -> [[usize; 4]; 2] {
     let arguments = format!("urdf = \"../../models/urdf/{name}.urdf\"{options}");
-    let all = programs(&arguments, "pub struct Robot;", &MAIN);
+    let all = compiled_programs(&arguments, "pub struct Robot;", &MAIN);
     let all: Vec<&Program> =
         all.iter().map(|p| if lanes { p.simd.as_deref().expect("its limbs are alike") } else { p }).collect();
-    [std::array::from_fn(|k| all[k].counts.total()), std::array::from_fn(|k| instructions(all[k]))]
+    [
+        std::array::from_fn(|k| all[k].counts.total_operations()),
+        std::array::from_fn(|k| count_fused_instructions(all[k])),
+    ]
 }
 
 #[test]
@@ -90,8 +93,16 @@ fn exactly() {
         [[323, 292, 139, 757], [205, 187, 101, 499]],
         "{MAIN:?}"
     );
-    assert_eq!(totals("gravity = -9.81 * z", &chain(2, false)), [31, 20, 4, 29], "{MAIN:?}");
-    assert_eq!(totals("gravity = -9.81 * z", &chain(2, true)), [55, 33, 29, 58], "{MAIN:?}");
+    assert_eq!(
+        main_operation_counts("gravity = -9.81 * z", &chain_source(2, false)),
+        [31, 20, 4, 29],
+        "{MAIN:?}"
+    );
+    assert_eq!(
+        main_operation_counts("gravity = -9.81 * z", &chain_source(2, true)),
+        [55, 33, 29, 58],
+        "{MAIN:?}"
+    );
 }
 
 #[test]
@@ -129,11 +140,13 @@ fn contacts_of_legs() {
         ["contact_rates", "contact_jacobian", "contact_bias", "__contact_responses", "__contact_derivatives"];
     let arguments = "urdf = \"../../models/urdf/solo12.urdf\", base = free, gravity = -9.81 * z, limits = \
                      ignore, derivatives";
-    let all = programs(arguments, item, &functions);
-    let in_lanes: Vec<usize> =
-        all.iter().map(|p| instructions(p.simd.as_deref().expect("its limbs are alike"))).collect();
+    let all = compiled_programs(arguments, item, &functions);
+    let in_lanes: Vec<usize> = all
+        .iter()
+        .map(|p| count_fused_instructions(p.simd.as_deref().expect("its limbs are alike")))
+        .collect();
     at_most(&in_lanes, &[92, 126, 199, 1142, 1083], &format!("instructions in lanes of {functions:?}"));
-    let alone: Vec<usize> = all.iter().map(instructions).collect();
+    let alone: Vec<usize> = all.iter().map(count_fused_instructions).collect();
     at_most(&alone, &[254, 262, 485, 3486, 3777], &format!("instructions of {functions:?}"));
 }
 
@@ -150,9 +163,9 @@ fn chains() {
         (32, [2110, 2060, 7540, 6160], [2790, 2730, 8620, 6940]),
         (64, [4310, 4230, 30760, 12850], [5690, 5600, 33980, 14430]),
     ] {
-        let found = totals("gravity = -9.81 * z", &chain(n, false));
+        let found = main_operation_counts("gravity = -9.81 * z", &chain_source(n, false));
         at_most(&found, &numbers, &format!("{n} joints with numbers: {MAIN:?}"));
-        let symbolic = totals("gravity = -9.81 * z", &chain(n, true));
+        let symbolic = main_operation_counts("gravity = -9.81 * z", &chain_source(n, true));
         at_most(&symbolic, &parameters, &format!("{n} joints with parameters: {MAIN:?}"));
         // Beyond some length, articulated bodies replace the factorisation, so growth is tested from eight
         // joints on.
@@ -180,8 +193,8 @@ fn curves_of_growth() {
     let all = [&lines[..], &parabolas].concat();
     let count_operations = |n: usize| {
         let (programs, nodes) =
-            programs_and_nodes("gravity = -9.81 * z, derivatives", &chain(n, false), &all);
-        let mut totals: Vec<f64> = programs.iter().map(|p| p.counts.total() as f64).collect();
+            programs_and_nodes("gravity = -9.81 * z, derivatives", &chain_source(n, false), &all);
+        let mut totals: Vec<f64> = programs.iter().map(|p| p.counts.total_operations() as f64).collect();
         totals.push(nodes as f64);
         totals
     };
@@ -233,8 +246,8 @@ fn chains_placed_by_expressions() {
     for n in [16, 24, 32, 48_i64] {
         let names: Vec<&str> =
             lines.iter().map(|line| line.0).chain(["mass_matrix", "forward_dynamics"]).collect();
-        let all = programs("gravity = -9.81 * z", &placed_chain(n as usize), &names);
-        let found: Vec<i64> = all.iter().map(|program| program.counts.total() as i64).collect();
+        let all = compiled_programs("gravity = -9.81 * z", &placed_chain(n as usize), &names);
+        let found: Vec<i64> = all.iter().map(|program| program.counts.total_operations() as i64).collect();
         for ((name, slope, start), found) in lines.iter().zip(&found) {
             assert_eq!(*found, slope * n + start, "{name} of {n} particles");
         }
@@ -266,17 +279,19 @@ fn comparing_stays_cheaper_than_growing() {
 }
 
 /// Returns the operations of the main functions of a prepared mechanism.
-fn prepared(arguments: &str) -> [usize; 4] {
+fn prepared_operation_counts(arguments: &str) -> [usize; 4] {
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let item = "pub struct Robot;".parse().expect("the source is Rust");
-    let source = read(arguments.parse().expect("the source is Rust"), item, folder, &mut cx);
+    let source = read_source(arguments.parse().expect("the source is Rust"), item, folder, &mut cx);
     let Some((_, output)) = source.and_then(|s| compile(&s, &graph, &mut cx)) else {
         panic!("{}", cx.messages().join("\n"));
     };
     let functions = output.prepared.expect("it is asked for").functions;
-    MAIN.map(|name| functions.iter().find(|f| f.name == name).expect("it is there").program.counts.total())
+    MAIN.map(|name| {
+        functions.iter().find(|f| f.name == name).expect("it is there").program.counts.total_operations()
+    })
 }
 
 /// After preparation, a robot with mass properties as parameters takes hardly more operations than with the
@@ -292,7 +307,7 @@ fn figures_as_parameters_cost_nothing_once_they_are_prepared() {
     ] {
         let file = format!("urdf = \"../../models/urdf/{name}.urdf\"{options}");
         let plain: [usize; 4] = of_robot(name, options, false)[0];
-        let all = prepared(&format!("{file}, prepare, parameters = {parameters}"));
+        let all = prepared_operation_counts(&format!("{file}, prepare, parameters = {parameters}"));
         let is_close = |found: [usize; 4]| found.iter().zip(plain).all(|(n, plain)| 10 * n <= 11 * plain);
         assert!(is_close(all), "{name}: {all:?}, of the file's figures {plain:?}");
     }

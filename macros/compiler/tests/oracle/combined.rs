@@ -10,7 +10,7 @@ use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Quantity;
-use linkwork_compiler::{compile, read};
+use linkwork_compiler::{compile, read_source};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -53,7 +53,7 @@ fn combinations_obey_dalemberts_principle() {
         let constrained = row.item.contains("#[constraint") || row.item.contains("closing");
         let speeds = constrained.then_some(", formulation = speeds");
         for more in ["", ", derivatives", SKIPPED].into_iter().chain(speeds) {
-            check(row, more);
+            check_row(row, more);
         }
     }
 }
@@ -73,7 +73,7 @@ struct Case<'a> {
     name: String,
 }
 
-fn check(row: &Row, more: &str) {
+fn check_row(row: &Row, more: &str) {
     let mut item = row.item.trim_end().trim_end_matches('}').to_string();
     for (name, ..) in row.masses {
         let _ = writeln!(item, "#[output(r({name} / ground))] o_{name}: Vector,");
@@ -90,7 +90,7 @@ fn check(row: &Row, more: &str) {
     let arguments = format!("gravity = {:?}{more}", row.gravity);
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
     let parse_tokens = |text: &str| text.parse().expect("Rust");
-    let source = read(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
+    let source = read_source(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
     let compiled = source.as_ref().and_then(|source| compile(source, &graph, &mut cx));
     let Some((model, output)) = compiled else {
         panic!("{}: {}", row.name, cx.messages().join("\n"));
@@ -98,7 +98,8 @@ fn check(row: &Row, more: &str) {
     let case = Case { row, output: &output, name: format!("{}{more}", row.name) };
     let mut random = Random::new(7);
     for _ in 0..2 {
-        let mut list = |n: usize, bound: f64| -> Vec<f64> { (0..n).map(|_| random.uniform(bound)).collect() };
+        let mut list =
+            |n: usize, bound: f64| -> Vec<f64> { (0..n).map(|_| random.uniform_number(bound)).collect() };
         let (nq, nv) = (model.nq(), model.nv());
         let mut q = list(nq, 0.9);
         let mut first = 0;
@@ -129,7 +130,7 @@ fn is_particle(row: &Row, name: &str) -> bool {
     row.item.contains(&format!("{name}: Particle"))
 }
 
-fn rotated(quaternion: &[f64], u: [f64; 3]) -> [f64; 3] {
+fn rotate_by_quaternion(quaternion: &[f64], u: [f64; 3]) -> [f64; 3] {
     let (p, w) = ([quaternion[0], quaternion[1], quaternion[2]], quaternion[3]);
     let cross = |a: [f64; 3], b: [f64; 3]| {
         [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
@@ -140,7 +141,7 @@ fn rotated(quaternion: &[f64], u: [f64; 3]) -> [f64; 3] {
 }
 
 /// Rotates a quaternion by a rotation vector `φ` in body axes: `q ⊗ exp(φ)`.
-fn turn(q: &mut [f64], phi: [f64; 3]) {
+fn rotate_quaternion(q: &mut [f64], phi: [f64; 3]) {
     let angle = phi.iter().map(|x| x * x).sum::<f64>().sqrt();
     let part = if angle < 1e-12 { 0.5 } else { (angle / 2.0).sin() / angle };
     let [x, y, z] = phi.map(|p| p * part);
@@ -153,14 +154,14 @@ fn turn(q: &mut [f64], phi: [f64; 3]) {
 }
 
 /// Returns the first derivative `(45 (f₁ − f₋₁) − 9 (f₂ − f₋₂) + f₃ − f₋₃) / 60 h`.
-fn first(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
+fn first_derivative(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let [a, b, c, d, e, g] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0].map(|k| f(k * H));
     let finite_difference =
         |i: usize| (g[i] - a[i] - 9.0 * (e[i] - b[i]) + 45.0 * (d[i] - c[i])) / (60.0 * H);
     (0..a.len()).map(finite_difference).collect()
 }
 
-fn second(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
+fn second_derivative(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
     let [a, b, c, d, e, g, m] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 0.0].map(|k| f(k * H));
     let weighted_outer_sum = |i: usize| 2.0 * (a[i] + g[i]) - 27.0 * (b[i] + e[i]) + 270.0 * (c[i] + d[i]);
     (0..a.len()).map(|i| (weighted_outer_sum(i) - 490.0 * m[i]) / (180.0 * H * H)).collect()
@@ -168,14 +169,14 @@ fn second(f: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
 
 impl Case<'_> {
     /// Returns the state after `q ⊕ (v h + a h² / 2)`, with consistent velocities.
-    fn displaced(&self, s: &State, h: f64) -> State {
+    fn displaced_state(&self, s: &State, h: f64) -> State {
         let mut out = s.clone();
         let (mut q0, mut v0) = (0, 0);
         let displacement_of_coordinate = |k: usize| s.v[k] * h + s.a[k] * h * h / 2.0;
         for chart in self.row.charts.chars() {
             match chart {
                 's' => out.q[q0] += displacement_of_coordinate(v0),
-                'b' => turn(
+                'b' => rotate_quaternion(
                     &mut out.q[q0..q0 + 4],
                     [
                         displacement_of_coordinate(v0),
@@ -189,9 +190,9 @@ impl Case<'_> {
                         [w[1] * v[2] - w[2] * v[1], w[2] * v[0] - w[0] * v[2], w[0] * v[1] - w[1] * v[0]];
                     let body =
                         std::array::from_fn(|i| displacement_of_coordinate(v0 + i) + spin[i] * h * h / 2.0);
-                    let d = rotated(&s.q[q0 + 3..q0 + 7], body);
+                    let d = rotate_by_quaternion(&s.q[q0 + 3..q0 + 7], body);
                     (0..3).for_each(|i| out.q[q0 + i] += d[i]);
-                    turn(
+                    rotate_quaternion(
                         &mut out.q[q0 + 3..q0 + 7],
                         [
                             displacement_of_coordinate(v0 + 3),
@@ -215,21 +216,21 @@ impl Case<'_> {
 
     /// Returns the state after a step of the configuration along one velocity. Time, velocities and
     /// accelerations are unchanged.
-    fn stepped(&self, s: &State, k: usize, h: f64) -> State {
+    fn state_after_step(&self, s: &State, k: usize, h: f64) -> State {
         let mut unit = s.clone();
         unit.v.fill(0.0);
         unit.a.fill(0.0);
         unit.v[k] = 1.0;
-        let moved = self.displaced(&unit, h);
+        let moved = self.displaced_state(&unit, h);
         State { q: moved.q, ..s.clone() }
     }
 
-    fn has(&self, name: &str) -> bool {
+    fn has_function(&self, name: &str) -> bool {
         self.output.functions.iter().any(|f| f.name == name)
     }
 
     /// Returns the result of a function. The scalar program and the program with lanes must agree.
-    fn run(&self, name: &str, s: &State) -> Vec<f64> {
+    fn run_function(&self, name: &str, s: &State) -> Vec<f64> {
         let f = self.output.functions.iter().find(|f| f.name == name);
         let f = f.unwrap_or_else(|| panic!("{}: no {name}", self.name));
         let symbol_value = |symbol| match Quantity::from_symbol(symbol) {
@@ -240,14 +241,19 @@ impl Case<'_> {
             Quantity::Time => s.t,
             other => panic!("{}: {name} takes {other:?}", self.name),
         };
-        let plain = f.program.run(&symbol_value);
+        let plain = f.program.interpret_program(&symbol_value);
         if let Some(lanes) = f.program.simd.as_deref() {
-            self.close(&format!("lanes of {name}"), &lanes.run(&symbol_value), &plain, 1.0);
+            self.assert_close_entries(
+                &format!("lanes of {name}"),
+                &lanes.interpret_program(&symbol_value),
+                &plain,
+                1.0,
+            );
         }
         plain
     }
 
-    fn close(&self, what: &str, found: &[f64], expected: &[f64], scale: f64) {
+    fn assert_close_entries(&self, what: &str, found: &[f64], expected: &[f64], scale: f64) {
         assert_eq!(found.len(), expected.len(), "{what} of {}", self.name);
         let size = expected.iter().fold(scale.max(1.0), |m, x| m.max(x.abs()));
         for (k, (a, b)) in found.iter().zip(expected).enumerate() {
@@ -260,15 +266,15 @@ impl Case<'_> {
     }
 
     /// Returns the positions of all particles in order.
-    fn places(&self, s: &State) -> Vec<f64> {
+    fn particle_positions(&self, s: &State) -> Vec<f64> {
         let mut all = Vec::new();
         for (name, _, com, moments) in self.row.masses {
-            let o = self.run(&format!("o_{name}"), s);
+            let o = self.run_function(&format!("o_{name}"), s);
             if is_particle(self.row, name) {
                 all.extend(o);
                 continue;
             }
-            let axes = ["x", "y", "z"].map(|axis| self.run(&format!("{axis}_{name}"), s));
+            let axes = ["x", "y", "z"].map(|axis| self.run_function(&format!("{axis}_{name}"), s));
             let position_in_frame = |p: [f64; 3]| {
                 let coordinate_in_frame =
                     |i: usize| o[i] + (0..3).map(|k| (axes[k][i] - o[i]) * p[k]).sum::<f64>();
@@ -288,7 +294,7 @@ impl Case<'_> {
 
     /// Returns the masses of the particles that replace the bodies. Masses at a distance of 1 m from the
     /// centre may be negative; only their sum over a body is its mass.
-    fn weights(&self) -> Vec<f64> {
+    fn particle_masses(&self) -> Vec<f64> {
         let mut all = Vec::new();
         for (_, mass, _, moments) in self.row.masses {
             if *moments == [0.0; 3] {
@@ -304,24 +310,24 @@ impl Case<'_> {
     }
 
     /// Returns the generalized forces `τ` of a motion, computed by d'Alembert's principle.
-    fn forces(&self, s: &State) -> Vec<f64> {
+    fn generalized_forces(&self, s: &State) -> Vec<f64> {
         let lengths_of_elements = |s: &State| -> Vec<f64> {
-            (0..self.row.elements.len()).map(|k| self.run(&format!("s{k}"), s)[0]).collect()
+            (0..self.row.elements.len()).map(|k| self.run_function(&format!("s{k}"), s)[0]).collect()
         };
-        let accelerations = second(|h| self.places(&self.displaced(s, h)));
+        let accelerations = second_derivative(|h| self.particle_positions(&self.displaced_state(s, h)));
         let (now, rate, bend) = (
             lengths_of_elements(s),
-            first(|h| lengths_of_elements(&self.displaced(s, h))),
-            second(|h| lengths_of_elements(&self.displaced(s, h))),
+            first_derivative(|h| lengths_of_elements(&self.displaced_state(s, h))),
+            second_derivative(|h| lengths_of_elements(&self.displaced_state(s, h))),
         );
-        let weights = self.weights();
+        let weights = self.particle_masses();
         let generalized_force = |k: usize| {
-            let partial = first(|h| self.places(&self.stepped(s, k, h)));
+            let partial = first_derivative(|h| self.particle_positions(&self.state_after_step(s, k, h)));
             let mut sum = 0.0;
             for (i, (a, p)) in accelerations.iter().zip(&partial).enumerate() {
                 sum += weights[i / 3] * (a - self.row.gravity[i % 3]) * p;
             }
-            let partial = first(|h| lengths_of_elements(&self.stepped(s, k, h)));
+            let partial = first_derivative(|h| lengths_of_elements(&self.state_after_step(s, k, h)));
             for (e, (law, _)) in self.row.elements.iter().enumerate() {
                 sum += partial[e]
                     * match *law {
@@ -339,14 +345,19 @@ impl Case<'_> {
     }
 
     fn check_forces(&self, s: &State) {
-        self.close("inverse dynamics", &self.run("inverse_dynamics", s), &self.forces(s), 1.0);
+        self.assert_close_entries(
+            "inverse dynamics",
+            &self.run_function("inverse_dynamics", s),
+            &self.generalized_forces(s),
+            1.0,
+        );
     }
 
     fn check_constraints(&self, s: &State) {
-        if !self.has("constraint_jacobian") {
+        if !self.has_function("constraint_jacobian") {
             return;
         }
-        let jacobian = self.run("constraint_jacobian", s);
+        let jacobian = self.run_function("constraint_jacobian", s);
         let nv = s.v.len();
         let nc = jacobian.len() / nv;
         // Constraint rates are linear in the velocities.
@@ -354,63 +365,80 @@ impl Case<'_> {
             let displaced_rates = |h: f64| {
                 let mut s = s.clone();
                 s.v[k] += h;
-                self.run("constraint_rates", &s)
+                self.run_function("constraint_rates", &s)
             };
-            self.close("Jacobian", &jacobian[k * nc..(k + 1) * nc], &first(displaced_rates), 1.0);
+            self.assert_close_entries(
+                "Jacobian",
+                &jacobian[k * nc..(k + 1) * nc],
+                &first_derivative(displaced_rates),
+                1.0,
+            );
         }
-        let rates = self.run("constraint_rates", s);
-        let residuals = first(|h| self.run("constraint_residuals", &self.displaced(s, h)));
-        self.close("rates", &rates[..residuals.len()], &residuals, 1.0);
+        let rates = self.run_function("constraint_rates", s);
+        let residuals =
+            first_derivative(|h| self.run_function("constraint_residuals", &self.displaced_state(s, h)));
+        self.assert_close_entries("rates", &rates[..residuals.len()], &residuals, 1.0);
         let free = State { a: vec![0.0; nv], ..s.clone() };
-        let bend = second(|h| self.run("constraint_residuals", &self.displaced(&free, h)));
-        self.close("bias", &self.run("constraint_bias", s)[..bend.len()], &bend, 1.0);
+        let bend =
+            second_derivative(|h| self.run_function("constraint_residuals", &self.displaced_state(&free, h)));
+        self.assert_close_entries("bias", &self.run_function("constraint_bias", s)[..bend.len()], &bend, 1.0);
         if !self.row.charts.contains('b') && !self.row.charts.contains('f') {
-            let change = first(|h| self.run("constraint_rates", &self.displaced(&free, h)));
-            self.close("bias of all", &self.run("constraint_bias", s), &change, 1.0);
+            let change =
+                first_derivative(|h| self.run_function("constraint_rates", &self.displaced_state(&free, h)));
+            self.assert_close_entries("bias of all", &self.run_function("constraint_bias", s), &change, 1.0);
         }
     }
 
     /// Checks `M v̇ + h = τ + Jᵀ λ` and `J v̇ + b = 0`.
     fn check_accelerations(&self, s: &State) {
         let nv = s.v.len();
-        let constrained = self.has("constraint_jacobian");
-        let found = self.run(if constrained { "__constrained_dynamics" } else { "forward_dynamics" }, s);
+        let constrained = self.has_function("constraint_jacobian");
+        let found =
+            self.run_function(if constrained { "__constrained_dynamics" } else { "forward_dynamics" }, s);
         let a = found[..nv].to_vec();
         let most = a.iter().fold(1.0_f64, |m, a| m.max(a.abs()));
-        let mut forces = self.run("inverse_dynamics", &State { a: a.clone(), ..s.clone() });
+        let mut forces = self.run_function("inverse_dynamics", &State { a: a.clone(), ..s.clone() });
         if constrained {
-            let (jacobian, bias) = (self.run("constraint_jacobian", s), self.run("constraint_bias", s));
+            let (jacobian, bias) =
+                (self.run_function("constraint_jacobian", s), self.run_function("constraint_bias", s));
             let nc = bias.len();
             let left: Vec<f64> = (0..nc)
                 .map(|i| bias[i] + (0..nv).map(|k| jacobian[k * nc + i] * a[k]).sum::<f64>())
                 .collect();
-            self.close("constraints on accelerations", &left, &vec![0.0; nc], most);
+            self.assert_close_entries("constraints on accelerations", &left, &vec![0.0; nc], most);
             let lambda = &found[nv..nv + nc];
             let most = lambda.iter().fold(most, |m, l| m.max(l.abs()));
             for (k, force) in forces.iter_mut().enumerate() {
                 *force -= (0..nc).map(|i| jacobian[k * nc + i] * lambda[i]).sum::<f64>();
             }
-            return self.close("forces of accelerations", &forces, &s.tau, most);
+            return self.assert_close_entries("forces of accelerations", &forces, &s.tau, most);
         }
-        self.close("forces of accelerations", &forces, &s.tau, most);
+        self.assert_close_entries("forces of accelerations", &forces, &s.tau, most);
     }
 
     fn check_derivatives(&self, s: &State) {
-        if !self.has("inverse_dynamics_derivatives") {
+        if !self.has_function("inverse_dynamics_derivatives") {
             return;
         }
         let nv = s.v.len();
         let mut expected = Vec::new();
         for k in 0..nv {
-            expected.extend(first(|h| self.run("inverse_dynamics", &self.stepped(s, k, h))));
-        }
-        for k in 0..nv {
-            expected.extend(first(|h| {
-                let mut s = s.clone();
-                s.v[k] += h;
-                self.run("inverse_dynamics", &s)
+            expected.extend(first_derivative(|h| {
+                self.run_function("inverse_dynamics", &self.state_after_step(s, k, h))
             }));
         }
-        self.close("derivatives", &self.run("inverse_dynamics_derivatives", s), &expected, 10.0);
+        for k in 0..nv {
+            expected.extend(first_derivative(|h| {
+                let mut s = s.clone();
+                s.v[k] += h;
+                self.run_function("inverse_dynamics", &s)
+            }));
+        }
+        self.assert_close_entries(
+            "derivatives",
+            &self.run_function("inverse_dynamics_derivatives", s),
+            &expected,
+            10.0,
+        );
     }
 }

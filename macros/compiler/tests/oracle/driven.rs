@@ -4,12 +4,12 @@
 
 use crate::kane::{self, Measure, State};
 use crate::random::Random;
-use crate::spec::{End, Spec, Style, spec};
+use crate::spec::{End, Spec, Style, random_spec};
 use crate::words;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::Quantity;
-use linkwork_compiler::{compile, read};
+use linkwork_compiler::{compile, read_source};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -28,19 +28,20 @@ struct Drive {
 }
 
 /// Checks the mechanism of a seed. Returns false if its prescribed motions are nearly dependent.
-pub fn check(seed: u64) -> bool {
+pub fn check_driven_mechanism(seed: u64) -> bool {
     let style = Style { bodies: 4, limbs: 0, decades: 0.3, noise: None };
-    let mut spec = spec(9_000_000 + seed, style);
+    let mut spec = random_spec(9_000_000 + seed, style);
     for body in &mut spec.bodies {
         // No prescribed motion constrains the coordinate of a slider.
         body.slider = None;
     }
-    let (nq, nv) = kane::sizes(&spec);
+    let (nq, nv) = kane::coordinate_and_velocity_counts(&spec);
     let mut random = Random::new(seed ^ 0xd41e);
-    let drives: Vec<Drive> = drives(&spec, nv, &mut random);
-    let mut list = |n: usize, bound: f64| -> Vec<f64> { (0..n).map(|_| random.uniform(bound)).collect() };
+    let drives: Vec<Drive> = prescribed_motions(&spec, nv, &mut random);
+    let mut list =
+        |n: usize, bound: f64| -> Vec<f64> { (0..n).map(|_| random.uniform_number(bound)).collect() };
     let (mut q, v, tau) = (list(nq, 1.2), list(nv, 1.0), list(nv, 3.0));
-    normalise(&spec, &mut q);
+    normalise_quaternions(&spec, &mut q);
     if !kane::cables_are_outside(&spec, &q) || drives.len() != nv {
         return false;
     }
@@ -48,29 +49,32 @@ pub fn check(seed: u64) -> bool {
     let partial_velocities = |k: usize| -> Vec<f64> {
         let unit: Vec<f64> = (0..nv).map(|i| if i == k { 1.0 } else { 0.0 }).collect();
         let state = State::new(&q, &unit, &zero);
-        drives.iter().map(|drive| kane::measured(&spec, &state, &drive.measure).rate().re).collect()
+        drives
+            .iter()
+            .map(|drive| kane::value_of_measure(&spec, &state, &drive.measure).time_rate().re)
+            .collect()
     };
     // Stored by rows.
     let columns: Vec<Vec<f64>> = (0..nv).map(partial_velocities).collect();
     let jacobian: Vec<Vec<f64>> = (0..nv).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
     let state = State::new(&q, &v, &zero);
-    let missing = drives
-        .iter()
-        .map(|drive| 2.0 * drive.path[2] - kane::measured(&spec, &state, &drive.measure).second_rate().re);
-    let Some(a) = solved(jacobian, missing.collect()) else { return false };
+    let missing = drives.iter().map(|drive| {
+        2.0 * drive.path[2] - kane::value_of_measure(&spec, &state, &drive.measure).second_rate().re
+    });
+    let Some(a) = solve_linear_system(jacobian, missing.collect()) else { return false };
     let forces = kane::inverse_dynamics(&spec, &State::new(&q, &v, &a));
     let left = forces.iter().zip(&tau).map(|(force, tau)| force.re - tau);
-    let Some(lambda) = solved(columns, left.collect()) else { return false };
+    let Some(lambda) = solve_linear_system(columns, left.collect()) else { return false };
     for words in ["", ", derivatives", ", formulation = speeds"] {
-        compare(&spec, &drives, words, (&q, &v, &tau), (&a, &lambda), seed);
+        compare_with_oracle(&spec, &drives, words, (&q, &v, &tau), (&a, &lambda), seed);
     }
     true
 }
 
-fn normalise(spec: &Spec, q: &mut [f64]) {
+fn normalise_quaternions(spec: &Spec, q: &mut [f64]) {
     let mut first = 0;
     for body in &spec.bodies {
-        let (own, _) = body.kind.sizes();
+        let (own, _) = body.kind.coordinate_and_velocity_counts();
         if own >= 4 {
             let quaternion = &mut q[first + own - 4..first + own];
             let length = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -82,17 +86,17 @@ fn normalise(spec: &Spec, q: &mut [f64]) {
 
 /// Returns a prescribed motion for every velocity: of coordinates of a joint, some in combination with
 /// others, or of points of its body if the joint has no coordinates.
-fn drives(spec: &Spec, nv: usize, random: &mut Random) -> Vec<Drive> {
+fn prescribed_motions(spec: &Spec, nv: usize, random: &mut Random) -> Vec<Drive> {
     let mut drives = Vec::new();
     let mut before: Vec<(usize, usize)> = Vec::new();
     for (k, body) in spec.bodies.iter().enumerate() {
-        let (_, own) = body.kind.sizes();
+        let (_, own) = body.kind.coordinate_and_velocity_counts();
         for i in 0..own {
-            let plain = !body.kind.coordinates().is_empty();
+            let plain = !body.kind.coordinate_names().is_empty();
             let is_way = !plain || random.index_below(4) == 0;
             let measure = if is_way {
                 let mut at = [0.0; 3];
-                at.iter_mut().for_each(|x| *x = 1.2 * random.uniform(1.0));
+                at.iter_mut().for_each(|x| *x = 1.2 * random.uniform_number(1.0));
                 let carrier = body.parent.filter(|_| random.index_below(2) == 0);
                 Measure::Way(
                     End { body: Some(k), at },
@@ -103,12 +107,12 @@ fn drives(spec: &Spec, nv: usize, random: &mut Random) -> Vec<Drive> {
                 let mut list = vec![(1.0, k, i)];
                 if let Some(more) = before.len().checked_sub(1).map(|last| random.index_below(last + 1)) {
                     let (body, coordinate) = before[more];
-                    list.push((random.uniform(0.8), body, coordinate));
+                    list.push((random.uniform_number(0.8), body, coordinate));
                 }
                 before.push((k, i));
                 Measure::Coordinates(list)
             };
-            let path = [0.0; 3].map(|_| random.uniform(1.0));
+            let path = [0.0; 3].map(|_| random.uniform_number(1.0));
             let by_rate = !is_way && random.index_below(3) == 0;
             drives.push(Drive { measure, path, by_rate });
         }
@@ -120,7 +124,7 @@ fn drives(spec: &Spec, nv: usize, random: &mut Random) -> Vec<Drive> {
 }
 
 /// Solves a linear system by elimination with complete pivoting. Returns `None` for a nearly singular matrix.
-fn solved(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
+fn solve_linear_system(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
     let n = rows.len();
     let largest = rows.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
     let mut order: Vec<usize> = (0..n).collect();
@@ -149,7 +153,7 @@ fn solved(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
     Some(found)
 }
 
-fn compare(
+fn compare_with_oracle(
     spec: &Spec,
     drives: &[Drive],
     more: &str,
@@ -157,11 +161,11 @@ fn compare(
     (a, lambda): (&[f64], &[f64]),
     seed: u64,
 ) {
-    let (arguments, item) = words::source(spec, "Driven", more);
+    let (arguments, item) = words::mechanism_source(spec, "Driven", more);
     let mut item = item.trim_end().trim_end_matches('}').to_string();
     for (k, drive) in drives.iter().enumerate() {
         let coordinate_name = |(_, body, k): &(f64, usize, usize)| {
-            format!("joint{body}{}", spec.bodies[*body].kind.coordinates()[*k])
+            format!("joint{body}{}", spec.bodies[*body].kind.coordinate_names()[*k])
         };
         let [start, speed, growth] = drive.path;
         let (kind, left, right) = match &drive.measure {
@@ -178,7 +182,11 @@ fn compare(
                         .collect(),
                     Measure::Way(a, b, axis) => {
                         let axis = ["x", "y", "z"][*axis];
-                        vec![format!("dot(r({} / {}), ground.{axis})", words::point(a), words::point(b))]
+                        vec![format!(
+                            "dot(r({} / {}), ground.{axis})",
+                            words::end_text(a),
+                            words::end_text(b)
+                        )]
                     }
                 };
                 ("Holonomic", terms, format!("{start:?} + ({speed:?}) * t + ({growth:?}) * t * t"))
@@ -191,7 +199,7 @@ fn compare(
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
     let parse_tokens = |text: &str| text.parse().expect("the generated source is Rust");
-    let source = read(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
+    let source = read_source(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
     let compiled = source.as_ref().and_then(|source| compile(source, &graph, &mut cx));
     let Some((model, output)) = compiled else {
         let told = cx.messages();
@@ -209,28 +217,32 @@ fn compare(
         Quantity::Velocity(k) => v[k],
         Quantity::Force(k) => tau[k],
         Quantity::Time => TIME,
-        Quantity::Parameter(k) => mass(spec, &model.parameters[k]),
+        Quantity::Parameter(k) => mass_parameter_value(spec, &model.parameters[k]),
         other => panic!("seed {seed}: {other:?}"),
     };
     let passive = output.functions.iter().find(|f| f.name == "__passive_forces");
-    let passive = passive.map_or(Vec::new(), |f| f.program.run(&value_of_symbol));
+    let passive = passive.map_or(Vec::new(), |f| f.program.interpret_program(&value_of_symbol));
     let value_with_passive_forces = |s| match Quantity::from_symbol(s) {
         Quantity::PassiveForce(k) => passive[k],
         _ => value_of_symbol(s),
     };
     let f = output.functions.iter().find(|f| f.name == "__constrained_dynamics").expect("it is constrained");
-    let found = f.program.run(&value_with_passive_forces);
-    close(&format!("seed {seed}{more}: accelerations\n{item}"), &found[..v.len()], a);
-    close(&format!("seed {seed}{more}: multipliers\n{item}"), &found[v.len()..2 * v.len()], lambda);
+    let found = f.program.interpret_program(&value_with_passive_forces);
+    assert_close_entries(&format!("seed {seed}{more}: accelerations\n{item}"), &found[..v.len()], a);
+    assert_close_entries(
+        &format!("seed {seed}{more}: multipliers\n{item}"),
+        &found[v.len()..2 * v.len()],
+        lambda,
+    );
 }
 
 /// Returns the value of a mass that is a parameter.
-fn mass(spec: &Spec, name: &str) -> f64 {
+fn mass_parameter_value(spec: &Spec, name: &str) -> f64 {
     let body = name.strip_prefix("mass").and_then(|k| k.parse::<usize>().ok());
     spec.bodies[body.expect("masses alone are parameters")].mass
 }
 
-fn close(what: &str, found: &[f64], expected: &[f64]) {
+fn assert_close_entries(what: &str, found: &[f64], expected: &[f64]) {
     let size = expected.iter().fold(1.0_f64, |most, x| most.max(x.abs()));
     for (k, (a, b)) in found.iter().zip(expected).enumerate() {
         assert!((a - b).abs() <= TOLERANCE * size, "{what}: entry {k}: {a} instead of {b}");

@@ -16,11 +16,11 @@ pub enum Stop {
 
 type Result<T> = std::result::Result<T, Stop>;
 
-fn foreign<T>() -> Result<T> {
+fn foreign_code_error<T>() -> Result<T> {
     Err(Stop::Foreign)
 }
 
-fn wrong<T>(what: impl Into<String>) -> Result<T> {
+fn wrong_code_error<T>(what: impl Into<String>) -> Result<T> {
     Err(Stop::Wrong(what.into()))
 }
 
@@ -35,51 +35,57 @@ pub enum Value {
 }
 
 impl Value {
-    pub fn list(numbers: &[f64]) -> Value {
+    pub fn list_of_numbers(numbers: &[f64]) -> Value {
         Value::List(numbers.iter().map(|x| Value::Number(*x)).collect())
     }
 
     /// Returns all numbers of the value in order; of lanes, the number in `lane`.
-    pub fn numbers(&self, lane: usize) -> Result<Vec<f64>> {
+    pub fn numbers_of_lane(&self, lane: usize) -> Result<Vec<f64>> {
         match self {
             Value::Number(x) => Ok(vec![*x]),
-            Value::Lanes(all) => all.get(lane).map_or_else(|| wrong("no such lane"), |x| Ok(vec![*x])),
+            Value::Lanes(all) => {
+                all.get(lane).map_or_else(|| wrong_code_error("no such lane"), |x| Ok(vec![*x]))
+            }
             Value::List(list) => {
-                let all: Result<Vec<Vec<f64>>> = list.iter().map(|value| value.numbers(lane)).collect();
+                let all: Result<Vec<Vec<f64>>> =
+                    list.iter().map(|value| value.numbers_of_lane(lane)).collect();
                 Ok(all?.concat())
             }
-            Value::Operation(name, _) => wrong(format!("{name} is not a number")),
+            Value::Operation(name, _) => wrong_code_error(format!("{name} is not a number")),
         }
     }
 
-    fn elements(&self) -> Result<&Vec<Value>> {
+    fn elements_of_list(&self) -> Result<&Vec<Value>> {
         match self {
             Value::List(list) => Ok(list),
-            other => wrong(format!("{other:?} has no elements")),
+            other => wrong_code_error(format!("{other:?} has no elements")),
         }
     }
 }
 
 /// Applies an operation to numbers, or lane by lane.
-fn each(values: &[Value], f: &dyn Fn(&[f64]) -> f64) -> Result<Value> {
+fn apply_lane_by_lane(values: &[Value], f: &dyn Fn(&[f64]) -> f64) -> Result<Value> {
     if let [Value::Number(_), ..] = values {
-        let numbers: Result<Vec<f64>> = values
-            .iter()
-            .map(|value| if let Value::Number(x) = value { Ok(*x) } else { wrong("a number and lanes") })
-            .collect();
+        let numbers: Result<Vec<f64>> =
+            values
+                .iter()
+                .map(|value| {
+                    if let Value::Number(x) = value { Ok(*x) } else { wrong_code_error("a number and lanes") }
+                })
+                .collect();
         return Ok(Value::Number(f(&numbers?)));
     }
     let lanes: Result<Vec<&Vec<f64>>> = values
         .iter()
         .map(|value| match value {
             Value::Lanes(lanes) => Ok(lanes),
-            other => wrong(format!("lanes and {other:?}")),
+            other => wrong_code_error(format!("lanes and {other:?}")),
         })
         .collect();
     let lanes = lanes?;
     let count = lanes.first().map_or(0, |first| first.len());
     if lanes.iter().any(|own| own.len() != count) {
-        return wrong("lanes of different numbers");
+        return wrong_code_error("lanes of different numbers");
     }
     Ok(Value::Lanes((0..count).map(|k| f(&lanes.iter().map(|own| own[k]).collect::<Vec<_>>())).collect()))
 }
@@ -93,123 +99,131 @@ pub struct Machine {
 
 impl Machine {
     /// Executes a body and returns its value. Its variables remain defined.
-    pub fn run(&mut self, body: &Block) -> Result<Value> {
+    pub fn run_body(&mut self, body: &Block) -> Result<Value> {
         let mut last = Value::List(Vec::new());
         for statement in &body.stmts {
             last = Value::List(Vec::new());
             match statement {
                 Stmt::Local(local) => match &local.init {
                     Some(init) => {
-                        let value = self.value(&init.expr)?;
-                        self.bind(&local.pat, value)?;
+                        let value = self.evaluate_expression(&init.expr)?;
+                        self.bind_pattern(&local.pat, value)?;
                     }
-                    None => self.declare(&local.pat)?,
+                    None => self.declare_variables(&local.pat)?,
                 },
-                Stmt::Expr(expr, None) => last = self.value(expr)?,
-                Stmt::Expr(expr, Some(_)) => drop(self.value(expr)?),
+                Stmt::Expr(expr, None) => last = self.evaluate_expression(expr)?,
+                Stmt::Expr(expr, Some(_)) => drop(self.evaluate_expression(expr)?),
                 Stmt::Item(syn::Item::Use(_)) => {}
-                _ => return foreign(),
+                _ => return foreign_code_error(),
             }
         }
         Ok(last)
     }
 
-    fn declare(&mut self, pattern: &Pat) -> Result<()> {
+    fn declare_variables(&mut self, pattern: &Pat) -> Result<()> {
         match pattern {
-            Pat::Ident(name) => drop(self.here().insert(name.ident.to_string(), None)),
-            Pat::Tuple(tuple) => tuple.elems.iter().try_for_each(|pattern| self.declare(pattern))?,
-            _ => return foreign(),
+            Pat::Ident(name) => drop(self.current_scope().insert(name.ident.to_string(), None)),
+            Pat::Tuple(tuple) => {
+                tuple.elems.iter().try_for_each(|pattern| self.declare_variables(pattern))?
+            }
+            _ => return foreign_code_error(),
         }
         Ok(())
     }
 
-    fn here(&mut self) -> &mut BTreeMap<String, Option<Value>> {
+    fn current_scope(&mut self) -> &mut BTreeMap<String, Option<Value>> {
         self.scopes.last_mut().expect("a scope")
     }
 
-    pub fn bind(&mut self, pattern: &Pat, value: Value) -> Result<()> {
+    pub fn bind_pattern(&mut self, pattern: &Pat, value: Value) -> Result<()> {
         let patterns = match pattern {
             Pat::Wild(_) => return Ok(()),
             Pat::Ident(name) => {
-                self.here().insert(name.ident.to_string(), Some(value));
+                self.current_scope().insert(name.ident.to_string(), Some(value));
                 return Ok(());
             }
             Pat::Tuple(tuple) => &tuple.elems,
             Pat::Slice(slice) => &slice.elems,
-            _ => return foreign(),
+            _ => return foreign_code_error(),
         };
-        let (values, open) = (value.elements()?, matches!(patterns.last(), Some(Pat::Rest(_))));
+        let (values, open) = (value.elements_of_list()?, matches!(patterns.last(), Some(Pat::Rest(_))));
         let count = patterns.len() - usize::from(open);
         if values.len() < count || (values.len() > count && !open) {
-            return wrong(format!("{} values for {count} patterns", values.len()));
+            return wrong_code_error(format!("{} values for {count} patterns", values.len()));
         }
         for (pattern, value) in patterns.iter().take(count).zip(values.clone()) {
-            self.bind(pattern, value)?;
+            self.bind_pattern(pattern, value)?;
         }
         Ok(())
     }
 
-    pub fn variable(&self, name: &str) -> Result<Value> {
+    pub fn variable_value(&self, name: &str) -> Result<Value> {
         let found = self.scopes.iter().rev().find_map(|scope| scope.get(name));
-        found.cloned().flatten().map_or_else(|| wrong(format!("`{name}` has no value")), Ok)
+        found.cloned().flatten().map_or_else(|| wrong_code_error(format!("`{name}` has no value")), Ok)
     }
 
-    fn value(&mut self, expr: &Expr) -> Result<Value> {
+    fn evaluate_expression(&mut self, expr: &Expr) -> Result<Value> {
         match expr {
             Expr::Lit(lit) => match &lit.lit {
-                Lit::Float(x) => x.base10_parse().map(Value::Number).or_else(|_| foreign()),
-                _ => foreign(),
+                Lit::Float(x) => x.base10_parse().map(Value::Number).or_else(|_| foreign_code_error()),
+                _ => foreign_code_error(),
             },
             Expr::Path(path) => match path.path.get_ident() {
-                Some(name) if name == "self" => foreign(),
-                Some(name) => self.variable(&name.to_string()),
-                None => self.operation(&path.path),
+                Some(name) if name == "self" => foreign_code_error(),
+                Some(name) => self.variable_value(&name.to_string()),
+                None => self.named_operation(&path.path),
             },
-            Expr::Paren(inner) => self.value(&inner.expr),
-            Expr::Reference(inner) => self.value(&inner.expr),
+            Expr::Paren(inner) => self.evaluate_expression(&inner.expr),
+            Expr::Reference(inner) => self.evaluate_expression(&inner.expr),
             Expr::Unary(unary) => {
-                let value = self.value(&unary.expr)?;
+                let value = self.evaluate_expression(&unary.expr)?;
                 match unary.op {
-                    UnOp::Neg(_) => each(&[value], &|x| -x[0]),
+                    UnOp::Neg(_) => apply_lane_by_lane(&[value], &|x| -x[0]),
                     UnOp::Deref(_) => Ok(value),
-                    _ => foreign(),
+                    _ => foreign_code_error(),
                 }
             }
             Expr::Binary(binary) => {
-                let values = [self.value(&binary.left)?, self.value(&binary.right)?];
+                let values =
+                    [self.evaluate_expression(&binary.left)?, self.evaluate_expression(&binary.right)?];
                 match binary.op {
-                    syn::BinOp::Add(_) => each(&values, &|x| x[0] + x[1]),
-                    syn::BinOp::Sub(_) => each(&values, &|x| x[0] - x[1]),
-                    syn::BinOp::Mul(_) => each(&values, &|x| x[0] * x[1]),
-                    syn::BinOp::Div(_) => each(&values, &|x| x[0] / x[1]),
-                    _ => foreign(),
+                    syn::BinOp::Add(_) => apply_lane_by_lane(&values, &|x| x[0] + x[1]),
+                    syn::BinOp::Sub(_) => apply_lane_by_lane(&values, &|x| x[0] - x[1]),
+                    syn::BinOp::Mul(_) => apply_lane_by_lane(&values, &|x| x[0] * x[1]),
+                    syn::BinOp::Div(_) => apply_lane_by_lane(&values, &|x| x[0] / x[1]),
+                    _ => foreign_code_error(),
                 }
             }
-            Expr::Tuple(tuple) => self.values(tuple.elems.iter()),
-            Expr::Array(array) => self.values(array.elems.iter()),
-            Expr::Repeat(repeat) => Ok(Value::List(vec![self.value(&repeat.expr)?; index(&repeat.len)?])),
-            Expr::Struct(fields) => self.values(fields.fields.iter().map(|field| &field.expr)),
+            Expr::Tuple(tuple) => self.evaluate_list(tuple.elems.iter()),
+            Expr::Array(array) => self.evaluate_list(array.elems.iter()),
+            Expr::Repeat(repeat) => {
+                Ok(Value::List(vec![self.evaluate_expression(&repeat.expr)?; index(&repeat.len)?]))
+            }
+            Expr::Struct(fields) => self.evaluate_list(fields.fields.iter().map(|field| &field.expr)),
             Expr::Block(block) => {
                 self.scopes.push(BTreeMap::new());
-                let value = self.run(&block.block);
+                let value = self.run_body(&block.block);
                 self.scopes.pop();
                 value
             }
-            Expr::Field(field) => self.field(field),
+            Expr::Field(field) => self.parameter_field(field),
             Expr::Index(inner) => {
-                let (list, at) = (self.value(&inner.expr)?, index(&inner.index)?);
-                list.elements()?.get(at).cloned().map_or_else(|| wrong(format!("no element {at}")), Ok)
+                let (list, at) = (self.evaluate_expression(&inner.expr)?, index(&inner.index)?);
+                list.elements_of_list()?
+                    .get(at)
+                    .cloned()
+                    .map_or_else(|| wrong_code_error(format!("no element {at}")), Ok)
             }
             Expr::Assign(assign) => {
-                let value = self.value(&assign.right)?;
-                self.assign(&assign.left, &[], value)?;
+                let value = self.evaluate_expression(&assign.right)?;
+                self.assign_value(&assign.left, &[], value)?;
                 Ok(Value::List(Vec::new()))
             }
-            Expr::Call(call) => self.call(call),
+            Expr::Call(call) => self.evaluate_call(call),
             Expr::MethodCall(call) => {
-                let value = self.value(&call.receiver)?;
+                let value = self.evaluate_expression(&call.receiver)?;
                 let first_turbofish_constant =
-                    || call.turbofish.as_ref().and_then(|types| constants(types).first().copied());
+                    || call.turbofish.as_ref().and_then(|types| generic_constants(types).first().copied());
                 match (call.method.to_string().as_str(), value, first_turbofish_constant()) {
                     ("lanes", value, None) => Ok(value),
                     ("sum", Value::Lanes(lanes), None) => Ok(Value::Number(lanes.iter().sum())),
@@ -217,21 +231,21 @@ impl Machine {
                     ("first", Value::Lanes(lanes), Some(n)) if n <= lanes.len() => {
                         Ok(Value::Lanes(lanes[..n].to_vec()))
                     }
-                    ("lane" | "first" | "sum", ..) => wrong(format!("{}", quote::quote!(#call))),
-                    _ => foreign(),
+                    ("lane" | "first" | "sum", ..) => wrong_code_error(format!("{}", quote::quote!(#call))),
+                    _ => foreign_code_error(),
                 }
             }
-            _ => foreign(),
+            _ => foreign_code_error(),
         }
     }
 
-    fn values<'e>(&mut self, all: impl Iterator<Item = &'e Expr>) -> Result<Value> {
-        Ok(Value::List(all.map(|expr| self.value(expr)).collect::<Result<_>>()?))
+    fn evaluate_list<'e>(&mut self, all: impl Iterator<Item = &'e Expr>) -> Result<Value> {
+        Ok(Value::List(all.map(|expr| self.evaluate_expression(expr)).collect::<Result<_>>()?))
     }
 
     /// Returns the parameter for `self.parameter`. Storage of vectors, matrices and lanes is the value
     /// itself.
-    fn field(&mut self, field: &ExprField) -> Result<Value> {
+    fn parameter_field(&mut self, field: &ExprField) -> Result<Value> {
         let is_storage = |base: &Expr| match base {
             Expr::Field(inner) => matches!(&inner.member, Member::Named(name) if name == "data"),
             Expr::MethodCall(call) => call.method == "lanes",
@@ -241,27 +255,27 @@ impl Machine {
             (Expr::Path(base), Member::Named(name)) if base.path.is_ident("self") => {
                 match self.parameters.get(&name.to_string()) {
                     Some(value) => Ok(value.clone()),
-                    None => foreign(),
+                    None => foreign_code_error(),
                 }
             }
-            (base, Member::Named(name)) if name == "data" => self.value(base),
+            (base, Member::Named(name)) if name == "data" => self.evaluate_expression(base),
             (base, Member::Unnamed(at)) if at.index == 0 && is_storage(base) => {
                 // The numbers of lanes form an array.
-                match self.value(base)? {
-                    Value::Lanes(lanes) => Ok(Value::list(&lanes)),
+                match self.evaluate_expression(base)? {
+                    Value::Lanes(lanes) => Ok(Value::list_of_numbers(&lanes)),
                     value => Ok(value),
                 }
             }
             // The lanes of an argument.
             (Expr::Path(base), Member::Unnamed(at)) if at.index == 0 && base.path.is_ident("t") => {
-                self.variable("t")
+                self.variable_value("t")
             }
-            _ => foreign(),
+            _ => foreign_code_error(),
         }
     }
 
     /// Assigns a value to a variable, or a number to an entry of a matrix.
-    fn assign(&mut self, place: &Expr, more: &[usize], value: Value) -> Result<()> {
+    fn assign_value(&mut self, place: &Expr, more: &[usize], value: Value) -> Result<()> {
         let (mut at, mut inner) = (more.to_vec(), place);
         let name = loop {
             match inner {
@@ -272,11 +286,11 @@ impl Machine {
                 }
                 Expr::Field(field) => inner = &field.base,
                 Expr::Reference(reference) => inner = &reference.expr,
-                _ => return foreign(),
+                _ => return foreign_code_error(),
             }
         };
         let found = self.scopes.iter_mut().rev().find_map(|scope| scope.get_mut(&name));
-        let Some(variable) = found else { return wrong(format!("`{name}` is not declared")) };
+        let Some(variable) = found else { return wrong_code_error(format!("`{name}` is not declared")) };
         if at.is_empty() {
             *variable = Some(value);
             return Ok(());
@@ -288,17 +302,19 @@ impl Machine {
                 _ => None,
             });
         }
-        let Some(entry) = entry else { return wrong(format!("{name} has no {at:?}")) };
+        let Some(entry) = entry else { return wrong_code_error(format!("{name} has no {at:?}")) };
         *entry = value;
         Ok(())
     }
 
     /// Returns the operation `Ops::name::<…>`; the number of lanes is its last type argument.
-    fn operation(&self, path: &syn::Path) -> Result<Value> {
+    fn named_operation(&self, path: &syn::Path) -> Result<Value> {
         let mut segments = path.segments.iter().rev();
-        let (Some(last), Some(before)) = (segments.next(), segments.next()) else { return foreign() };
+        let (Some(last), Some(before)) = (segments.next(), segments.next()) else {
+            return foreign_code_error();
+        };
         if before.ident != "Ops" {
-            return foreign();
+            return foreign_code_error();
         }
         let lanes = match &last.arguments {
             syn::PathArguments::AngleBracketed(types) => match types.args.last() {
@@ -313,77 +329,79 @@ impl Machine {
         Ok(Value::Operation(last.ident.to_string(), lanes))
     }
 
-    fn call(&mut self, call: &ExprCall) -> Result<Value> {
-        let Expr::Path(function) = &*call.func else { return foreign() };
+    fn evaluate_call(&mut self, call: &ExprCall) -> Result<Value> {
+        let Expr::Path(function) = &*call.func else { return foreign_code_error() };
         let last = function.path.segments.last().expect("a name");
         let name = last.ident.to_string();
         if ["from_array_storage", "ArrayStorage", "Lanes"].contains(&name.as_str()) {
-            return self.value(&call.args[0]);
+            return self.evaluate_expression(&call.args[0]);
         }
         if name.starts_with("store_") {
-            return self.store(&name, last, call);
+            return self.store_lanes(&name, last, call);
         }
         let operation = match function.path.get_ident() {
-            Some(_) if self.variable(&name).is_err() => return foreign(),
-            Some(_) => self.variable(&name)?,
-            None => self.operation(&function.path)?,
+            Some(_) if self.variable_value(&name).is_err() => return foreign_code_error(),
+            Some(_) => self.variable_value(&name)?,
+            None => self.named_operation(&function.path)?,
         };
-        let Value::Operation(name, lanes) = operation else { return foreign() };
-        let values: Vec<Value> = call.args.iter().map(|expr| self.value(expr)).collect::<Result<_>>()?;
-        applied(&name, lanes, &values).unwrap_or_else(foreign)
+        let Value::Operation(name, lanes) = operation else { return foreign_code_error() };
+        let values: Vec<Value> =
+            call.args.iter().map(|expr| self.evaluate_expression(expr)).collect::<Result<_>>()?;
+        apply_operation(&name, lanes, &values).unwrap_or_else(foreign_code_error)
     }
 
     /// Interprets a generated call that stores SIMD lanes to rows of a matrix.
-    fn store(&mut self, name: &str, last: &syn::PathSegment, call: &ExprCall) -> Result<Value> {
-        let syn::PathArguments::AngleBracketed(types) = &last.arguments else { return foreign() };
-        let constants = constants(types);
-        let vectors: Vec<Value> = call.args.iter().skip(1).map(|e| self.value(e)).collect::<Result<_>>()?;
+    fn store_lanes(&mut self, name: &str, last: &syn::PathSegment, call: &ExprCall) -> Result<Value> {
+        let syn::PathArguments::AngleBracketed(types) = &last.arguments else { return foreign_code_error() };
+        let constants = generic_constants(types);
+        let vectors: Vec<Value> =
+            call.args.iter().skip(1).map(|e| self.evaluate_expression(e)).collect::<Result<_>>()?;
         let lane_of_vector = |vector: usize, k: usize| match &vectors[vector] {
             Value::Lanes(lanes) if k < lanes.len() => Ok(Value::Number(lanes[k])),
-            other => wrong(format!("lane {k} of {other:?}")),
+            other => wrong_code_error(format!("lane {k} of {other:?}")),
         };
         let lanes_in_vector =
             |vector: usize| if let Value::Lanes(lanes) = &vectors[vector] { lanes.len() } else { 0 };
         match (name, constants.as_slice()) {
             ("store_two", [i, j, row]) => {
-                self.assign(&call.args[0], &[*row], lane_of_vector(0, *i)?)?;
-                self.assign(&call.args[0], &[row + 1], lane_of_vector(1, *j)?)?;
+                self.assign_value(&call.args[0], &[*row], lane_of_vector(0, *i)?)?;
+                self.assign_value(&call.args[0], &[row + 1], lane_of_vector(1, *j)?)?;
             }
             ("store_rows", [row]) => {
                 for k in 0..lanes_in_vector(0) {
-                    self.assign(&call.args[0], &[row + k], lane_of_vector(0, k)?)?;
+                    self.assign_value(&call.args[0], &[row + k], lane_of_vector(0, k)?)?;
                 }
             }
             ("store_columns", [row, column]) => {
                 for k in 0..lanes_in_vector(0) {
-                    self.assign(&call.args[0], &[column + k, *row], lane_of_vector(0, k)?)?;
-                    self.assign(&call.args[0], &[column + k, row + 1], lane_of_vector(1, k)?)?;
+                    self.assign_value(&call.args[0], &[column + k, *row], lane_of_vector(0, k)?)?;
+                    self.assign_value(&call.args[0], &[column + k, row + 1], lane_of_vector(1, k)?)?;
                 }
             }
-            _ => return foreign(),
+            _ => return foreign_code_error(),
         }
         Ok(Value::List(Vec::new()))
     }
 }
 
 /// Returns the result of an operation; `None` for an unknown operation.
-fn applied(name: &str, lanes: Option<usize>, values: &[Value]) -> Option<Result<Value>> {
+fn apply_operation(name: &str, lanes: Option<usize>, values: &[Value]) -> Option<Result<Value>> {
     // In a product of a number and lanes, the number is not broadcast in the code.
     let apply_scaled_function = |rest: &str| -> Option<Result<Value>> {
         let (Value::Number(x), Value::Lanes(own)) = (values.first()?, values.get(1)?) else {
-            return Some(wrong(format!("{name} of {values:?}")));
+            return Some(wrong_code_error(format!("{name} of {values:?}")));
         };
         let all = [vec![Value::Lanes(vec![*x; own.len()])], values[1..].to_vec()].concat();
         match rest {
-            "" => Some(each(&all, &|x| x[0] * x[1])),
-            rest => applied(rest, lanes, &all),
+            "" => Some(apply_lane_by_lane(&all, &|x| x[0] * x[1])),
+            rest => apply_operation(rest, lanes, &all),
         }
     };
     let function_by_name = |name: &str| Function::ALL.iter().find(|(known, _)| *known == name);
     Some(match (name, values) {
-        ("mul_add", [_, _, _]) => each(values, &|x| x[0] * x[1] + x[2]),
-        ("mul_sub", [_, _, _]) => each(values, &|x| x[0] * x[1] - x[2]),
-        ("neg_mul_add", [_, _, _]) => each(values, &|x| x[2] - x[0] * x[1]),
+        ("mul_add", [_, _, _]) => apply_lane_by_lane(values, &|x| x[0] * x[1] + x[2]),
+        ("mul_sub", [_, _, _]) => apply_lane_by_lane(values, &|x| x[0] * x[1] - x[2]),
+        ("neg_mul_add", [_, _, _]) => apply_lane_by_lane(values, &|x| x[2] - x[0] * x[1]),
         ("scale", [_, _]) => apply_scaled_function("")?,
         ("scale_add", [_, _, _]) => apply_scaled_function("mul_add")?,
         ("scale_sub", [_, _, _]) => apply_scaled_function("mul_sub")?,
@@ -394,7 +412,7 @@ fn applied(name: &str, lanes: Option<usize>, values: &[Value]) -> Option<Result<
             let number_of_value = |value: &Value| if let Value::Number(x) = value { Some(*x) } else { None };
             match list.iter().map(number_of_value).collect::<Option<Vec<f64>>>() {
                 Some(lanes) => Ok(Value::Lanes(lanes)),
-                None => wrong(format!("lanes of {list:?}")),
+                None => wrong_code_error(format!("lanes of {list:?}")),
             }
         }
         // The time of several states.
@@ -402,46 +420,50 @@ fn applied(name: &str, lanes: Option<usize>, values: &[Value]) -> Option<Result<
         ("join", [Value::Lanes(a), Value::Lanes(b)]) if a.len() == b.len() && lanes == Some(2 * a.len()) => {
             Ok(Value::Lanes([a.clone(), b.clone()].concat()))
         }
-        ("sin_cos", [x]) => both(x),
+        ("sin_cos", [x]) => sine_and_cosine(x),
         ("sin_cos_all", [Value::List(angles)]) => {
-            let all: Result<Vec<Value>> = angles.iter().map(both).collect();
+            let all: Result<Vec<Value>> = angles.iter().map(sine_and_cosine).collect();
             all.and_then(|all| {
                 let part_of_pairs = |k: usize| -> Result<Value> {
                     Ok(Value::List(
-                        all.iter().map(|pair| Ok(pair.elements()?[k].clone())).collect::<Result<_>>()?,
+                        all.iter()
+                            .map(|pair| Ok(pair.elements_of_list()?[k].clone()))
+                            .collect::<Result<_>>()?,
                     ))
                 };
                 Ok(Value::List(vec![part_of_pairs(0)?, part_of_pairs(1)?]))
             })
         }
-        ("atan2", [_, _]) => each(values, &|x| x[0].atan2(x[1])),
-        ("powf", [_, _]) => each(values, &|x| x[0].powf(x[1])),
-        ("min", [_, _]) => each(values, &|x| x[0].min(x[1])),
-        ("max", [_, _]) => each(values, &|x| x[0].max(x[1])),
+        ("atan2", [_, _]) => apply_lane_by_lane(values, &|x| x[0].atan2(x[1])),
+        ("powf", [_, _]) => apply_lane_by_lane(values, &|x| x[0].powf(x[1])),
+        ("min", [_, _]) => apply_lane_by_lane(values, &|x| x[0].min(x[1])),
+        ("max", [_, _]) => apply_lane_by_lane(values, &|x| x[0].max(x[1])),
         (name, [_]) => {
             let (_, function) = function_by_name(name)?;
-            each(values, &|x| function.apply(x[0]))
+            apply_lane_by_lane(values, &|x| function.evaluate_at(x[0]))
         }
         _ => return None,
     })
 }
 
 /// Returns sine and cosine of a value, lane by lane.
-fn both(x: &Value) -> Result<Value> {
+fn sine_and_cosine(x: &Value) -> Result<Value> {
     let x = std::slice::from_ref(x);
-    Ok(Value::List(vec![each(x, &|x| x[0].sin())?, each(x, &|x| x[0].cos())?]))
+    Ok(Value::List(vec![apply_lane_by_lane(x, &|x| x[0].sin())?, apply_lane_by_lane(x, &|x| x[0].cos())?]))
 }
 
 /// Returns the value of an integer literal.
 fn index(expr: &Expr) -> Result<usize> {
     match expr {
-        Expr::Lit(syn::ExprLit { lit: Lit::Int(k), .. }) => k.base10_parse().or_else(|_| foreign()),
-        _ => foreign(),
+        Expr::Lit(syn::ExprLit { lit: Lit::Int(k), .. }) => {
+            k.base10_parse().or_else(|_| foreign_code_error())
+        }
+        _ => foreign_code_error(),
     }
 }
 
 /// Returns the integers among generic arguments.
-fn constants(types: &syn::AngleBracketedGenericArguments) -> Vec<usize> {
+fn generic_constants(types: &syn::AngleBracketedGenericArguments) -> Vec<usize> {
     let constant_argument = |argument: &syn::GenericArgument| match argument {
         syn::GenericArgument::Const(expr) => index(expr).ok(),
         _ => None,

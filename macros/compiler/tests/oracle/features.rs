@@ -9,15 +9,15 @@ mod constrained;
 mod source;
 mod values;
 
-use crate::seeds;
+use crate::test_seeds;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
-use linkwork_compiler::{check, compile, expand, read};
+use linkwork_compiler::{check_mechanism, compile, expand, read_source};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Returns the values `t0`, `t1`, … in a function's text.
-fn values(text: &str) -> BTreeSet<&str> {
+fn numbered_values(text: &str) -> BTreeSet<&str> {
     let is_word_character = |c: char| c.is_ascii_alphanumeric() || c == '_';
     text.split(|c| !is_word_character(c))
         .filter(|word| {
@@ -28,7 +28,7 @@ fn values(text: &str) -> BTreeSet<&str> {
 
 /// Returns the values that functions use but do not define. A definition is between `let` and `=` or `;`, or
 /// precedes ` = ` at the start of a line.
-fn unbound(text: &str) -> Vec<String> {
+fn unbound_values(text: &str) -> Vec<String> {
     let mut missing = Vec::new();
     for function in text.split("fn ").skip(1) {
         let mut bound = BTreeSet::new();
@@ -36,11 +36,11 @@ fn unbound(text: &str) -> Vec<String> {
             let statement = line.strip_prefix("let ").unwrap_or(line);
             let is_binding = line.starts_with("let ") || line.starts_with('t') || line.starts_with('(');
             if let Some(left) = statement.split([';', '=']).next().filter(|_| is_binding) {
-                bound.extend(values(left));
+                bound.extend(numbered_values(left));
             }
         }
         missing.extend(
-            values(function)
+            numbered_values(function)
                 .difference(&bound)
                 .map(|name| format!("{name} in {}", function.lines().next().unwrap_or(""))),
         );
@@ -49,18 +49,18 @@ fn unbound(text: &str) -> Vec<String> {
 }
 
 /// Returns the generated code or the messages as text.
-fn expanded(arguments: &str, item: &str) -> String {
+fn expanded_text(arguments: &str, item: &str) -> String {
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let emitted = expand(parse_tokens(arguments), parse_tokens(item), Path::new(""));
     format!("{}{}", emitted.tokens, emitted.text)
 }
 
 /// Returns the messages for the mechanisms of these seeds, ordered by increasing frequency.
-fn answers(seeds: std::ops::Range<u64>) -> String {
+fn messages_by_frequency(seeds: std::ops::Range<u64>) -> String {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-    for (arguments, item) in seeds.map(source::source) {
+    for (arguments, item) in seeds.map(source::random_source) {
         let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
-        for message in check(parse_tokens(&arguments), parse_tokens(&item), Path::new("")) {
+        for message in check_mechanism(parse_tokens(&arguments), parse_tokens(&item), Path::new("")) {
             *counts.entry(message.lines().next().unwrap_or_default().to_string()).or_default() += 1;
         }
     }
@@ -75,12 +75,12 @@ fn answers(seeds: std::ops::Range<u64>) -> String {
 #[test]
 fn combinations_compile_or_are_answered() {
     let (mut compiled, mut modules) = (0, String::new());
-    let all = seeds(120);
+    let all = test_seeds(120);
     for seed in all.clone() {
-        let (arguments, item) = source::source(seed);
-        let text = expanded(&arguments, &item);
+        let (arguments, item) = source::random_source(seed);
+        let text = expanded_text(&arguments, &item);
         assert!(!text.contains("Linkwork made a mistake"), "seed {seed}\n#[mechanism({arguments})]\n{item}");
-        let missing = unbound(&text);
+        let missing = unbound_values(&text);
         assert!(missing.is_empty(), "seed {seed}: {missing:?}\n#[mechanism({arguments})]\n{item}");
         if !text.contains("compile_error") {
             compiled += 1;
@@ -94,7 +94,11 @@ fn combinations_compile_or_are_answered() {
     }
     // Usually two of five mechanisms compile.
     let most = all.end - all.start;
-    assert!(4 * compiled > most, "only {compiled} of {most} compile; others are answered\n{}", answers(all));
+    assert!(
+        4 * compiled > most,
+        "only {compiled} of {most} compile; others are answered\n{}",
+        messages_by_frequency(all)
+    );
 }
 
 /// A mechanism that exceeds the capacity for expressions is always rejected because its equations are too
@@ -102,11 +106,12 @@ fn combinations_compile_or_are_answered() {
 #[test]
 fn what_is_too_long_is_answered() {
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
-    let (mut long, all) = (0, seeds(60));
+    let (mut long, all) = (0, test_seeds(60));
     for seed in all.clone() {
-        let (arguments, item) = source::source(seed);
+        let (arguments, item) = source::random_source(seed);
         let mut cx = Diagnostics::new();
-        let Some(source) = read(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx) else {
+        let Some(source) = read_source(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx)
+        else {
             continue;
         };
         for room in [40, 300 + 40 * (seed as usize % 100)] {
@@ -125,8 +130,8 @@ fn what_is_too_long_is_answered() {
 
 #[test]
 fn functions_agree_with_each_other() {
-    let all = seeds(60);
-    let compared: Vec<usize> = all.clone().map(agreement::check).collect();
+    let all = test_seeds(60);
+    let compared: Vec<usize> = all.clone().map(agreement::check_all_functions).collect();
     let (many, most) = (compared.iter().filter(|n| **n > 20).count() as u64, all.end - all.start);
     assert!(8 * many > most, "only {many} of {most} mechanisms have much to compare");
 }
@@ -138,7 +143,7 @@ fn chosen_mechanisms_agree_with_themselves() {
         let compared = agreement::check_all(arguments, &item, functions, 0);
         assert!(compared > 20, "{compared} comparisons of #[mechanism({arguments})]\n{item}");
     }
-    let item = format!("pub struct Any {{ {} }}", chosen::limbs(2, 3));
+    let item = format!("pub struct Any {{ {} }}", chosen::limbs_source(2, 3));
     let functions = ["inverse_dynamics_derivatives_into", "mass_matrix_into"];
     assert!(agreement::check_all("gravity = -9.81 * y, derivatives, packed", &item, &functions, 0) > 20);
 }
@@ -147,11 +152,11 @@ fn chosen_mechanisms_agree_with_themselves() {
 /// functions call.
 #[test]
 fn long_passive_forces_agree() {
-    let fields = chosen::springs(SPRINGS);
+    let fields = chosen::springs_source(SPRINGS);
     let item = format!("pub struct Any {{ {fields} }}");
     let functions = ["__passive_forces", "__passive_derivatives", "inverse_dynamics_derivatives"];
     assert!(agreement::check_all("gravity = -9.81 * y, derivatives", &item, &functions, 0) > 20);
-    let text = expanded("gravity = -9.81 * y, derivatives", &item);
+    let text = expanded_text("gravity = -9.81 * y, derivatives", &item);
     for row in
         ["| passive forces, called by other functions |", "| their derivatives, called by other functions |"]
     {
@@ -182,16 +187,16 @@ const BODIES: [&str; 13] = [
 #[test]
 fn bodies_compute_what_their_programs_do() {
     let mut run = BTreeSet::new();
-    for seed in seeds(8) {
-        let (arguments, item) = source::source(seed);
-        run.extend(bodies::check(&format!("{arguments}, batch"), &item, seed));
+    for seed in test_seeds(8) {
+        let (arguments, item) = source::random_source(seed);
+        run.extend(bodies::check_function_bodies(&format!("{arguments}, batch"), &item, seed));
     }
     for (arguments, fields, _) in chosen::MECHANISMS {
-        run.extend(bodies::check(arguments, &format!("pub struct Any {{ {fields} }}"), 0));
+        run.extend(bodies::check_function_bodies(arguments, &format!("pub struct Any {{ {fields} }}"), 0));
     }
-    for fields in [chosen::chain(6), chosen::limbs(4, 2)] {
+    for fields in [chosen::chain_source(6), chosen::limbs_source(4, 2)] {
         let item = format!("pub struct Any {{ {fields} }}");
-        run.extend(bodies::check("gravity = -9.81 * y, derivatives, packed", &item, 0));
+        run.extend(bodies::check_function_bodies("gravity = -9.81 * y, derivatives, packed", &item, 0));
     }
     let never: Vec<&str> = BODIES.into_iter().filter(|body| !run.contains(*body)).collect();
     assert_eq!(never, Vec::<&str>::new(), "these are not run");
@@ -201,7 +206,7 @@ fn bodies_compute_what_their_programs_do() {
 /// them are results themselves.
 #[test]
 fn sines_of_long_bodies_may_be_results() {
-    let text = expanded(
+    let text = expanded_text(
         "gravity = -9.81 * y, derivatives",
         "pub struct Any {
             mass: f64,
@@ -214,6 +219,6 @@ fn sines_of_long_bodies_may_be_results() {
         }",
     );
     assert!(!text.contains("compile_error"), "{text}");
-    assert!(values(&text).len() > 200, "bodies are not long");
-    assert_eq!(unbound(&text), Vec::<String>::new());
+    assert!(numbered_values(&text).len() > 200, "bodies are not long");
+    assert_eq!(unbound_values(&text), Vec::<String>::new());
 }

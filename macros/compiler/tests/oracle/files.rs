@@ -5,23 +5,23 @@ use crate::kane::State;
 use crate::random::Random;
 use crate::robot::Robot;
 use crate::sdf;
-use crate::seeds;
+use crate::test_seeds;
 use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::resolve::build_model;
 use linkwork_compiler::syntax::{self, Base, FileFormat, FileOptions, Inertias, InputOption, Name};
-use linkwork_compiler::{derive, import, read};
+use linkwork_compiler::{derive, import, read_source};
 use std::path::Path;
 
 const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
 /// Imports a robot file. Returns the names of its coordinates, and its generated functions.
-fn functions(robot: &Robot, format: FileFormat, text: &str) -> (Vec<String>, Output) {
+fn functions_of_file(robot: &Robot, format: FileFormat, text: &str) -> (Vec<String>, Output) {
     let mut cx = Diagnostics::new();
     let (arguments, item) = ("".parse().unwrap(), "struct Robot;".parse().unwrap());
-    let mut source = read(arguments, item, Path::new(""), &mut cx).expect("a struct");
+    let mut source = read_source(arguments, item, Path::new(""), &mut cx).expect("a struct");
     let place = source.mechanism.description.name.place.clone();
     let name_at_place = |text: &str| Name { text: text.to_string(), place: place.clone() };
     let options = FileOptions {
@@ -33,7 +33,7 @@ fn functions(robot: &Robot, format: FileFormat, text: &str) -> (Vec<String>, Out
         limits: linkwork_compiler::syntax::LimitOption::Honour,
         inertias: Inertias::Check,
         inputs: InputOption::Joints,
-        lock: robot.locked().map(name_at_place).collect(),
+        lock: robot.locked_joints().map(name_at_place).collect(),
         snap: None,
         parameters: Vec::new(),
         contacts: false,
@@ -41,11 +41,11 @@ fn functions(robot: &Robot, format: FileFormat, text: &str) -> (Vec<String>, Out
         collisions: false,
         visuals: false,
     };
-    let imported = import::import(text, Path::new(""), &options, &mut cx);
+    let imported = import::import_file(text, Path::new(""), &options, &mut cx);
     let imported = imported.unwrap_or_else(|| panic!("{:?}\n{text}", cx.messages()));
     let description = &mut source.mechanism.description;
     (description.bodies, description.joints) = (imported.bodies, imported.joints);
-    description.gravity = Some(syntax::Expr::vector(GRAVITY, &place));
+    description.gravity = Some(syntax::Expr::vector_at(GRAVITY, &place));
     let graph = Graph::new();
     let model = build_model(description, &graph, &mut cx);
     let output = model.as_ref().and_then(|model| derive(model, &mut cx));
@@ -54,7 +54,7 @@ fn functions(robot: &Robot, format: FileFormat, text: &str) -> (Vec<String>, Out
 }
 
 /// Returns the values of a function from the scalar program and from the program with lanes.
-fn values(f: &Function, [q, v, a]: &[Vec<f64>; 3], tau: &[f64]) -> Vec<Vec<f64>> {
+fn values_of_function(f: &Function, [q, v, a]: &[Vec<f64>; 3], tau: &[f64]) -> Vec<Vec<f64>> {
     let value_of_symbol = |symbol: Symbol| match Quantity::from_symbol(symbol) {
         Quantity::Configuration(k) => q[k],
         Quantity::Velocity(k) => v[k],
@@ -65,7 +65,7 @@ fn values(f: &Function, [q, v, a]: &[Vec<f64>; 3], tau: &[f64]) -> Vec<Vec<f64>>
     [Some(&f.program), f.program.simd.as_deref()]
         .into_iter()
         .flatten()
-        .map(|p| p.run(&value_of_symbol))
+        .map(|p| p.interpret_program(&value_of_symbol))
         .collect()
 }
 
@@ -84,11 +84,11 @@ struct Truth {
 }
 
 /// Computes the reference values with Kane's equations, from the partial velocities of every link.
-fn truth(robot: &Robot, [q, v, a]: &[Vec<f64>; 3]) -> Truth {
-    let pieces = robot.pieces(&State::new(q, v, a));
+fn reference_values(robot: &Robot, [q, v, a]: &[Vec<f64>; 3]) -> Truth {
+    let pieces = robot.moving_bodies(&State::new(q, v, a));
     let partial_velocities = |k: usize| {
         let unit: Vec<f64> = (0..v.len()).map(|j| f64::from(u8::from(j == k))).collect();
-        robot.pieces(&State::new(q, &unit, &vec![0.0; v.len()]))
+        robot.moving_bodies(&State::new(q, &unit, &vec![0.0; v.len()]))
     };
     let force = |k: usize| {
         pieces.iter().zip(partial_velocities(k)).map(|(p, moved)| p.inertial_force(&moved, GRAVITY).re).sum()
@@ -107,46 +107,46 @@ fn truth(robot: &Robot, [q, v, a]: &[Vec<f64>; 3]) -> Truth {
 #[test]
 fn random_files_move_as_the_format_says() {
     let mut kinds = [0; 7];
-    for seed in seeds(20) {
+    for seed in test_seeds(20) {
         let mut random = Random::new(4_000_000 + seed);
-        let robot = Robot::random(&[0, 1, 2, 3, 4, 5, 6], &mut random);
-        robot.count(&mut kinds);
-        check_file(&robot, FileFormat::Urdf, &robot.text(), seed, &mut random);
+        let robot = Robot::random_robot(&[0, 1, 2, 3, 4, 5, 6], &mut random);
+        robot.count_joint_types(&mut kinds);
+        check_file(&robot, FileFormat::Urdf, &robot.urdf_text(), seed, &mut random);
     }
-    assert!(seeds(20).end < 20 || kinds.iter().all(|count| *count >= 3), "{kinds:?}");
+    assert!(test_seeds(20).end < 20 || kinds.iter().all(|count| *count >= 3), "{kinds:?}");
 }
 
 /// Files of all versions of SDF, which use different frames for links and axes, describe the same motion.
 #[test]
 fn random_sdf_files_move_as_their_version_says() {
-    for seed in seeds(40) {
+    for seed in test_seeds(40) {
         let mut random = Random::new(4_500_000 + seed);
-        let robot = Robot::random(&sdf::OF_SDF, &mut random);
-        let text = sdf::text(&robot, &mut random);
+        let robot = Robot::random_robot(&sdf::OF_SDF, &mut random);
+        let text = sdf::sdf_text(&robot, &mut random);
         check_file(&robot, FileFormat::Sdf, &text, seed, &mut random);
     }
 }
 
 /// Compares the functions of a robot's file with Kane's equations at two states.
 fn check_file(robot: &Robot, format: FileFormat, text: &str, seed: u64, random: &mut Random) {
-    let (names, output) = functions(robot, format, text);
-    assert_eq!(names, robot.coordinates(), "{text}");
+    let (names, output) = functions_of_file(robot, format, text);
+    assert_eq!(names, robot.coordinate_names(), "{text}");
     let find_function = |name: &str| output.functions.iter().find(|f| f.name == name).expect("a function");
     for _ in 0..2 {
-        let state = robot.state(random);
-        let expected = truth(robot, &state);
+        let state = robot.random_state(random);
+        let expected = reference_values(robot, &state);
         let check_function = |name: &str, expected: &[f64]| {
-            for found in values(find_function(name), &state, &[]) {
+            for found in values_of_function(find_function(name), &state, &[]) {
                 assert_near(name, seed, &found, expected, text);
             }
         };
         check_function("inverse_dynamics", &expected.forces);
         check_function("kinetic_energy", &[expected.kinetic]);
-        if robot.links.iter().enumerate().any(|(k, _)| robot.moves(k)) {
+        if robot.links.iter().enumerate().any(|(k, _)| robot.can_move_link(k)) {
             check_function("potential_energy", &[expected.potential]);
             check_function("center_of_mass", &expected.center);
         }
-        for found in values(find_function("forward_dynamics"), &state, &expected.forces) {
+        for found in values_of_function(find_function("forward_dynamics"), &state, &expected.forces) {
             let size = state[2].iter().fold(1.0_f64, |size, a| size.max(a.abs()));
             let off = found.iter().zip(&state[2]).fold(0.0_f64, |off, (a, b)| off.max((a - b).abs()));
             assert!(off <= 1e-6 * size, "forward dynamics of {seed}: {off}\n{}", text);

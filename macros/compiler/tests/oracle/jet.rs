@@ -10,7 +10,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 pub type C = Complex<f64>;
 
 /// Returns a real number as a complex number.
-pub fn real(x: f64) -> C {
+pub fn real_number(x: f64) -> C {
     C::new(x, 0.0)
 }
 
@@ -20,8 +20,8 @@ pub struct Jet(pub [C; 3]);
 
 impl Jet {
     /// Returns the Taylor series of a constant.
-    pub fn constant(x: f64) -> Jet {
-        Jet([real(x), real(0.0), real(0.0)])
+    pub fn constant_series(x: f64) -> Jet {
+        Jet([real_number(x), real_number(0.0), real_number(0.0)])
     }
 
     /// Returns the square root of a positive series.
@@ -51,7 +51,7 @@ impl Jet {
     }
 
     /// Returns the first derivative with respect to time.
-    pub fn rate(self) -> C {
+    pub fn time_rate(self) -> C {
         self.0[1]
     }
 
@@ -97,11 +97,11 @@ pub type Matrix = [[Jet; 3]; 3];
 
 /// Returns a constant vector as Taylor series in time.
 pub fn constant_vector(v: [f64; 3]) -> Vector {
-    v.map(Jet::constant)
+    v.map(Jet::constant_series)
 }
 
 /// Returns the sum `a + b` of two vectors.
-pub fn sum(a: Vector, b: Vector) -> Vector {
+pub fn sum_of_vectors(a: Vector, b: Vector) -> Vector {
     from_fn(|i| a[i] + b[i])
 }
 
@@ -111,8 +111,8 @@ pub fn difference(a: Vector, b: Vector) -> Vector {
 }
 
 /// Returns a constant vector times a Taylor series, `s v`.
-pub fn scaled(s: Jet, v: [f64; 3]) -> Vector {
-    v.map(|x| s * Jet::constant(x))
+pub fn scaled_vector(s: Jet, v: [f64; 3]) -> Vector {
+    v.map(|x| s * Jet::constant_series(x))
 }
 
 /// Returns the dot product `a · b`.
@@ -121,36 +121,36 @@ pub fn dot(a: Vector, b: Vector) -> Jet {
 }
 
 /// Returns the product `R v` of a rotation matrix and a vector.
-pub fn rotated(r: &Matrix, v: Vector) -> Vector {
+pub fn rotated_vector(r: &Matrix, v: Vector) -> Vector {
     r.map(|row| dot(row, v))
 }
 
 /// Returns the product `A B` of two matrices.
-pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    let columns = transposed(b);
+pub fn matrix_product(a: &Matrix, b: &Matrix) -> Matrix {
+    let columns = transposed_matrix(b);
     a.map(|row| columns.map(|column| dot(row, column)))
 }
 
 /// Returns the transpose `Aᵀ` of a matrix.
-pub fn transposed(a: &Matrix) -> Matrix {
+pub fn transposed_matrix(a: &Matrix) -> Matrix {
     from_fn(|i| from_fn(|j| a[j][i]))
 }
 
 /// Returns the identity matrix with Taylor series as entries.
 pub fn identity() -> Matrix {
-    from_fn(|i| from_fn(|j| Jet::constant(if i == j { 1.0 } else { 0.0 })))
+    from_fn(|i| from_fn(|j| Jet::constant_series(if i == j { 1.0 } else { 0.0 })))
 }
 
 /// Returns the rotation about a fixed unit vector (Rodrigues' formula).
-pub fn rotation(axis: [f64; 3], angle: Jet) -> Matrix {
+pub fn rotation_about_axis(axis: [f64; 3], angle: Jet) -> Matrix {
     let (s, c) = angle.sin_cos();
-    let rest = Jet::constant(1.0) - c;
+    let rest = Jet::constant_series(1.0) - c;
     let k = constant_vector(axis);
     let cross = [[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]];
     from_fn(|i| {
         from_fn(|j| {
-            let diagonal = if i == j { c } else { Jet::constant(0.0) };
-            diagonal + rest * k[i] * k[j] + s * Jet::constant(cross[i][j])
+            let diagonal = if i == j { c } else { Jet::constant_series(0.0) };
+            diagonal + rest * k[i] * k[j] + s * Jet::constant_series(cross[i][j])
         })
     })
 }

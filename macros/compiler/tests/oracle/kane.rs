@@ -5,11 +5,12 @@
 //! 5). The oracle uses no code of the compiler.
 
 use crate::jet::{
-    C, Jet, Matrix, Vector, constant_vector, cross, difference, dot, identity, product, real, rotated,
-    rotation, scaled, sum,
+    C, Jet, Matrix, Vector, constant_vector, cross, difference, dot, identity, matrix_product, real_number,
+    rotated_vector, rotation_about_axis, scaled_vector, sum_of_vectors,
 };
 use crate::motion::{
-    Piece, Pose, complex_dot, compose, drifting, inverse, of_quaternion, spin, turning, velocity,
+    Piece, Pose, angular_motion, complex_dot, compose_poses, drifting_position, inverse, of_quaternion,
+    rotating_orientation, velocity_of_position,
 };
 use crate::spec::{Body, Element, End, Kind, Law, Path, Place, Spec};
 use std::array::from_fn;
@@ -25,7 +26,7 @@ pub struct State {
 impl State {
     /// Creates a state from real configuration, velocities and accelerations.
     pub fn new(q: &[f64], v: &[f64], a: &[f64]) -> State {
-        let complex_vector = |x: &[f64]| x.iter().map(|x| real(*x)).collect();
+        let complex_vector = |x: &[f64]| x.iter().map(|x| real_number(*x)).collect();
         State { q: complex_vector(q), v: complex_vector(v), a: complex_vector(a) }
     }
 }
@@ -38,16 +39,16 @@ struct World {
     coordinates: Vec<Vec<Jet>>,
 }
 
-fn turns(list: &[(usize, f64)]) -> Matrix {
+fn rotation_from_turns(list: &[(usize, f64)]) -> Matrix {
     list.iter().fold(identity(), |r, (axis, angle)| {
         let mut unit = [0.0; 3];
         unit[*axis] = 1.0;
-        product(&r, &rotation(unit, Jet::constant(*angle)))
+        matrix_product(&r, &rotation_about_axis(unit, Jet::constant_series(*angle)))
     })
 }
 
 fn of_place(place: &Place) -> Pose {
-    Pose { r: turns(&place.turns), p: constant_vector(place.at) }
+    Pose { r: rotation_from_turns(&place.turns), p: constant_vector(place.at) }
 }
 
 /// Returns the pose of a joint, and its coordinates that elements can act on.
@@ -57,26 +58,37 @@ fn joint_pose(body: &Body, q: &[C], v: &[C], a: &[C]) -> (Pose, Vec<Jet>) {
     let translation_pose = |p: Vector| Pose { r: identity(), p };
     let three_components = |list: &[C], k: usize| [list[k], list[k + 1], list[k + 2]];
     if body.kind == Kind::Ball {
-        return (rotation_pose(turning(q, three_components(v, 0), three_components(a, 0))), Vec::new());
+        return (
+            rotation_pose(rotating_orientation(q, three_components(v, 0), three_components(a, 0))),
+            Vec::new(),
+        );
     }
     if body.kind == Kind::Free {
         let (w, rate) = (three_components(v, 3), three_components(a, 3));
-        let r = turning(&q[3..], w, rate);
+        let r = rotating_orientation(&q[3..], w, rate);
         return (
-            Pose { r, p: drifting(q, &r, three_components(v, 0), w, three_components(a, 0)) },
+            Pose { r, p: drifting_position(q, &r, three_components(v, 0), w, three_components(a, 0)) },
             Vec::new(),
         );
     }
     let s: Vec<Jet> = (0..q.len()).map(|k| Jet([q[k], v[k], a[k] * 0.5])).collect();
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
     let pose = match body.kind {
-        Kind::Pin => rotation_pose(rotation(one, s[0])),
-        Kind::Sleeve => translation_pose(scaled(s[0], one)),
-        Kind::Screw => Pose { r: rotation(one, s[0]), p: scaled(s[0] * Jet::constant(body.pitch), one) },
-        Kind::Collar => Pose { r: rotation(one, s[1]), p: scaled(s[0], one) },
-        Kind::Slot => Pose { r: rotation(two, s[1]), p: scaled(s[0], one) },
-        Kind::Universal => rotation_pose(product(&rotation(x, s[0]), &rotation(y, s[1]))),
-        Kind::Planar => Pose { r: rotation(z, s[2]), p: sum(scaled(s[0], x), scaled(s[1], y)) },
+        Kind::Pin => rotation_pose(rotation_about_axis(one, s[0])),
+        Kind::Sleeve => translation_pose(scaled_vector(s[0], one)),
+        Kind::Screw => Pose {
+            r: rotation_about_axis(one, s[0]),
+            p: scaled_vector(s[0] * Jet::constant_series(body.pitch), one),
+        },
+        Kind::Collar => Pose { r: rotation_about_axis(one, s[1]), p: scaled_vector(s[0], one) },
+        Kind::Slot => Pose { r: rotation_about_axis(two, s[1]), p: scaled_vector(s[0], one) },
+        Kind::Universal => {
+            rotation_pose(matrix_product(&rotation_about_axis(x, s[0]), &rotation_about_axis(y, s[1])))
+        }
+        Kind::Planar => Pose {
+            r: rotation_about_axis(z, s[2]),
+            p: sum_of_vectors(scaled_vector(s[0], x), scaled_vector(s[1], y)),
+        },
         Kind::Stage => translation_pose([s[0], s[1], s[2]]),
         Kind::Ball | Kind::Free | Kind::Weld => rotation_pose(identity()),
     };
@@ -84,44 +96,44 @@ fn joint_pose(body: &Body, q: &[C], v: &[C], a: &[C]) -> (Pose, Vec<Jet>) {
 }
 
 /// Returns the numbers of configuration coordinates and of velocities.
-pub fn sizes(spec: &Spec) -> (usize, usize) {
+pub fn coordinate_and_velocity_counts(spec: &Spec) -> (usize, usize) {
     spec.bodies.iter().fold((0, 0), |(nq, nv), body| {
-        let (q, v) = body.kind.sizes();
+        let (q, v) = body.kind.coordinate_and_velocity_counts();
         let own = usize::from(body.slider.is_some());
         (nq + q + own, nv + v + own)
     })
 }
 
-fn world(spec: &Spec, state: &State) -> World {
+fn world_of_state(spec: &Spec, state: &State) -> World {
     let mut world = World { poses: Vec::new(), pieces: Vec::new(), coordinates: Vec::new() };
     let (mut q0, mut v0) = (0, 0);
     for body in &spec.bodies {
-        let (nq, nv) = body.kind.sizes();
+        let (nq, nv) = body.kind.coordinate_and_velocity_counts();
         let (motion, coordinates) =
             joint_pose(body, &state.q[q0..q0 + nq], &state.v[v0..v0 + nv], &state.a[v0..v0 + nv]);
         (q0, v0) = (q0 + nq, v0 + nv);
         let parent = body.parent.map_or(Pose::identity(), |k| world.poses[k]);
-        let carried = compose(&compose(&parent, &of_place(&body.on_parent)), &motion);
-        let pose = compose(&carried, &inverse(&of_place(&body.on_child)));
+        let carried = compose_poses(&compose_poses(&parent, &of_place(&body.on_parent)), &motion);
+        let pose = compose_poses(&carried, &inverse(&of_place(&body.on_child)));
         world.pieces.push(Piece {
             mass: body.mass,
-            inertia: inertia(body),
+            inertia: inertia_in_body_axes(body),
             r: pose.r,
-            p: sum(pose.p, rotated(&pose.r, constant_vector(body.com))),
+            p: sum_of_vectors(pose.p, rotated_vector(&pose.r, constant_vector(body.com))),
         });
         let mut particle = |mass: f64, p: Vector| {
             world.pieces.push(Piece { mass, inertia: [[0.0; 3]; 3], r: identity(), p });
         };
         if let Some((mass, at)) = body.particle {
-            particle(mass, sum(pose.p, rotated(&pose.r, constant_vector(at))));
+            particle(mass, sum_of_vectors(pose.p, rotated_vector(&pose.r, constant_vector(at))));
         }
         if let Some(slider) = &body.slider {
             let s = Jet([state.q[q0], state.v[v0], state.a[v0] * 0.5]);
             (q0, v0) = (q0 + 1, v0 + 1);
             let [x, y, z] = slider.offset;
-            let mut p = sum(pose.p, rotated(&pose.r, constant_vector([y, z, 0.0])));
+            let mut p = sum_of_vectors(pose.p, rotated_vector(&pose.r, constant_vector([y, z, 0.0])));
             p[0] = p[0] + s;
-            p[1] = p[1] + Jet::constant(x);
+            p[1] = p[1] + Jet::constant_series(x);
             particle(slider.mass, p);
         }
         world.poses.push(pose);
@@ -131,42 +143,46 @@ fn world(spec: &Spec, state: &State) -> World {
 }
 
 /// Returns the inertia matrix `R diag(moments) Rᵀ` of a body, from its principal moments and axes.
-fn inertia(body: &Body) -> [[f64; 3]; 3] {
-    let r = turns(&body.inertia_turns);
+fn inertia_in_body_axes(body: &Body) -> [[f64; 3]; 3] {
+    let r = rotation_from_turns(&body.inertia_turns);
     from_fn(|i| from_fn(|j| (0..3).map(|k| r[i][k].0[0].re * body.moments[k] * r[j][k].0[0].re).sum()))
 }
 
-fn point(world: &World, end: &End) -> Vector {
+fn position_of_end(world: &World, end: &End) -> Vector {
     match end.body {
         None => constant_vector(end.at),
-        Some(k) => sum(world.poses[k].p, rotated(&world.poses[k].r, constant_vector(end.at))),
+        Some(k) => {
+            sum_of_vectors(world.poses[k].p, rotated_vector(&world.poses[k].r, constant_vector(end.at)))
+        }
     }
 }
 
-fn distance(world: &World, a: &End, b: &End) -> Jet {
-    let d = difference(point(world, a), point(world, b));
+fn distance_between_ends(world: &World, a: &End, b: &End) -> Jet {
+    let d = difference(position_of_end(world, a), position_of_end(world, b));
     dot(d, d).sqrt()
 }
 
 fn length(world: &World, path: &Path) -> Jet {
     match path {
-        Path::Rope([a, b, c]) => distance(world, a, b) + distance(world, b, c),
-        Path::Cable { ends, around, radius, axis } => cable(world, ends, around, *radius, *axis),
+        Path::Rope([a, b, c]) => distance_between_ends(world, a, b) + distance_between_ends(world, b, c),
+        Path::Cable { ends, around, radius, axis } => cable_length(world, ends, around, *radius, *axis),
     }
 }
 
 /// Returns the ends of a cable relative to the centre of its obstacle, projected on the plane normal to the
 /// axis, and the distance between the ends along the axis.
-fn across(
+fn ends_across_obstacle(
     world: &World,
     ends: &[End; 2],
     around: &End,
     axis: Option<[f64; 3]>,
 ) -> ([Vector; 2], Jet, Option<Vector>) {
-    let middle = point(world, around);
-    let from = ends.each_ref().map(|end| difference(point(world, end), middle));
-    let Some(axis) = axis else { return (from, Jet::constant(0.0), None) };
-    let n = around.body.map_or(constant_vector(axis), |k| rotated(&world.poses[k].r, constant_vector(axis)));
+    let middle = position_of_end(world, around);
+    let from = ends.each_ref().map(|end| difference(position_of_end(world, end), middle));
+    let Some(axis) = axis else { return (from, Jet::constant_series(0.0), None) };
+    let n = around
+        .body
+        .map_or(constant_vector(axis), |k| rotated_vector(&world.poses[k].r, constant_vector(axis)));
     let heights = from.map(|p| dot(p, n));
     let normal_component_of_end = |k: usize| difference(from[k], n.map(|x| x * heights[k]));
     ([normal_component_of_end(0), normal_component_of_end(1)], heights[1] - heights[0], Some(n))
@@ -174,17 +190,17 @@ fn across(
 
 /// Returns the length of a taut cable. In the plane normal to the axis, or in the plane of the ends and the
 /// centre of a ball, the cable is straight on the unrolled surface.
-fn cable(world: &World, ends: &[End; 2], around: &End, radius: f64, axis: Option<[f64; 3]>) -> Jet {
-    let ([a, b], rise, n) = across(world, ends, around, axis);
+fn cable_length(world: &World, ends: &[End; 2], around: &End, radius: f64, axis: Option<[f64; 3]>) -> Jet {
+    let ([a, b], rise, n) = ends_across_obstacle(world, ends, around, axis);
     let normal = cross(a, b);
     let angle = match n {
         None => Jet::atan2(dot(normal, normal).sqrt(), dot(a, b)),
         Some(n) => Jet::atan2(dot(normal, n), dot(a, b)),
     };
     let turn = if angle.0[0].re < 0.0 { 2.0 * std::f64::consts::PI } else { 0.0 };
-    let r = Jet::constant(radius);
+    let r = Jet::constant_series(radius);
     let tangents = [a, b].map(|p| (dot(p, p) - r * r).sqrt());
-    let arc = angle + Jet::constant(turn) - Jet::atan2(tangents[0], r) - Jet::atan2(tangents[1], r);
+    let arc = angle + Jet::constant_series(turn) - Jet::atan2(tangents[0], r) - Jet::atan2(tangents[1], r);
     let level = if arc.0[0].re > 0.0 {
         tangents[0] + tangents[1] + r * arc
     } else {
@@ -204,85 +220,95 @@ pub enum Measure {
 }
 
 /// Returns the value of a measure at a state, with its first and second rates.
-pub fn measured(spec: &Spec, state: &State, measure: &Measure) -> Jet {
-    let world = world(spec, state);
+pub fn value_of_measure(spec: &Spec, state: &State, measure: &Measure) -> Jet {
+    let world = world_of_state(spec, state);
     match measure {
-        Measure::Coordinates(list) => list.iter().fold(Jet::constant(0.0), |sum, (factor, body, k)| {
-            sum + Jet::constant(*factor) * world.coordinates[*body][*k]
-        }),
-        Measure::Way(a, b, axis) => difference(point(&world, a), point(&world, b))[*axis],
+        Measure::Coordinates(list) => {
+            list.iter().fold(Jet::constant_series(0.0), |sum, (factor, body, k)| {
+                sum + Jet::constant_series(*factor) * world.coordinates[*body][*k]
+            })
+        }
+        Measure::Way(a, b, axis) => difference(position_of_end(&world, a), position_of_end(&world, b))[*axis],
     }
 }
 
 /// Returns whether the ends of all cables are outside the balls and cylinders that the cables wrap around.
 pub fn cables_are_outside(spec: &Spec, q: &[f64]) -> bool {
-    let (_, nv) = sizes(spec);
-    let world = world(spec, &State::new(q, &vec![0.0; nv], &vec![0.0; nv]));
+    let (_, nv) = coordinate_and_velocity_counts(spec);
+    let world = world_of_state(spec, &State::new(q, &vec![0.0; nv], &vec![0.0; nv]));
     spec.elements.iter().all(|element| match element {
         Element::Along(_, Path::Cable { ends, around, radius, axis }) => {
-            let (ends, ..) = across(&world, ends, around, *axis);
+            let (ends, ..) = ends_across_obstacle(&world, ends, around, *axis);
             ends.iter().all(|p| dot(*p, *p).0[0].re > 1.1 * radius * radius)
         }
         _ => true,
     })
 }
 
-fn tension(law: Law, length: Jet) -> C {
+fn tension_of_law(law: Law, length: Jet) -> C {
     match law {
         Law::Attraction(k) => (length.0[0] * length.0[0]).inv() * k,
         Law::Friction(f) => {
-            let v = length.rate();
+            let v = length.time_rate();
             let peak = (-(v * v) / (f.stribeck_speed * f.stribeck_speed)).exp() * (f.stiction - f.coulomb);
             (peak + f.coulomb) * (v / f.speed).tanh() + v * f.viscous
         }
         Law::Spring(k, free) => (length.0[0] - free) * k,
-        Law::Dashpot(c) => length.rate() * c,
+        Law::Dashpot(c) => length.time_rate() * c,
         Law::Inerter(b) => length.second_rate() * b,
     }
 }
 
 /// Returns `τ = M a + h` as the sum over all masses and forces.
 pub fn inverse_dynamics(spec: &Spec, state: &State) -> Vec<C> {
-    let now = world(spec, state);
+    let now = world_of_state(spec, state);
     let nv = state.v.len();
     (0..nv)
         .map(|k| {
-            let mut unit = State { q: state.q.clone(), v: vec![real(0.0); nv], a: vec![real(0.0); nv] };
-            unit.v[k] = real(1.0);
-            generalized(spec, &now, &world(spec, &unit))
+            let mut unit =
+                State { q: state.q.clone(), v: vec![real_number(0.0); nv], a: vec![real_number(0.0); nv] };
+            unit.v[k] = real_number(1.0);
+            generalized_force(spec, &now, &world_of_state(spec, &unit))
         })
         .collect()
 }
 
 /// Returns the power `λᵀ τ` of the forces `τ` for velocities `λ`.
-pub fn power(spec: &Spec, state: &State, lambda: &[f64]) -> C {
-    let rates = lambda.iter().map(|x| real(*x)).collect();
-    let partial = State { q: state.q.clone(), v: rates, a: vec![real(0.0); lambda.len()] };
-    generalized(spec, &world(spec, state), &world(spec, &partial))
+pub fn power_of_forces(spec: &Spec, state: &State, lambda: &[f64]) -> C {
+    let rates = lambda.iter().map(|x| real_number(*x)).collect();
+    let partial = State { q: state.q.clone(), v: rates, a: vec![real_number(0.0); lambda.len()] };
+    generalized_force(spec, &world_of_state(spec, state), &world_of_state(spec, &partial))
 }
 
 /// Returns the generalized force for one generalized speed. `partial` is the motion in which only this
 /// generalized speed is nonzero, with the value one.
-fn generalized(spec: &Spec, now: &World, partial: &World) -> C {
-    let mut tau = real(0.0);
+fn generalized_force(spec: &Spec, now: &World, partial: &World) -> C {
+    let mut tau = real_number(0.0);
     for (piece, moved) in now.pieces.iter().zip(&partial.pieces) {
         tau += piece.inertial_force(moved, spec.gravity);
     }
     for element in &spec.elements {
         tau += match element {
             Element::Between(law, a, b) => {
-                tension(*law, distance(now, a, b)) * distance(partial, a, b).rate()
+                tension_of_law(*law, distance_between_ends(now, a, b))
+                    * distance_between_ends(partial, a, b).time_rate()
             }
-            Element::Along(law, path) => tension(*law, length(now, path)) * length(partial, path).rate(),
+            Element::Along(law, path) => {
+                tension_of_law(*law, length(now, path)) * length(partial, path).time_rate()
+            }
             Element::On(law, body, k) => {
-                tension(*law, now.coordinates[*body][*k]) * partial.coordinates[*body][*k].rate()
+                tension_of_law(*law, now.coordinates[*body][*k]) * partial.coordinates[*body][*k].time_rate()
             }
-            Element::Push(end, force) => -complex_dot(force.map(real), velocity(point(partial, end))),
-            Element::Twist(body, torque) => -complex_dot(torque.map(real), spin(&partial.poses[*body].r).0),
+            Element::Push(end, force) => {
+                -complex_dot(force.map(real_number), velocity_of_position(position_of_end(partial, end)))
+            }
+            Element::Twist(body, torque) => {
+                -complex_dot(torque.map(real_number), angular_motion(&partial.poses[*body].r).0)
+            }
             Element::Follow(end, force) => {
                 let r = &now.poses[end.body.unwrap_or(0)].r;
                 let force: [C; 3] = from_fn(|i| (0..3).map(|j| r[i][j].0[0] * force[j]).sum());
-                -complex_dot(force, velocity(point(partial, end)))
+                -complex_dot(force, velocity_of_position(position_of_end(partial, end)))
             }
         };
     }
@@ -293,7 +319,7 @@ fn generalized(spec: &Spec, now: &World, partial: &World) -> C {
 pub fn mass_and_bias(spec: &Spec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
     let nv = v.len();
     let state_with_velocity = |v: &[C], a: Vec<C>| State { q: q.to_vec(), v: v.to_vec(), a };
-    let zero = vec![real(0.0); nv];
+    let zero = vec![real_number(0.0); nv];
     let bias = inverse_dynamics(spec, &state_with_velocity(v, zero.clone()));
     // The mass matrix is computed without forces at rest. Subtracting forces would leave rounding errors.
     let is_inerter = |element: &&Element| {
@@ -307,7 +333,7 @@ pub fn mass_and_bias(spec: &Spec, q: &[C], v: &[C]) -> (Vec<Vec<C>>, Vec<C>) {
     let columns = (0..nv)
         .map(|k| {
             let mut a = zero.clone();
-            a[k] = real(1.0);
+            a[k] = real_number(1.0);
             inverse_dynamics(&unloaded, &state_with_velocity(&zero, a))
         })
         .collect();
@@ -322,12 +348,12 @@ pub fn imaginary_step(spec: &Spec, q: &[C], k: usize, h: f64) -> Vec<C> {
 
 /// Returns the point with parameter `h` of a curve on the configuration manifold that starts at `q` with
 /// these velocities.
-pub fn displaced(spec: &Spec, q: &[C], rates: &[f64], h: f64) -> Vec<C> {
-    let step_coordinate = |q: Vec<C>, (k, rate): (usize, &f64)| step(spec, &q, k, real(rate * h));
+pub fn displaced_configuration(spec: &Spec, q: &[C], rates: &[f64], h: f64) -> Vec<C> {
+    let step_coordinate = |q: Vec<C>, (k, rate): (usize, &f64)| step(spec, &q, k, real_number(rate * h));
     let mut q = rates.iter().enumerate().fold(q.to_vec(), step_coordinate);
     let mut first = 0;
     for body in &spec.bodies {
-        let (own, _) = body.kind.sizes();
+        let (own, _) = body.kind.coordinate_and_velocity_counts();
         if own >= 4 {
             let quaternion = &mut q[first + own - 4..first + own];
             let length = quaternion.iter().map(|x| x * x).sum::<C>().sqrt();
@@ -344,7 +370,7 @@ fn step(spec: &Spec, q: &[C], k: usize, h: C) -> Vec<C> {
     let mut stepped = q.to_vec();
     let (mut q0, mut v0) = (0, 0);
     for body in &spec.bodies {
-        let (nq, nv) = body.kind.sizes();
+        let (nq, nv) = body.kind.coordinate_and_velocity_counts();
         if (v0..v0 + nv).contains(&k) {
             step_joint(body.kind, &mut stepped[q0..q0 + nq], k - v0, h);
         }
@@ -361,18 +387,18 @@ fn step(spec: &Spec, q: &[C], k: usize, h: C) -> Vec<C> {
 
 fn step_joint(kind: Kind, q: &mut [C], k: usize, h: C) {
     match (kind, k) {
-        (Kind::Ball, _) => turn(q, k, h),
+        (Kind::Ball, _) => rotate_quaternion(q, k, h),
         (Kind::Free, 0..3) => {
             let r = of_quaternion(&q[3..]);
             (0..3).for_each(|i| q[i] += r[i][k] * h);
         }
-        (Kind::Free, _) => turn(&mut q[3..], k - 3, h),
+        (Kind::Free, _) => rotate_quaternion(&mut q[3..], k - 3, h),
         _ => q[k] += h,
     }
 }
 
 /// Rotates a quaternion: `q ⊗ (e h / 2, 1)`.
-fn turn(q: &mut [C], k: usize, h: C) {
+fn rotate_quaternion(q: &mut [C], k: usize, h: C) {
     let (x, y, z, w) = (q[0], q[1], q[2], q[3]);
     let rate = [[w, z, -y, -x], [-z, w, x, -y], [y, -x, w, -z]][k];
     (0..4).for_each(|i| q[i] += rate[i] * h * 0.5);

@@ -24,11 +24,11 @@ mod sites;
 mod spec;
 mod words;
 
-use spec::{Style, spec};
+use spec::{Style, random_spec};
 
 /// Returns the seeds of a test. The variable `LINKWORK_ORACLE` replaces their number by `20000`, or their
 /// range by `400..405`.
-fn seeds(usual: u64) -> std::ops::Range<u64> {
+fn test_seeds(usual: u64) -> std::ops::Range<u64> {
     let asked = std::env::var("LINKWORK_ORACLE").unwrap_or_default();
     let (from, to) = asked.split_once("..").unwrap_or(("0", &asked));
     from.parse().unwrap_or(0)..to.parse().unwrap_or(usual)
@@ -38,52 +38,52 @@ const PLAIN: Style = Style { bodies: 6, limbs: 0, decades: 0.3, noise: None };
 
 #[test]
 fn random_trees_obey_kanes_equations() {
-    for seed in seeds(40) {
-        programs::check(&spec(seed, PLAIN), seed);
+    for seed in test_seeds(40) {
+        programs::check_mechanism(&random_spec(seed, PLAIN), seed);
     }
 }
 
 #[test]
 fn random_limbs_obey_kanes_equations() {
-    for seed in seeds(20) {
+    for seed in test_seeds(20) {
         let limbs = 2 + seed as usize % 4;
-        programs::check(&spec(1_000_000 + seed, Style { limbs, ..PLAIN }), seed);
+        programs::check_mechanism(&random_spec(1_000_000 + seed, Style { limbs, ..PLAIN }), seed);
     }
 }
 
 #[test]
 fn masses_over_twelve_powers_of_ten_obey_kanes_equations() {
-    for seed in seeds(30) {
-        programs::check(&spec(2_000_000 + seed, Style { decades: 6.0, ..PLAIN }), seed);
+    for seed in test_seeds(30) {
+        programs::check_mechanism(&random_spec(2_000_000 + seed, Style { decades: 6.0, ..PLAIN }), seed);
     }
 }
 
 /// Identical limbs with small deviations of masses and angles.
 #[test]
 fn limbs_of_all_masses_and_angles_with_noise_obey_kanes_equations() {
-    for seed in seeds(20) {
+    for seed in test_seeds(20) {
         let noise = (seed % 2 == 0).then(|| 10.0_f64.powi(-16 + (seed % 14) as i32));
         let limbs = 2 + seed as usize % 4;
         // Heavy limbs on a light trunk differ more in their moments of inertia about the trunk's joint than
         // in their masses. Masses that are smaller than the others by thirteen powers of ten are treated as
         // zero.
         let style = Style { limbs, decades: 5.5, noise, ..PLAIN };
-        programs::check(&spec(4_000_000 + seed, style), seed);
+        programs::check_mechanism(&random_spec(4_000_000 + seed, style), seed);
     }
 }
 
 #[test]
 fn driven_mechanisms_obey_kanes_equations() {
-    let all = seeds(40);
-    let checked = all.clone().filter(|seed| driven::check(*seed)).count();
+    let all = test_seeds(40);
+    let checked = all.clone().filter(|seed| driven::check_driven_mechanism(*seed)).count();
     assert!(checked > 0 || all.count() < 40);
 }
 
 #[test]
 fn angles_with_noise_obey_kanes_equations() {
-    for seed in seeds(30) {
+    for seed in test_seeds(30) {
         let noise = 10.0_f64.powi(-16 + (seed % 14) as i32);
         let style = Style { bodies: 8, noise: Some(noise), ..PLAIN };
-        programs::check(&spec(3_000_000 + seed, style), seed);
+        programs::check_mechanism(&random_spec(3_000_000 + seed, style), seed);
     }
 }

@@ -2,7 +2,8 @@
 //! axes.
 
 use crate::jet::{
-    C, Jet, Matrix, Vector, constant_vector, cross, identity, product, real, rotated, sum, transposed,
+    C, Jet, Matrix, Vector, constant_vector, cross, identity, matrix_product, real_number, rotated_vector,
+    sum_of_vectors, transposed_matrix,
 };
 use std::array::from_fn;
 
@@ -43,35 +44,35 @@ impl Piece {
     /// Returns the generalized inertial force, including gravity, for the partial velocity of `moved`.
     pub fn inertial_force(&self, moved: &Piece, gravity: [f64; 3]) -> C {
         let force: [C; 3] = from_fn(|i| (self.p[i].second_rate() - gravity[i]) * self.mass);
-        let (w, alpha) = spin(&self.r);
+        let (w, alpha) = angular_motion(&self.r);
         let (first, second) = (self.turned_inertia(alpha), cross(w, self.turned_inertia(w)));
         let torque: [C; 3] = from_fn(|i| first[i] + second[i]);
-        complex_dot(force, velocity(moved.p)) + complex_dot(torque, spin(&moved.r).0)
+        complex_dot(force, velocity_of_position(moved.p)) + complex_dot(torque, angular_motion(&moved.r).0)
     }
 
     /// Returns the kinetic energy of the body.
     pub fn kinetic_energy(&self) -> C {
-        let (v, (w, _)) = (velocity(self.p), spin(&self.r));
+        let (v, (w, _)) = (velocity_of_position(self.p), angular_motion(&self.r));
         (complex_dot(v, v) * self.mass + complex_dot(w, self.turned_inertia(w))) * 0.5
     }
 }
 
 /// Composes two poses; `b` is relative to `a`.
-pub fn compose(a: &Pose, b: &Pose) -> Pose {
-    Pose { r: product(&a.r, &b.r), p: sum(a.p, rotated(&a.r, b.p)) }
+pub fn compose_poses(a: &Pose, b: &Pose) -> Pose {
+    Pose { r: matrix_product(&a.r, &b.r), p: sum_of_vectors(a.p, rotated_vector(&a.r, b.p)) }
 }
 
 /// Returns the inverse pose.
 pub fn inverse(pose: &Pose) -> Pose {
-    let r = transposed(&pose.r);
-    Pose { r, p: rotated(&r, pose.p).map(|x| -x) }
+    let r = transposed_matrix(&pose.r);
+    Pose { r, p: rotated_vector(&r, pose.p).map(|x| -x) }
 }
 
 /// Returns the rotation matrix of a quaternion (x, y, z, w).
 pub fn of_quaternion(q: &[C]) -> [[C; 3]; 3] {
     let (x, y, z, w) = (q[0], q[1], q[2], q[3]);
-    let two = real(2.0);
-    let one = real(1.0);
+    let two = real_number(2.0);
+    let one = real_number(1.0);
     [
         [one - two * (y * y + z * z), two * (x * y - z * w), two * (x * z + y * w)],
         [two * (x * y + z * w), one - two * (x * x + z * z), two * (y * z - x * w)],
@@ -81,10 +82,10 @@ pub fn of_quaternion(q: &[C]) -> [[C; 3]; 3] {
 
 /// Returns `R (1 + [w] t + ([w'] + [w]²) t²/2)`: an orientation that rotates with angular velocity `w` and
 /// its rate in body axes.
-pub fn turning(q: &[C], w: [C; 3], rate: [C; 3]) -> Matrix {
+pub fn rotating_orientation(q: &[C], w: [C; 3], rate: [C; 3]) -> Matrix {
     let r0 = of_quaternion(q);
     let skew = |w: [C; 3]| {
-        let o = real(0.0);
+        let o = real_number(0.0);
         [[o, -w[2], w[1]], [w[2], o, -w[0]], [-w[1], w[0], o]]
     };
     let (k, l) = (skew(w), skew(rate));
@@ -103,7 +104,7 @@ pub fn turning(q: &[C], w: [C; 3], rate: [C; 3]) -> Matrix {
 }
 
 /// Returns a position that moves with a velocity in body axes.
-pub fn drifting(p: &[C], r: &Matrix, v: [C; 3], w: [C; 3], rate: [C; 3]) -> Vector {
+pub fn drifting_position(p: &[C], r: &Matrix, v: [C; 3], w: [C; 3], rate: [C; 3]) -> Vector {
     let spin = cross(w, v);
     from_fn(|i| {
         let first: C = (0..3).map(|j| r[i][j].0[0] * v[j]).sum();
@@ -114,7 +115,7 @@ pub fn drifting(p: &[C], r: &Matrix, v: [C; 3], w: [C; 3], rate: [C; 3]) -> Vect
 
 /// Returns the angular velocity and angular acceleration of a rotation matrix in ground axes, from `R' Rᵀ`
 /// and its time derivative.
-pub fn spin(r: &Matrix) -> ([C; 3], [C; 3]) {
+pub fn angular_motion(r: &Matrix) -> ([C; 3], [C; 3]) {
     let sum_of_derivative_products = |order: (usize, usize), i: usize, j: usize| -> C {
         (0..3).map(|k| r[i][k].0[order.0] * r[j][k].0[order.1]).sum()
     };
@@ -134,8 +135,8 @@ pub fn spin(r: &Matrix) -> ([C; 3], [C; 3]) {
 }
 
 /// Returns the velocity, which is the first derivative of a position series.
-pub fn velocity(p: Vector) -> [C; 3] {
-    p.map(Jet::rate)
+pub fn velocity_of_position(p: Vector) -> [C; 3] {
+    p.map(Jet::time_rate)
 }
 
 /// Returns `a · b` of complex vectors, without conjugation.

@@ -1,6 +1,6 @@
 //! Comparison of the generated programs with the oracle.
 
-use crate::jet::{C, real};
+use crate::jet::{C, real_number};
 use crate::kane::{self, State};
 use crate::random::Random;
 use crate::spec::Spec;
@@ -10,7 +10,7 @@ use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{Quantity, Supplied};
-use linkwork_compiler::{compile, read};
+use linkwork_compiler::{compile, read_source};
 use std::path::Path;
 
 /// Maximum difference, relative to the terms whose sum a result is.
@@ -34,16 +34,17 @@ struct Point {
 
 impl Point {
     fn new(spec: &Spec, seed: u64) -> Point {
-        let (nq, nv) = kane::sizes(spec);
+        let (nq, nv) = kane::coordinate_and_velocity_counts(spec);
         let mut random = Random::new(seed ^ 0x5eed);
-        let mut list = |n: usize, bound: f64| -> Vec<f64> { (0..n).map(|_| random.uniform(bound)).collect() };
+        let mut list =
+            |n: usize, bound: f64| -> Vec<f64> { (0..n).map(|_| random.uniform_number(bound)).collect() };
         let (mut q, v, a, tau) = (list(nq, 1.5), list(nv, 1.0), list(nv, 2.0), list(nv, 3.0));
         let (lambda, along) = (list(nv, 1.0), [list(nv, 0.5), list(nv, 0.5), list(nv, 0.5)]);
         let mut first = 0;
         for body in &spec.bodies {
-            let (own, _) = body.kind.sizes();
+            let (own, _) = body.kind.coordinate_and_velocity_counts();
             if own >= 4 {
-                normalise(&mut q[first + own - 4..first + own]);
+                normalise_quaternion(&mut q[first + own - 4..first + own]);
             }
             first += own + usize::from(body.slider.is_some());
         }
@@ -51,13 +52,13 @@ impl Point {
     }
 }
 
-fn normalise(q: &mut [f64]) {
+fn normalise_quaternion(q: &mut [f64]) {
     let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
     q.iter_mut().for_each(|x| *x /= length);
 }
 
 /// Compiles a mechanism and compares every function of its dynamics with the oracle.
-pub fn check(spec: &Spec, seed: u64) {
+pub fn check_mechanism(spec: &Spec, seed: u64) {
     let point = Point::new(spec, seed);
     // The length of a cable that starts inside its obstacle is undefined.
     if !kane::cables_are_outside(spec, &point.q) {
@@ -66,23 +67,23 @@ pub fn check(spec: &Spec, seed: u64) {
     // With inerters on cables around cylinders, second derivatives may be too long.
     let checked = check_with(spec, ", second_derivatives", &point, seed)
         || check_with(spec, ", derivatives", &point, seed);
-    assert!(checked || kane::sizes(spec).1 > 40, "seed {seed}");
+    assert!(checked || kane::coordinate_and_velocity_counts(spec).1 > 40, "seed {seed}");
 }
 
 /// Compares the functions of a mechanism, with the derivatives of the option `word`, with the oracle. Returns
 /// false if the derivatives are too long.
 fn check_with(spec: &Spec, word: &str, point: &Point, seed: u64) -> bool {
-    let (arguments, item) = words::source(spec, "Random", word);
+    let (arguments, item) = words::mechanism_source(spec, "Random", word);
     let parse_tokens = |text: &str| text.parse().expect("the generated source is Rust");
     let mut cx = Diagnostics::new();
     let graph = Graph::new();
-    let source = read(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
+    let source = read_source(parse_tokens(&arguments), parse_tokens(&item), Path::new(""), &mut cx);
     let compiled = source.as_ref().and_then(|source| compile(source, &graph, &mut cx));
     let Some((model, output)) = compiled else {
         assert!(graph.is_full(), "seed {seed}: {}\n{arguments}\n{item}", cx.messages().join("\n"));
         return false;
     };
-    assert_eq!((model.nq(), model.nv()), kane::sizes(spec), "seed {seed}\n{item}");
+    assert_eq!((model.nq(), model.nv()), kane::coordinate_and_velocity_counts(spec), "seed {seed}\n{item}");
     let case = Case { spec, output: &output, point, name: format!("seed {seed}\n{arguments}\n{item}") };
     case.check_dynamics();
     case.check_derivatives();
@@ -102,7 +103,7 @@ struct Case<'a> {
 
 impl Case<'_> {
     /// Returns the results of a function, from its scalar program and from its program with lanes.
-    fn run(&self, name: &str) -> Vec<Vec<f64>> {
+    fn run_function(&self, name: &str) -> Vec<Vec<f64>> {
         let function: &Function = self
             .output
             .functions
@@ -120,8 +121,8 @@ impl Case<'_> {
         };
         // The results of called functions are inputs of their callers.
         let called = Called::ALL.map(|called| {
-            let function = self.output.functions.iter().find(|f| f.name == called.function());
-            function.map_or_else(Vec::new, |f| f.program.run(&value_of_symbol))
+            let function = self.output.functions.iter().find(|f| f.name == called.function_name());
+            function.map_or_else(Vec::new, |f| f.program.interpret_program(&value_of_symbol))
         });
         let symbol_value = |s| match Quantity::from_symbol(s) {
             Quantity::PassiveForce(k) => called[0][k],
@@ -129,11 +130,15 @@ impl Case<'_> {
             _ => value_of_symbol(s),
         };
         let program = &function.program;
-        [Some(program), program.simd.as_deref()].into_iter().flatten().map(|p| p.run(&symbol_value)).collect()
+        [Some(program), program.simd.as_deref()]
+            .into_iter()
+            .flatten()
+            .map(|p| p.interpret_program(&symbol_value))
+            .collect()
     }
 
-    fn close(&self, what: &str, expected: &[f64], scale: f64) {
-        for actual in self.run(what) {
+    fn assert_close_entries(&self, what: &str, expected: &[f64], scale: f64) {
+        for actual in self.run_function(what) {
             assert_eq!(actual.len(), expected.len(), "{what} of {}", self.name);
             for (k, (a, b)) in actual.iter().zip(expected).enumerate() {
                 assert!(
@@ -153,19 +158,19 @@ impl Case<'_> {
         let bias: Vec<f64> = bias.iter().map(|x| x.re).collect();
         let largest_magnitude = |list: &[f64]| list.iter().fold(1e-300_f64, |m, x| m.max(x.abs()));
         let (heavy, strong) = (largest_magnitude(&mass), largest_magnitude(&bias));
-        self.close("mass_matrix", &mass, heavy);
-        self.close("bias_forces", &bias, heavy + strong);
+        self.assert_close_entries("mass_matrix", &mass, heavy);
+        self.assert_close_entries("bias_forces", &bias, heavy + strong);
         let forces: Vec<f64> = kane::inverse_dynamics(self.spec, &state).iter().map(|x| x.re).collect();
-        self.close("inverse_dynamics", &forces, heavy * 2.0 + strong);
+        self.assert_close_entries("inverse_dynamics", &forces, heavy * 2.0 + strong);
         let nv = v.len();
         let kinetic: f64 = (0..nv)
             .flat_map(|i| (0..nv).map(move |j| (i, j)))
             .map(|(i, j)| 0.5 * v[i] * mass[j * nv + i] * v[j])
             .sum();
-        self.close("kinetic_energy", &[kinetic], heavy);
+        self.assert_close_entries("kinetic_energy", &[kinetic], heavy);
         // The error of accelerations is measured by the residual force of each row, relative to the terms of
         // its sum.
-        for actual in self.run("forward_dynamics") {
+        for actual in self.run_function("forward_dynamics") {
             for i in 0..nv {
                 let terms: Vec<f64> = (0..nv).map(|j| mass[j * nv + i] * actual[j]).collect();
                 let size: f64 =
@@ -194,11 +199,11 @@ impl Case<'_> {
         }
         for k in 0..nv {
             let mut stepped = state.clone();
-            stepped.v[k] = real(v[k]) + C::new(0.0, STEP);
+            stepped.v[k] = real_number(v[k]) + C::new(0.0, STEP);
             expected.extend(imaginary_parts_over_step(kane::inverse_dynamics(self.spec, &stepped)));
         }
         let scale = expected.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
-        self.close("inverse_dynamics_derivatives", &expected, scale);
+        self.assert_close_entries("inverse_dynamics_derivatives", &expected, scale);
     }
 
     /// Compares the product of second derivatives and a direction with sixth-order differences along it of
@@ -206,16 +211,18 @@ impl Case<'_> {
     fn check_second_derivatives(&self) {
         let Point { q, v, a, lambda, along, .. } = &self.point;
         let (nv, state) = (v.len(), State::new(q, v, a));
-        let expected: Vec<f64> = (0..3 * nv).map(|entry| self.mixed(&state, entry, 0.5 * H)).collect();
+        let expected: Vec<f64> =
+            (0..3 * nv).map(|entry| self.mixed_derivative(&state, entry, 0.5 * H)).collect();
         // Halving the step changes the result by about 64 times the remaining error. The error is large if
         // points connected by a spring nearly coincide.
-        let doubt = (0..3 * nv).map(|entry| (self.mixed(&state, entry, H) - expected[entry]).abs());
+        let doubt =
+            (0..3 * nv).map(|entry| (self.mixed_derivative(&state, entry, H) - expected[entry]).abs());
         let doubt = doubt.fold(0.0, f64::max) / 16.0;
         // The rounding error of differences is relative to the differentiated values.
         let sizes = ["mass_matrix", "bias_forces", "inverse_dynamics_derivatives"]
-            .map(|name| self.run(name).concat());
+            .map(|name| self.run_function(name).concat());
         let scale = sizes.iter().flatten().chain(&expected).fold(1.0_f64, |m, x| m.max(x.abs()));
-        for found in self.run("inverse_dynamics_second_derivatives") {
+        for found in self.run_function("inverse_dynamics_second_derivatives") {
             let second_derivative = |b: usize, i: usize, j: usize| found[b * nv * nv + j * nv + i];
             for i in 0..nv {
                 let row_product = |b: usize, along: &[f64]| {
@@ -244,7 +251,7 @@ impl Case<'_> {
     /// Returns a mixed second derivative of the power of the generalized forces with given factors: once with
     /// respect to one entry of `q`, `v` or `a`, once along the direction. It is the mean of both orders of
     /// differentiation, by finite differences with steps of `size`.
-    fn mixed(&self, state: &State, entry: usize, size: f64) -> f64 {
+    fn mixed_derivative(&self, state: &State, entry: usize, size: f64) -> f64 {
         let Point { lambda, along, .. } = &self.point;
         let nv = lambda.len();
         let mut unit = [vec![0.0; nv], vec![0.0; nv], vec![0.0; nv]];
@@ -260,14 +267,14 @@ impl Case<'_> {
                 v: add_imaginary_step(&state.v, &along[1]),
                 a: add_imaginary_step(&state.a, &along[2]),
             };
-            kane::power(self.spec, &stepped, lambda).im / STEP
+            kane::power_of_forces(self.spec, &stepped, lambda).im / STEP
         };
         let difference_quotient = |outer: &[Vec<f64>; 3], inner: &[Vec<f64>; 3]| {
             let derivative_at_displacement = |h: f64| {
                 let add_real_step = |list: &[C], rates: &[f64]| -> Vec<C> {
-                    list.iter().zip(rates).map(|(x, rate)| x + real(h * rate)).collect()
+                    list.iter().zip(rates).map(|(x, rate)| x + real_number(h * rate)).collect()
                 };
-                let q = kane::displaced(self.spec, &state.q, &outer[0], h);
+                let q = kane::displaced_configuration(self.spec, &state.q, &outer[0], h);
                 power_derivative_along(
                     &State {
                         q,

@@ -11,7 +11,7 @@ impl Random {
     }
 
     /// Returns a uniformly distributed number in `[-bound, bound)`.
-    pub fn uniform(&mut self, bound: f64) -> f64 {
+    pub fn uniform_number(&mut self, bound: f64) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -22,16 +22,16 @@ impl Random {
 
     /// Returns a random integer below `n`.
     pub fn index_below(&mut self, n: usize) -> usize {
-        ((self.uniform(0.5) + 0.5) * n as f64) as usize % n.max(1)
+        ((self.uniform_number(0.5) + 0.5) * n as f64) as usize % n.max(1)
     }
 
     /// Returns a number between −1 and 1 with four decimal digits, which text represents exactly.
-    pub fn figure(&mut self) -> f64 {
+    pub fn four_digit_number(&mut self) -> f64 {
         self.index_below(20_001) as f64 / 1e4 - 1.0
     }
 
     /// Returns numbers between −1 and 1 with four decimal digits.
-    pub fn figures<const N: usize>(&mut self) -> [f64; N] {
-        std::array::from_fn(|_| self.figure())
+    pub fn four_digit_numbers<const N: usize>(&mut self) -> [f64; N] {
+        std::array::from_fn(|_| self.four_digit_number())
     }
 }

@@ -1,8 +1,11 @@
 //! Random robots: as files, as the order of their coordinates, and as poses of their links in a motion.
 
-use crate::jet::{C, Jet, Matrix, constant_vector, identity, product, rotation, scaled, sum};
+use crate::jet::{
+    C, Jet, Matrix, constant_vector, identity, matrix_product, rotation_about_axis, scaled_vector,
+    sum_of_vectors,
+};
 use crate::kane::State;
-use crate::motion::{Piece, Pose, compose, drifting, turning};
+use crate::motion::{Piece, Pose, compose_poses, drifting_position, rotating_orientation};
 use crate::random::Random;
 use std::array::from_fn;
 use std::fmt::Write;
@@ -43,15 +46,17 @@ pub struct Robot {
 
 /// Returns the rotation matrix `R_z(yaw) R_y(pitch) R_x(roll)`.
 pub fn fixed_axes([roll, pitch, yaw]: [f64; 3]) -> Matrix {
-    let axis_rotation =
-        |k: usize, angle| rotation(from_fn(|i| f64::from(u8::from(i == k))), Jet::constant(angle));
-    product(&product(&axis_rotation(2, yaw), &axis_rotation(1, pitch)), &axis_rotation(0, roll))
+    let axis_rotation = |k: usize, angle| {
+        rotation_about_axis(from_fn(|i| f64::from(u8::from(i == k))), Jet::constant_series(angle))
+    };
+    matrix_product(&matrix_product(&axis_rotation(2, yaw), &axis_rotation(1, pitch)), &axis_rotation(0, roll))
 }
 
 impl Link {
-    fn random(k: usize, random: &mut Random) -> Link {
+    fn random_link(k: usize, random: &mut Random) -> Link {
         // Inertia of four point masses in the axes of an inertial frame, about their centre.
-        let points: [([f64; 3], f64); 4] = from_fn(|_| (random.figures(), 1.0 + random.figure().abs()));
+        let points: [([f64; 3], f64); 4] =
+            from_fn(|_| (random.four_digit_numbers(), 1.0 + random.four_digit_number().abs()));
         let mass: f64 = points.iter().map(|(_, m)| m).sum();
         let center: [f64; 3] = from_fn(|i| points.iter().map(|(p, m)| m * p[i]).sum::<f64>() / mass);
         let mut own = [[0.0; 3]; 3];
@@ -63,15 +68,16 @@ impl Link {
                 }
             }
         }
-        let (com, rpy) = (random.figures(), random.figures::<3>().map(|angle| 3.0 * angle));
+        let (com, rpy) =
+            (random.four_digit_numbers(), random.four_digit_numbers::<3>().map(|angle| 3.0 * angle));
         let rotated = fixed_axes(rpy);
         let r: [[f64; 3]; 3] = rotated.map(|row| row.map(|entry| entry.0[0].re));
         let ([xx, xy, xz], [_, yy, yz], [_, _, zz]) = (own[0], own[1], own[2]);
         let inertial = format!(
             "<inertial><mass value=\"{mass:?}\"/><origin xyz=\"{}\" rpy=\"{}\"/><inertia ixx=\"{xx:?}\" \
              ixy=\"{xy:?}\" ixz=\"{xz:?}\" iyy=\"{yy:?}\" iyz=\"{yz:?}\" izz=\"{zz:?}\"/></inertial>",
-            spaced(com),
-            spaced(rpy)
+            space_separated(com),
+            space_separated(rpy)
         );
         let inertia =
             from_fn(|i| from_fn(|j| (0..9).map(|k| r[i][k / 3] * own[k / 3][k % 3] * r[j][k % 3]).sum()));
@@ -80,36 +86,40 @@ impl Link {
 }
 
 /// Formats three numbers as text, separated by spaces.
-pub fn spaced(numbers: [f64; 3]) -> String {
+pub fn space_separated(numbers: [f64; 3]) -> String {
     numbers.map(|x| format!("{x:?}")).join(" ")
 }
 
 impl Joint {
-    fn random(child: usize, links: &[Link], kinds: &[usize], random: &mut Random) -> Joint {
+    fn random_joint(child: usize, links: &[Link], kinds: &[usize], random: &mut Random) -> Joint {
         let kind = kinds[random.index_below(kinds.len())];
         let axis = match (KINDS[kind], random.index_below(3)) {
             // The directions of x and y are a convention: for a coordinate axis, the other two axes in cyclic
             // order.
             ("planar", k) => from_fn(|i| if i == k { 2.0 } else { 0.0 }),
-            (_, 0) => random.figures::<3>().map(|x| x + if x < 0.0 { -0.1 } else { 0.1 }),
-            (_, k) => from_fn(|i| if i == k { random.figure() - 2.0 } else { 0.0 }),
+            (_, 0) => random.four_digit_numbers::<3>().map(|x| x + if x < 0.0 { -0.1 } else { 0.1 }),
+            (_, k) => from_fn(|i| if i == k { random.four_digit_number() - 2.0 } else { 0.0 }),
         };
-        let leaders: Vec<usize> = (1..child).filter(|k| links[*k].leads()).collect();
+        let leaders: Vec<usize> = (1..child).filter(|k| links[*k].can_lead_joints()).collect();
         let follows = kind < 3 && !leaders.is_empty() && random.index_below(4) == 0;
         Joint {
             name: format!("{}{child}", ["j", "J", "a", "joint_"][random.index_below(4)]),
             kind,
             parent: random.index_below(child),
-            xyz: random.figures(),
+            xyz: random.four_digit_numbers(),
             rpy: if random.index_below(3) == 0 {
                 [0.0; 3]
             } else {
-                random.figures::<3>().map(|angle| 3.0 * angle)
+                random.four_digit_numbers::<3>().map(|angle| 3.0 * angle)
             },
             axis,
             locked: !follows && random.index_below(8) == 0,
             mimic: follows.then(|| {
-                (leaders[random.index_below(leaders.len())], random.figure() * 2.0, random.figure())
+                (
+                    leaders[random.index_below(leaders.len())],
+                    random.four_digit_number() * 2.0,
+                    random.four_digit_number(),
+                )
             }),
         }
     }
@@ -117,12 +127,12 @@ impl Joint {
 
 impl Link {
     /// Returns true if other joints may follow the joint of this link.
-    fn leads(&self) -> bool {
+    fn can_lead_joints(&self) -> bool {
         self.joint.as_ref().is_some_and(|j| j.kind < 3 && !j.locked && j.mimic.is_none())
     }
 
     /// Returns the numbers of entries of the link's joint in `q` and `v`.
-    fn sizes(&self, free: bool) -> [usize; 2] {
+    fn joint_entry_counts(&self, free: bool) -> [usize; 2] {
         match &self.joint {
             None if free => [7, 6],
             None => [0, 0],
@@ -134,12 +144,12 @@ impl Link {
 
 impl Robot {
     /// Returns a random robot whose joints have these types.
-    pub fn random(kinds: &[usize], random: &mut Random) -> Robot {
+    pub fn random_robot(kinds: &[usize], random: &mut Random) -> Robot {
         let n = 2 + random.index_below(6);
-        let mut links = vec![Link::random(0, random)];
+        let mut links = vec![Link::random_link(0, random)];
         for k in 1..n {
-            let mut link = Link::random(k, random);
-            link.joint = Some(Joint::random(k, &links, kinds, random));
+            let mut link = Link::random_link(k, random);
+            link.joint = Some(Joint::random_joint(k, &links, kinds, random));
             links.push(link);
         }
         let mut shuffle: Vec<usize> = (0..2 * n - 1).collect();
@@ -147,7 +157,7 @@ impl Robot {
         Robot { free: random.index_below(2) == 0, links, shuffle }
     }
 
-    pub fn text(&self) -> String {
+    pub fn urdf_text(&self) -> String {
         let mut text = String::from("<robot name=\"r\">\n");
         for k in &self.shuffle {
             match k.checked_sub(self.links.len()) {
@@ -163,7 +173,7 @@ impl Robot {
 
     /// Returns a random robot with the joint types of MJCF.
     pub fn random_mjcf(random: &mut Random) -> Robot {
-        let mut robot = Robot::random(&[0, 1, 2, 3, 6, 6, 6], random);
+        let mut robot = Robot::random_robot(&[0, 1, 2, 3, 6, 6, 6], random);
         for joint in robot.links.iter_mut().filter_map(|link| link.joint.as_mut()) {
             // A body without a joint cannot be locked.
             joint.locked &= joint.kind != 3;
@@ -173,7 +183,7 @@ impl Robot {
 
     /// Returns the robot as an MJCF file. `inside` returns additional text for the body of each link, and
     /// `behind` is inserted after the bodies.
-    pub fn mjcf(&self, inside: &dyn Fn(usize) -> String, behind: &str) -> String {
+    pub fn mjcf_text(&self, inside: &dyn Fn(usize) -> String, behind: &str) -> String {
         let mimic_constraint_text = |link: &Link| {
             let joint = link.joint.as_ref()?;
             let (leader, factor, offset) = joint.mimic.filter(|_| !joint.locked)?;
@@ -201,12 +211,12 @@ impl Robot {
                 let own = match KINDS[joint.kind] {
                     "fixed" => String::new(),
                     "prismatic" => {
-                        format!("<joint name=\"{name}\" type=\"slide\" axis=\"{}\"/>", spaced(*axis))
+                        format!("<joint name=\"{name}\" type=\"slide\" axis=\"{}\"/>", space_separated(*axis))
                     }
                     "spherical" => format!("<joint name=\"{name}\" type=\"ball\"/>"),
-                    _ => format!("<joint name=\"{name}\" axis=\"{}\"/>", spaced(*axis)),
+                    _ => format!("<joint name=\"{name}\" axis=\"{}\"/>", space_separated(*axis)),
                 };
-                (format!(" pos=\"{}\" euler=\"{}\"", spaced(*xyz), spaced(*rpy)), own)
+                (format!(" pos=\"{}\" euler=\"{}\"", space_separated(*xyz), space_separated(*rpy)), own)
             }
         };
         let joint = |k: usize| self.links[k].joint.as_ref();
@@ -219,20 +229,26 @@ impl Robot {
         format!(
             "<body name=\"{name}\"{place}>{own}<inertial mass=\"{mass:?}\" pos=\"{}\" fullinertia=\"{xx:?} \
              {yy:?} {zz:?} {xy:?} {xz:?} {yz:?}\"/>{}{children}</body>\n",
-            spaced(*com),
+            space_separated(*com),
             inside(k)
         )
     }
 
     /// Returns whether the link `carrier` equals the link `carried` or is an ancestor of it.
-    pub fn carries(&self, carrier: usize, carried: usize) -> bool {
+    pub fn is_link_or_ancestor(&self, carrier: usize, carried: usize) -> bool {
         carrier == carried
-            || self.links[carried].joint.as_ref().is_some_and(|joint| self.carries(carrier, joint.parent))
+            || self.links[carried]
+                .joint
+                .as_ref()
+                .is_some_and(|joint| self.is_link_or_ancestor(carrier, joint.parent))
     }
 
     /// Returns the pose of a frame on a link; its orientation is `R_z R_y R_x` of the angles.
-    pub fn frame(&self, link: usize, xyz: [f64; 3], rpy: [f64; 3], state: &State) -> Pose {
-        compose(&self.places(state)[link], &Pose { r: fixed_axes(rpy), p: constant_vector(xyz) })
+    pub fn pose_of_frame(&self, link: usize, xyz: [f64; 3], rpy: [f64; 3], state: &State) -> Pose {
+        compose_poses(
+            &self.poses_of_links(state)[link],
+            &Pose { r: fixed_axes(rpy), p: constant_vector(xyz) },
+        )
     }
 
     fn write_joint(&self, text: &mut String, child: usize) {
@@ -248,27 +264,27 @@ impl Robot {
             joint.name,
             KINDS[joint.kind],
             self.links[child].name,
-            spaced(joint.axis),
-            spaced(joint.rpy),
-            spaced(joint.xyz),
+            space_separated(joint.axis),
+            space_separated(joint.rpy),
+            space_separated(joint.xyz),
             mimic.unwrap_or_default(),
             self.links[joint.parent].name
         );
     }
 
-    pub fn locked(&self) -> impl Iterator<Item = &str> {
+    pub fn locked_joints(&self) -> impl Iterator<Item = &str> {
         self.links.iter().filter_map(|link| link.joint.as_ref()).filter(|j| j.locked).map(|j| j.name.as_str())
     }
 
     /// Counts the types of the joints that are not locked.
-    pub fn count(&self, kinds: &mut [usize; 7]) {
+    pub fn count_joint_types(&self, kinds: &mut [usize; 7]) {
         let joints = self.links.iter().filter_map(|link| link.joint.as_ref()).filter(|joint| !joint.locked);
         joints.for_each(|joint| kinds[joint.kind] += 1);
     }
 
     /// Returns the link indices in depth-first order; links of one parent are sorted by the names of their
     /// joints.
-    fn order(&self) -> Vec<usize> {
+    fn links_depth_first(&self) -> Vec<usize> {
         let (mut order, mut open) = (Vec::new(), vec![0]);
         while let Some(link) = open.pop() {
             order.push(link);
@@ -283,12 +299,12 @@ impl Robot {
     }
 
     /// Returns the names of the entries of `q`.
-    pub fn coordinates(&self) -> Vec<String> {
+    pub fn coordinate_names(&self) -> Vec<String> {
         const PLACE: [&str; 7] = ["x", "y", "z", "qx", "qy", "qz", "qw"];
         let mut names = Vec::new();
-        for link in self.order() {
+        for link in self.links_depth_first() {
             let name = self.links[link].joint.as_ref().map_or("root_joint", |joint| &joint.name);
-            match self.links[link].sizes(self.free) {
+            match self.links[link].joint_entry_counts(self.free) {
                 [0, _] => {}
                 [1, _] => names.push(name.to_string()),
                 [3, _] => names.extend(["x", "y", "angle"].map(|entry| format!("{name}.{entry}"))),
@@ -299,24 +315,25 @@ impl Robot {
     }
 
     /// Returns for each link the indices of the first entries of its joint in `q` and `v`.
-    fn entries(&self) -> Vec<[usize; 2]> {
+    fn first_joint_entries(&self) -> Vec<[usize; 2]> {
         let (mut entries, mut next) = (vec![[0; 2]; self.links.len()], [0; 2]);
-        for link in self.order() {
+        for link in self.links_depth_first() {
             entries[link] = next;
-            let [q, v] = self.links[link].sizes(self.free);
+            let [q, v] = self.links[link].joint_entry_counts(self.free);
             next = [next[0] + q, next[1] + v];
         }
         entries
     }
 
     /// Returns random `q`, `v` and `v̇`; quaternions in `q` are normalised.
-    pub fn state(&self, random: &mut Random) -> [Vec<f64>; 3] {
-        let entries = self.entries();
-        let total_size = |k: usize| self.links.iter().map(|link| link.sizes(self.free)[k]).sum::<usize>();
-        let mut numbers = |n: usize| -> Vec<f64> { (0..n).map(|_| random.figure()).collect() };
+    pub fn random_state(&self, random: &mut Random) -> [Vec<f64>; 3] {
+        let entries = self.first_joint_entries();
+        let total_size =
+            |k: usize| self.links.iter().map(|link| link.joint_entry_counts(self.free)[k]).sum::<usize>();
+        let mut numbers = |n: usize| -> Vec<f64> { (0..n).map(|_| random.four_digit_number()).collect() };
         let (mut q, v, a) = (numbers(total_size(0)), numbers(total_size(1)), numbers(total_size(1)));
         for (link, [first, _]) in self.links.iter().zip(entries) {
-            let [n, _] = link.sizes(self.free);
+            let [n, _] = link.joint_entry_counts(self.free);
             if n == 4 || n == 7 {
                 let quaternion = &mut q[first + n - 4..first + n];
                 let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -327,53 +344,53 @@ impl Robot {
     }
 
     /// Returns whether a link can move relative to the ground.
-    pub fn moves(&self, link: usize) -> bool {
+    pub fn can_move_link(&self, link: usize) -> bool {
         match &self.links[link].joint {
             None => self.free,
-            Some(joint) => (joint.kind != 3 && !joint.locked) || self.moves(joint.parent),
+            Some(joint) => (joint.kind != 3 && !joint.locked) || self.can_move_link(joint.parent),
         }
     }
 
     /// Returns axes and origin of every link relative to the ground.
-    fn places(&self, state: &State) -> Vec<Pose> {
-        let entries = self.entries();
+    fn poses_of_links(&self, state: &State) -> Vec<Pose> {
+        let entries = self.first_joint_entries();
         let mut places: Vec<Pose> = Vec::new();
         for (k, link) in self.links.iter().enumerate() {
             let Some(joint) = &link.joint else {
-                places.push(if self.free { floating(state, entries[k]) } else { Pose::identity() });
+                places.push(if self.free { floating_pose(state, entries[k]) } else { Pose::identity() });
                 continue;
             };
             let start = Pose { r: fixed_axes(joint.rpy), p: constant_vector(joint.xyz) };
             let moved = match joint.mimic {
                 _ if joint.locked => Pose::identity(),
                 Some((leader, factor, offset)) => {
-                    let angle = plain(state, entries[leader]);
-                    joint.joint_pose(angle * Jet::constant(factor) + Jet::constant(offset))
+                    let angle = coordinate_series(state, entries[leader]);
+                    joint.joint_pose(angle * Jet::constant_series(factor) + Jet::constant_series(offset))
                 }
-                None if joint.kind < 3 => joint.joint_pose(plain(state, entries[k])),
-                None => joint.placed(state, entries[k]),
+                None if joint.kind < 3 => joint.joint_pose(coordinate_series(state, entries[k])),
+                None => joint.pose_of_joint(state, entries[k]),
             };
-            let there = compose(&places[joint.parent], &start);
-            places.push(compose(&there, &moved));
+            let there = compose_poses(&places[joint.parent], &start);
+            places.push(compose_poses(&there, &moved));
         }
         places
     }
 
     /// Returns the moving bodies of the robot with their masses and poses.
-    pub fn pieces(&self, state: &State) -> Vec<Piece> {
-        let places = self.places(state);
-        let moving = (0..self.links.len()).filter(|k| self.moves(*k));
+    pub fn moving_bodies(&self, state: &State) -> Vec<Piece> {
+        let places = self.poses_of_links(state);
+        let moving = (0..self.links.len()).filter(|k| self.can_move_link(*k));
         let rigid_piece_of_link = |k: usize| {
             let Link { mass, com, inertia, .. } = self.links[k];
             let center = Pose { r: identity(), p: constant_vector(com) };
-            Piece { mass, inertia, r: places[k].r, p: compose(&places[k], &center).p }
+            Piece { mass, inertia, r: places[k].r, p: compose_poses(&places[k], &center).p }
         };
         moving.map(rigid_piece_of_link).collect()
     }
 }
 
 impl Joint {
-    fn unit(&self) -> [f64; 3] {
+    fn unit_axis(&self) -> [f64; 3] {
         let length = self.axis.iter().map(|x| x * x).sum::<f64>().sqrt();
         self.axis.map(|x| x / length)
     }
@@ -382,25 +399,29 @@ impl Joint {
     /// coordinate.
     fn joint_pose(&self, coordinate: Jet) -> Pose {
         match KINDS[self.kind] {
-            "prismatic" => Pose { p: scaled(coordinate, self.unit()), ..Pose::identity() },
-            _ => Pose { r: rotation(self.unit(), coordinate), ..Pose::identity() },
+            "prismatic" => Pose { p: scaled_vector(coordinate, self.unit_axis()), ..Pose::identity() },
+            _ => Pose { r: rotation_about_axis(self.unit_axis(), coordinate), ..Pose::identity() },
         }
     }
 
     /// Returns the pose of a joint with several coordinates, or none.
-    fn placed(&self, state: &State, [q, v]: [usize; 2]) -> Pose {
+    fn pose_of_joint(&self, state: &State, [q, v]: [usize; 2]) -> Pose {
         match KINDS[self.kind] {
-            "floating" => floating(state, [q, v]),
+            "floating" => floating_pose(state, [q, v]),
             "planar" => {
                 let normal = self.axis.iter().position(|x| *x != 0.0).unwrap_or(0);
                 let unit_axis = |k: usize| from_fn(|i| f64::from(u8::from(i == (normal + k) % 3)));
                 let planar_shift_along =
-                    |k: usize| scaled(plain(state, [q + k - 1, v + k - 1]), unit_axis(k));
-                let r = rotation(self.unit(), plain(state, [q + 2, v + 2]));
-                Pose { r, p: sum(planar_shift_along(1), planar_shift_along(2)) }
+                    |k: usize| scaled_vector(coordinate_series(state, [q + k - 1, v + k - 1]), unit_axis(k));
+                let r = rotation_about_axis(self.unit_axis(), coordinate_series(state, [q + 2, v + 2]));
+                Pose { r, p: sum_of_vectors(planar_shift_along(1), planar_shift_along(2)) }
             }
             "spherical" => {
-                let r = turning(&state.q[q..q + 4], three(&state.v, v), three(&state.a, v));
+                let r = rotating_orientation(
+                    &state.q[q..q + 4],
+                    three_entries_from(&state.v, v),
+                    three_entries_from(&state.a, v),
+                );
                 Pose { r, ..Pose::identity() }
             }
             _ => Pose::identity(),
@@ -409,17 +430,26 @@ impl Joint {
 }
 
 /// Returns a coordinate as a Taylor series in time.
-fn plain(state: &State, [q, v]: [usize; 2]) -> Jet {
+fn coordinate_series(state: &State, [q, v]: [usize; 2]) -> Jet {
     Jet([state.q[q], state.v[v], state.a[v] * 0.5])
 }
 
-fn three(list: &[C], at: usize) -> [C; 3] {
+fn three_entries_from(list: &[C], at: usize) -> [C; 3] {
     from_fn(|k| list[at + k])
 }
 
 /// Returns the pose from position and quaternion; linear and angular velocity are in body axes.
-fn floating(state: &State, [q, v]: [usize; 2]) -> Pose {
-    let (w, rate) = (three(&state.v, v + 3), three(&state.a, v + 3));
-    let r = turning(&state.q[q + 3..q + 7], w, rate);
-    Pose { r, p: drifting(&state.q[q..q + 3], &r, three(&state.v, v), w, three(&state.a, v)) }
+fn floating_pose(state: &State, [q, v]: [usize; 2]) -> Pose {
+    let (w, rate) = (three_entries_from(&state.v, v + 3), three_entries_from(&state.a, v + 3));
+    let r = rotating_orientation(&state.q[q + 3..q + 7], w, rate);
+    Pose {
+        r,
+        p: drifting_position(
+            &state.q[q..q + 3],
+            &r,
+            three_entries_from(&state.v, v),
+            w,
+            three_entries_from(&state.a, v),
+        ),
+    }
 }

@@ -18,11 +18,11 @@ type Matrix = [[f64; 3]; 3];
 #[derive(Clone, Copy)]
 struct Placed(Matrix, [f64; 3]);
 
-fn apply(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
+fn rotate_vector(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
     m.map(|row| (0..3).map(|k| row[k] * v[k]).sum())
 }
 
-fn transposed(m: &Matrix) -> Matrix {
+fn transposed_matrix(m: &Matrix) -> Matrix {
     from_fn(|i| from_fn(|j| m[j][i]))
 }
 
@@ -40,19 +40,19 @@ impl Placed {
         Placed(rows, xyz)
     }
 
-    fn then(&self, inner: &Placed) -> Placed {
-        let columns = transposed(&inner.0).map(|column| apply(&self.0, column));
-        let moved = apply(&self.0, inner.1);
-        Placed(transposed(&columns), from_fn(|k| self.1[k] + moved[k]))
+    fn then_inner_pose(&self, inner: &Placed) -> Placed {
+        let columns = transposed_matrix(&inner.0).map(|column| rotate_vector(&self.0, column));
+        let moved = rotate_vector(&self.0, inner.1);
+        Placed(transposed_matrix(&columns), from_fn(|k| self.1[k] + moved[k]))
     }
 
-    fn back(&self) -> Placed {
-        let axes = transposed(&self.0);
-        Placed(axes, apply(&axes, self.1).map(|x| -x))
+    fn inverse_pose(&self) -> Placed {
+        let axes = transposed_matrix(&self.0);
+        Placed(axes, rotate_vector(&axes, self.1).map(|x| -x))
     }
 
     /// Returns the pose as the six numbers of an SDF element `<pose>`: position, then roll, pitch and yaw.
-    fn text(&self) -> String {
+    fn pose_text(&self) -> String {
         let Placed(m, [x, y, z]) = self;
         let angles =
             [m[2][1].atan2(m[2][2]), (-m[2][0]).atan2(m[0][0].hypot(m[1][0])), m[1][0].atan2(m[0][0])];
@@ -69,19 +69,18 @@ struct Writer<'a> {
 }
 
 /// Writes the robot in a random version. Its joint types must be in [`OF_SDF`].
-pub fn text(robot: &Robot, random: &mut Random) -> String {
+pub fn sdf_text(robot: &Robot, random: &mut Random) -> String {
     let minor = VERSIONS[random.index_below(VERSIONS.len())];
     let mut placed = vec![Placed::ZERO];
     for link in &robot.links[1..] {
-        let parent = link
-            .joint
-            .as_ref()
-            .map_or(Placed::ZERO, |joint| placed[joint.parent].then(&Placed::new(joint.xyz, joint.rpy)));
+        let parent = link.joint.as_ref().map_or(Placed::ZERO, |joint| {
+            placed[joint.parent].then_inner_pose(&Placed::new(joint.xyz, joint.rpy))
+        });
         placed.push(parent);
     }
     let writer = Writer { robot, minor, placed };
-    let parts: Vec<String> = (0..robot.links.len()).map(|k| writer.link(k, random)).collect();
-    let joints: Vec<String> = (1..robot.links.len()).map(|k| writer.joint(k, random)).collect();
+    let parts: Vec<String> = (0..robot.links.len()).map(|k| writer.link_text(k, random)).collect();
+    let joints: Vec<String> = (1..robot.links.len()).map(|k| writer.joint_text(k, random)).collect();
     let model = format!("<model name=\"m\">\n{}{}</model>", parts.concat(), joints.concat());
     let version = format!("1.{minor}");
     if robot.free || random.index_below(3) > 0 {
@@ -99,7 +98,7 @@ pub fn text(robot: &Robot, random: &mut Random) -> String {
 impl Writer<'_> {
     /// Returns the attribute of a pose that names a random link before link `k`, with the pose of that link.
     /// May also return an empty attribute and the pose `usual`.
-    fn base(&self, k: usize, usual: Placed, random: &mut Random) -> (String, Placed) {
+    fn random_base_pose(&self, k: usize, usual: Placed, random: &mut Random) -> (String, Placed) {
         let word = match self.minor {
             ..5 => "",
             5 | 6 => "frame",
@@ -112,15 +111,16 @@ impl Writer<'_> {
         (format!(" {word}=\"l{other}\""), self.placed[other])
     }
 
-    fn link(&self, k: usize, random: &mut Random) -> String {
+    fn link_text(&self, k: usize, random: &mut Random) -> String {
         let Link { mass, com, inertia, .. } = self.robot.links[k];
-        let (attribute, base) = self.base(k, Placed::ZERO, random);
-        let pose = base.back().then(&self.placed[k]).text();
+        let (attribute, base) = self.random_base_pose(k, Placed::ZERO, random);
+        let pose = base.inverse_pose().then_inner_pose(&self.placed[k]).pose_text();
         // Before version 1.7, the pose of the inertial frame may be relative to other links.
-        let center = self.placed[k].then(&Placed::new(com, [0.0; 3]));
+        let center = self.placed[k].then_inner_pose(&Placed::new(com, [0.0; 3]));
         let usual = (String::new(), self.placed[k]);
-        let (of_center, base) = if self.minor < 7 { self.base(k, usual.1, random) } else { usual };
-        let center = base.back().then(&center).text();
+        let (of_center, base) =
+            if self.minor < 7 { self.random_base_pose(k, usual.1, random) } else { usual };
+        let center = base.inverse_pose().then_inner_pose(&center).pose_text();
         let entries =
             [(0, 0, "ixx"), (0, 1, "ixy"), (0, 2, "ixz"), (1, 1, "iyy"), (1, 2, "iyz"), (2, 2, "izz")];
         let entries: String =
@@ -131,7 +131,7 @@ impl Writer<'_> {
         )
     }
 
-    fn joint(&self, child: usize, random: &mut Random) -> String {
+    fn joint_text(&self, child: usize, random: &mut Random) -> String {
         let Some(joint) = &self.robot.links[child].joint else { return String::new() };
         let kind = match KINDS[joint.kind] {
             "spherical" => "ball",
@@ -144,12 +144,12 @@ impl Writer<'_> {
             joint.name, joint.parent
         );
         if !matches!(kind, "ball" | "fixed") {
-            self.axis(&mut text, child, joint.axis, random);
+            self.write_axis(&mut text, child, joint.axis, random);
         }
         text + "</joint>\n"
     }
 
-    fn axis(&self, text: &mut String, child: usize, axis: [f64; 3], random: &mut Random) {
+    fn write_axis(&self, text: &mut String, child: usize, axis: [f64; 3], random: &mut Random) {
         let in_model = random.index_below(2) == 0;
         let other = random.index_below(self.placed.len());
         let own = self.placed[child];
@@ -164,7 +164,9 @@ impl Writer<'_> {
             }
             _ => (String::new(), "", own),
         };
-        let axis = apply(&transposed(&frame.0), apply(&own.0, axis)).map(|x| format!("{x:?}")).join(" ");
+        let axis = rotate_vector(&transposed_matrix(&frame.0), rotate_vector(&own.0, axis))
+            .map(|x| format!("{x:?}"))
+            .join(" ");
         let _ = write!(text, "<axis><xyz{attribute}>{axis}</xyz>{element}");
         if let Some((leader, factor, offset)) = self.robot.links[child].joint.as_ref().and_then(|j| j.mimic) {
             let leader = self.robot.links[leader].joint.as_ref().map_or("", |joint| &joint.name);

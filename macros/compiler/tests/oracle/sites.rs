@@ -1,16 +1,16 @@
 //! Random MJCF files with motors on sites: the power of forces and torques compared with partial velocities.
 
-use crate::jet::{C, constant_vector, cross, real};
+use crate::jet::{C, constant_vector, cross, real_number};
 use crate::kane::State;
-use crate::motion::{Pose, complex_dot, spin, velocity};
+use crate::motion::{Pose, angular_motion, complex_dot, velocity_of_position};
 use crate::random::Random;
-use crate::robot::{Robot, fixed_axes, spaced};
-use crate::seeds;
+use crate::robot::{Robot, fixed_axes, space_separated};
+use crate::test_seeds;
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::{Graph, Symbol};
 use linkwork_compiler::mechanism::Quantity;
 use linkwork_compiler::resolve::build_model;
-use linkwork_compiler::{derive, read};
+use linkwork_compiler::{derive, read_source};
 use std::array::from_fn;
 use std::path::Path;
 
@@ -24,13 +24,13 @@ struct Forces {
     values: Box<Function>,
 }
 
-fn forces(text: &str, locked: &[String]) -> Forces {
+fn forces_of_motors(text: &str, locked: &[String]) -> Forces {
     let thread = std::thread::current().id();
     let file = std::env::temp_dir().join(format!("linkwork-sites-{}-{thread:?}.xml", std::process::id()));
     std::fs::write(&file, text).expect("a file");
     let mut cx = Diagnostics::new();
     let arguments = format!("mjcf = {:?}, lock = {locked:?}", file.to_string_lossy());
-    let source = read(
+    let source = read_source(
         arguments.parse().expect("arguments"),
         "pub struct Robot;".parse().expect("a struct"),
         Path::new("/"),
@@ -54,7 +54,9 @@ fn forces(text: &str, locked: &[String]) -> Forces {
             Quantity::Input(k) => u[k],
             other => panic!("{other:?}"),
         };
-        function.as_ref().map_or_else(Vec::new, |function| function.program.run(&value_of_symbol))
+        function
+            .as_ref()
+            .map_or_else(Vec::new, |function| function.program.interpret_program(&value_of_symbol))
     };
     Forces { coordinates, inputs, values: Box::new(evaluate_forces) }
 }
@@ -67,17 +69,25 @@ struct Site {
 }
 
 impl Site {
-    fn random(link: Option<usize>, random: &mut Random) -> Site {
-        Site { link, xyz: random.figures(), rpy: random.figures::<3>().map(|angle| 3.0 * angle) }
+    fn random_site(link: Option<usize>, random: &mut Random) -> Site {
+        Site {
+            link,
+            xyz: random.four_digit_numbers(),
+            rpy: random.four_digit_numbers::<3>().map(|angle| 3.0 * angle),
+        }
     }
 
-    fn write(&self, name: &str) -> String {
-        format!("<site name=\"{name}\" pos=\"{}\" euler=\"{}\"/>", spaced(self.xyz), spaced(self.rpy))
+    fn site_text(&self, name: &str) -> String {
+        format!(
+            "<site name=\"{name}\" pos=\"{}\" euler=\"{}\"/>",
+            space_separated(self.xyz),
+            space_separated(self.rpy)
+        )
     }
 
-    fn pose(&self, robot: &Robot, state: &State) -> Pose {
+    fn pose_of_site(&self, robot: &Robot, state: &State) -> Pose {
         let ground = Pose { r: fixed_axes(self.rpy), p: constant_vector(self.xyz) };
-        self.link.map_or(ground, |link| robot.frame(link, self.xyz, self.rpy, state))
+        self.link.map_or(ground, |link| robot.pose_of_frame(link, self.xyz, self.rpy, state))
     }
 }
 
@@ -91,15 +101,15 @@ struct Motor {
 impl Motor {
     /// Returns the power of the motor for a unit input: the power of its force and torque in the motion
     /// relative to the reference site.
-    fn power(&self, sites: &[Site], robot: &Robot, state: &State) -> C {
-        let [on, against] = self.sites.map(|k| sites[k].pose(robot, state));
+    fn motor_power(&self, sites: &[Site], robot: &Robot, state: &State) -> C {
+        let [on, against] = self.sites.map(|k| sites[k].pose_of_site(robot, state));
         let axes = if self.against { &against } else { &on };
         let in_ground =
             |v: [f64; 3]| -> [C; 3] { from_fn(|i| (0..3).map(|j| axes.r[i][j].0[0] * v[j]).sum()) };
         let [x, y, z, a, b, c] = self.gear;
-        let (mut v, mut w) = (velocity(on.p), spin(&on.r).0);
+        let (mut v, mut w) = (velocity_of_position(on.p), angular_motion(&on.r).0);
         if self.against {
-            let (other, turn) = (velocity(against.p), spin(&against.r).0);
+            let (other, turn) = (velocity_of_position(against.p), angular_motion(&against.r).0);
             let arm = from_fn(|i| on.p[i].0[0] - against.p[i].0[0]);
             let carried = cross(turn, arm);
             v = from_fn(|i| v[i] - other[i] - carried[i]);
@@ -113,20 +123,20 @@ impl Motor {
 /// four motors, on moving and fixed links.
 #[test]
 fn random_motors_on_sites_do_the_work_of_their_forces() {
-    for seed in seeds(60) {
+    for seed in test_seeds(60) {
         let mut random = Random::new(6_000_000 + seed);
         let robot = Robot::random_mjcf(&mut random);
         let links = robot.links.len();
-        let mut sites = vec![Site::random(None, &mut random)];
-        sites.extend((0..links).map(|link| Site::random(Some(link), &mut random)));
+        let mut sites = vec![Site::random_site(None, &mut random)];
+        sites.extend((0..links).map(|link| Site::random_site(Some(link), &mut random)));
         let motors: Vec<Motor> = (0..1 + random.index_below(4))
             .map(|_| {
                 let link = random.index_below(links);
                 let carriers: Vec<usize> =
-                    (0..links).filter(|k| *k != link && robot.carries(*k, link)).collect();
+                    (0..links).filter(|k| *k != link && robot.is_link_or_ancestor(*k, link)).collect();
                 let other =
                     random.index_below(carriers.len() + 1).checked_sub(1).map_or(0, |k| carriers[k] + 1);
-                let mut gear: [f64; 6] = random.figures();
+                let mut gear: [f64; 6] = random.four_digit_numbers();
                 match random.index_below(3) {
                     0 => gear[..3].fill(0.0),
                     1 => gear[3..].fill(0.0),
@@ -135,7 +145,7 @@ fn random_motors_on_sites_do_the_work_of_their_forces() {
                 Motor { sites: [link + 1, other], against: random.index_below(2) == 0, gear }
             })
             .collect();
-        let text_of_site_in_link = |link: usize| sites[link + 1].write(&format!("s{}", link + 1));
+        let text_of_site_in_link = |link: usize| sites[link + 1].site_text(&format!("s{}", link + 1));
         let text_of_motor = |(k, motor): (usize, &Motor)| {
             let [on, other] = motor.sites;
             let against = if motor.against { format!(" refsite=\"s{other}\"") } else { String::new() };
@@ -144,23 +154,26 @@ fn random_motors_on_sites_do_the_work_of_their_forces() {
         };
         let motors_text: String = motors.iter().enumerate().map(text_of_motor).collect();
         let text = robot
-            .mjcf(&text_of_site_in_link, &format!("<actuator>{motors_text}</actuator>"))
-            .replace("<worldbody>", &format!("<worldbody>{}", sites[0].write("s0")));
-        let locked: Vec<String> = robot.locked().map(str::to_string).collect();
-        if !(0..links).any(|link| robot.moves(link)) {
+            .mjcf_text(&text_of_site_in_link, &format!("<actuator>{motors_text}</actuator>"))
+            .replace("<worldbody>", &format!("<worldbody>{}", sites[0].site_text("s0")));
+        let locked: Vec<String> = robot.locked_joints().map(str::to_string).collect();
+        if !(0..links).any(|link| robot.can_move_link(link)) {
             continue;
         }
-        let found = forces(&text, &locked);
-        assert_eq!(found.coordinates, robot.coordinates(), "{text}");
+        let found = forces_of_motors(&text, &locked);
+        assert_eq!(found.coordinates, robot.coordinate_names(), "{text}");
         assert_eq!(found.inputs.len(), motors.len(), "{text}");
-        let [q, v, _] = robot.state(&mut random);
-        let u: Vec<f64> = motors.iter().map(|_| random.figure()).collect();
+        let [q, v, _] = robot.random_state(&mut random);
+        let u: Vec<f64> = motors.iter().map(|_| random.four_digit_number()).collect();
         let values = (found.values)(&q, &v, &u);
         for (k, value) in values.iter().enumerate() {
             let unit: Vec<f64> = (0..v.len()).map(|j| f64::from(u8::from(j == k))).collect();
             let state = State::new(&q, &unit, &vec![0.0; v.len()]);
-            let expected: C =
-                motors.iter().zip(&u).map(|(motor, u)| motor.power(&sites, &robot, &state) * real(*u)).sum();
+            let expected: C = motors
+                .iter()
+                .zip(&u)
+                .map(|(motor, u)| motor.motor_power(&sites, &robot, &state) * real_number(*u))
+                .sum();
             let expected = expected.re;
             assert!(
                 (value - expected).abs() < 1e-10 * (1.0 + expected.abs()),
@@ -187,7 +200,7 @@ fn motors_on_sites_of_an_arm() {
         ("refsite='base' gear='0 0 1'", -0.5 * at.cos()),
         ("refsite='base' gear='0 0 1 0 1 0'", 1.0 - 0.5 * at.cos()),
     ] {
-        let found = (forces(&arm_model_text(actuator), &[]).values)(&[at], &[0.0], &[1.0]);
+        let found = (forces_of_motors(&arm_model_text(actuator), &[]).values)(&[at], &[0.0], &[1.0]);
         assert!((found[0] - expected).abs() < 1e-15, "{actuator}: {found:?}");
     }
     // Two rotors lift a hull with the sum of their forces, and rotate it with the difference of their
@@ -196,7 +209,7 @@ fn motors_on_sites_of_an_arm() {
         <site name='front' pos='0.2 0 0'/><site name='back' pos='-0.2 0 0'/></body></worldbody>\
         <actuator><motor site='front' gear='0 0 1 0 0 0.1'/><motor site='back' gear='0 0 1 0 0 -0.1'/></actuator></mujoco>";
     let pose = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
-    let found = (forces(hull, &[]).values)(&pose, &[0.0; 6], &[3.0, 1.0]);
+    let found = (forces_of_motors(hull, &[]).values)(&pose, &[0.0; 6], &[3.0, 1.0]);
     let expected = [0.0, 0.0, 4.0, 0.0, -0.4, 0.2];
     assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{found:?}");
 }

@@ -35,7 +35,7 @@ pub const KINDS: [Kind; 11] = [
 
 impl Kind {
     /// Returns the numbers of configuration coordinates and velocities.
-    pub fn sizes(self) -> (usize, usize) {
+    pub fn coordinate_and_velocity_counts(self) -> (usize, usize) {
         match self {
             Kind::Pin | Kind::Sleeve | Kind::Screw => (1, 1),
             Kind::Collar | Kind::Slot | Kind::Universal => (2, 2),
@@ -47,7 +47,7 @@ impl Kind {
     }
 
     /// Returns the coordinates that an element can act on, in the order of the velocities.
-    pub fn coordinates(self) -> &'static [&'static str] {
+    pub fn coordinate_names(self) -> &'static [&'static str] {
         match self {
             Kind::Pin | Kind::Sleeve | Kind::Screw => &[""],
             Kind::Collar | Kind::Slot => &[".slide", ".turn"],
@@ -185,95 +185,98 @@ impl Source {
         self.0.index_below(n)
     }
 
-    fn chance(&mut self, one_in: usize) -> bool {
+    fn has_chance(&mut self, one_in: usize) -> bool {
         self.index_below(one_in) == 0
     }
 
-    fn vector(&mut self, bound: f64) -> [f64; 3] {
-        std::array::from_fn(|_| self.0.uniform(bound))
+    fn random_vector(&mut self, bound: f64) -> [f64; 3] {
+        std::array::from_fn(|_| self.0.uniform_number(bound))
     }
 
     /// Returns a coordinate axis or a random axis.
-    fn axis(&mut self, style: &Style) -> [f64; 3] {
+    fn random_axis(&mut self, style: &Style) -> [f64; 3] {
         let mut axis = [0.0; 3];
-        if style.noise.is_some() || !self.chance(3) {
-            axis[self.index_below(3)] = if self.chance(2) { 1.0 } else { -1.0 };
+        if style.noise.is_some() || !self.has_chance(3) {
+            axis[self.index_below(3)] = if self.has_chance(2) { 1.0 } else { -1.0 };
         } else {
-            axis = self.vector(1.0);
+            axis = self.random_vector(1.0);
             axis[self.index_below(3)] += 1.5;
         }
         if let Some(noise) = style.noise {
-            axis = axis.map(|x| x + self.0.uniform(noise));
+            axis = axis.map(|x| x + self.0.uniform_number(noise));
         }
-        unit(axis)
+        unit_vector(axis)
     }
 
-    fn turns(&mut self, style: &Style) -> Vec<(usize, f64)> {
+    fn random_turns(&mut self, style: &Style) -> Vec<(usize, f64)> {
         (0..self.index_below(3))
             .map(|_| {
                 let angle = match style.noise {
                     Some(noise) => {
-                        std::f64::consts::FRAC_PI_2 * self.index_below(4) as f64 + self.0.uniform(noise)
+                        std::f64::consts::FRAC_PI_2 * self.index_below(4) as f64
+                            + self.0.uniform_number(noise)
                     }
-                    None => self.0.uniform(3.0),
+                    None => self.0.uniform_number(3.0),
                 };
                 (self.index_below(3), angle)
             })
             .collect()
     }
 
-    fn place(&mut self, style: &Style) -> Place {
+    fn random_place(&mut self, style: &Style) -> Place {
         match self.index_below(4) {
             0 => Place::default(),
-            1 => Place { at: self.vector(0.5), turns: Vec::new() },
-            _ => Place { at: self.vector(0.5), turns: self.turns(style) },
+            1 => Place { at: self.random_vector(0.5), turns: Vec::new() },
+            _ => Place { at: self.random_vector(0.5), turns: self.random_turns(style) },
         }
     }
 
-    fn mass(&mut self, style: &Style) -> f64 {
-        10.0_f64.powf(self.0.uniform(style.decades)) * (1.3 + self.0.uniform(0.8))
+    fn random_mass(&mut self, style: &Style) -> f64 {
+        10.0_f64.powf(self.0.uniform_number(style.decades)) * (1.3 + self.0.uniform_number(0.8))
     }
 
-    fn body(&mut self, kind: Kind, parent: Option<usize>, style: &Style) -> Body {
-        let mass = self.mass(style);
+    fn random_body(&mut self, kind: Kind, parent: Option<usize>, style: &Style) -> Body {
+        let mass = self.random_mass(style);
         // Moments of a cuboid are always physically possible.
-        let sides = self.vector(0.4).map(|s| s * s + 0.05);
+        let sides = self.random_vector(0.4).map(|s| s * s + 0.05);
         let all: f64 = sides.iter().sum();
         Body {
             kind,
             parent,
-            on_parent: self.place(style),
-            on_child: if self.chance(2) { Place::default() } else { self.place(style) },
-            axes: [self.axis(style), self.axis(style)],
-            pitch: 0.2 + self.0.uniform(0.1),
+            on_parent: self.random_place(style),
+            on_child: if self.has_chance(2) { Place::default() } else { self.random_place(style) },
+            axes: [self.random_axis(style), self.random_axis(style)],
+            pitch: 0.2 + self.0.uniform_number(0.1),
             mass,
-            com: if self.chance(3) { [0.0; 3] } else { self.vector(0.4) },
+            com: if self.has_chance(3) { [0.0; 3] } else { self.random_vector(0.4) },
             moments: sides.map(|s| mass * (all - s) / 3.0),
-            inertia_turns: self.turns(style),
-            particle: self.chance(6).then(|| (self.mass(style), self.vector(0.5))),
-            slider: self.chance(12).then(|| Slider { mass: self.mass(style), offset: self.vector(0.5) }),
+            inertia_turns: self.random_turns(style),
+            particle: self.has_chance(6).then(|| (self.random_mass(style), self.random_vector(0.5))),
+            slider: self
+                .has_chance(12)
+                .then(|| Slider { mass: self.random_mass(style), offset: self.random_vector(0.5) }),
         }
     }
 
-    fn end(&mut self, body: Option<usize>) -> End {
-        End { body, at: self.vector(0.8) }
+    fn random_end(&mut self, body: Option<usize>) -> End {
+        End { body, at: self.random_vector(0.8) }
     }
 
-    fn law(&mut self) -> Law {
-        let size = 1.5 + self.0.uniform(1.0);
+    fn random_law(&mut self) -> Law {
+        let size = 1.5 + self.0.uniform_number(1.0);
         match self.index_below(3) {
-            0 => Law::Spring(4.0 * size, self.0.uniform(0.3).abs()),
+            0 => Law::Spring(4.0 * size, self.0.uniform_number(0.3).abs()),
             1 => Law::Dashpot(size),
             _ => Law::Inerter(0.5 * size),
         }
     }
 
     fn law_between(&mut self) -> Law {
-        if self.chance(4) { Law::Attraction(self.0.uniform(2.0)) } else { self.law() }
+        if self.has_chance(4) { Law::Attraction(self.0.uniform_number(2.0)) } else { self.random_law() }
     }
 
-    fn friction(&mut self) -> Law {
-        let mut size = || 1.0 + self.0.uniform(0.7);
+    fn random_friction_law(&mut self) -> Law {
+        let mut size = || 1.0 + self.0.uniform_number(0.7);
         let (coulomb, stribeck_speed) = (size(), 0.4 * size());
         Law::Friction(Friction {
             coulomb,
@@ -285,86 +288,92 @@ impl Source {
     }
 
     /// Returns a rope over a peg, or a cable around a round obstacle on any body.
-    fn path(&mut self, bodies: &[Body], one: usize) -> Option<Path> {
-        let other = self.any(bodies);
-        if self.chance(2) {
-            return Some(Path::Rope([self.end(None), self.end(Some(one)), self.end(other)]));
+    fn random_cable_path(&mut self, bodies: &[Body], one: usize) -> Option<Path> {
+        let other = self.random_body_or_ground(bodies);
+        if self.has_chance(2) {
+            return Some(Path::Rope([
+                self.random_end(None),
+                self.random_end(Some(one)),
+                self.random_end(other),
+            ]));
         }
         // Bodies that are welded together have a constant distance.
-        if other.and_then(|other| rigid(bodies, other)) == rigid(bodies, one) {
+        if other.and_then(|other| rigidly_connected_root(bodies, other))
+            == rigidly_connected_root(bodies, one)
+        {
             return None;
         }
-        let around = self.any(bodies);
+        let around = self.random_body_or_ground(bodies);
         Some(Path::Cable {
-            ends: [self.end(other), self.end(Some(one))],
-            around: self.end(around),
-            radius: 0.2 + self.0.uniform(0.15),
-            axis: self.chance(2).then(|| {
-                let mut axis = self.vector(1.0);
+            ends: [self.random_end(other), self.random_end(Some(one))],
+            around: self.random_end(around),
+            radius: 0.2 + self.0.uniform_number(0.15),
+            axis: self.has_chance(2).then(|| {
+                let mut axis = self.random_vector(1.0);
                 axis[self.index_below(3)] += 1.5;
-                unit(axis)
+                unit_vector(axis)
             }),
         })
     }
 
     /// Returns a random body, or `None` for the ground.
-    fn any(&mut self, bodies: &[Body]) -> Option<usize> {
+    fn random_body_or_ground(&mut self, bodies: &[Body]) -> Option<usize> {
         self.index_below(bodies.len() + 1).checked_sub(1)
     }
 
-    fn element(&mut self, bodies: &[Body]) -> Option<Element> {
+    fn random_element(&mut self, bodies: &[Body]) -> Option<Element> {
         let one = self.index_below(bodies.len());
         // Forces cannot move a body that is welded to the ground.
         if is_fixed(bodies, one) {
             return None;
         }
         Some(match self.index_below(9) {
-            0 => Element::Push(self.end(Some(one)), self.vector(3.0)),
-            1 => Element::Follow(self.end(Some(one)), self.vector(3.0)),
+            0 => Element::Push(self.random_end(Some(one)), self.random_vector(3.0)),
+            1 => Element::Follow(self.random_end(Some(one)), self.random_vector(3.0)),
             2 => {
-                let coordinates = bodies[one].kind.coordinates();
+                let coordinates = bodies[one].kind.coordinate_names();
                 if coordinates.is_empty() {
                     return None;
                 }
-                let law = if self.chance(3) { self.friction() } else { self.law() };
+                let law = if self.has_chance(3) { self.random_friction_law() } else { self.random_law() };
                 Element::On(law, one, self.index_below(coordinates.len()))
             }
-            3 => Element::Between(self.law_between(), self.end(None), self.end(Some(one))),
-            4 => Element::Along(self.law(), self.path(bodies, one)?),
-            5 if turns(bodies, one) => Element::Twist(one, self.vector(3.0)),
+            3 => Element::Between(self.law_between(), self.random_end(None), self.random_end(Some(one))),
+            4 => Element::Along(self.random_law(), self.random_cable_path(bodies, one)?),
+            5 if has_rotating_joint(bodies, one) => Element::Twist(one, self.random_vector(3.0)),
             _ => {
                 let other = self.index_below(bodies.len());
                 // Bodies that are welded together have a constant distance.
-                if rigid(bodies, other) == rigid(bodies, one) {
+                if rigidly_connected_root(bodies, other) == rigidly_connected_root(bodies, one) {
                     return None;
                 }
-                Element::Between(self.law_between(), self.end(Some(other)), self.end(Some(one)))
+                Element::Between(self.law_between(), self.random_end(Some(other)), self.random_end(Some(one)))
             }
         })
     }
 }
 
 /// Returns the body that a body is rigidly connected to by welds; `None` for the ground.
-fn rigid(bodies: &[Body], body: usize) -> Option<usize> {
+fn rigidly_connected_root(bodies: &[Body], body: usize) -> Option<usize> {
     match (bodies[body].kind, bodies[body].parent) {
         (Kind::Weld, None) => None,
-        (Kind::Weld, Some(parent)) => rigid(bodies, parent),
+        (Kind::Weld, Some(parent)) => rigidly_connected_root(bodies, parent),
         _ => Some(body),
     }
 }
 
 /// Returns whether a joint between the ground and the body rotates.
-fn turns(bodies: &[Body], body: usize) -> bool {
+fn has_rotating_joint(bodies: &[Body], body: usize) -> bool {
     let own = !matches!(bodies[body].kind, Kind::Sleeve | Kind::Stage | Kind::Weld);
-    own || bodies[body].parent.is_some_and(|parent| turns(bodies, parent))
+    own || bodies[body].parent.is_some_and(|parent| has_rotating_joint(bodies, parent))
 }
 
 fn is_fixed(bodies: &[Body], body: usize) -> bool {
-    rigid(bodies, body).is_none()
+    rigidly_connected_root(bodies, body).is_none()
 }
 
 /// Returns the unit vector in a direction, computed like the language's `unit`.
-fn unit(v: [f64; 3]) -> [f64; 3] {
+fn unit_vector(v: [f64; 3]) -> [f64; 3] {
     let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
     v.map(|x| x / length)
 }
@@ -386,20 +395,20 @@ const LIMB_KINDS: [Kind; 12] = [
 ];
 
 /// Returns the random mechanism of a seed.
-pub fn spec(seed: u64, style: Style) -> Spec {
+pub fn random_spec(seed: u64, style: Style) -> Spec {
     let mut source = Source(Random::new(seed));
     let mut bodies: Vec<Body> = Vec::new();
-    let rigged = if style.limbs > 0 { limbs(&mut source, &style, &mut bodies) } else { 0 };
+    let rigged = if style.limbs > 0 { add_identical_limbs(&mut source, &style, &mut bodies) } else { 0 };
     if style.limbs == 0 {
         let count = 1 + source.index_below(style.bodies);
         for k in 0..count {
-            let parent = (k > 0 && !source.chance(8)).then(|| source.index_below(k));
+            let parent = (k > 0 && !source.has_chance(8)).then(|| source.index_below(k));
             // Floating bases are most frequent in applications.
             let kind = match parent {
-                None if source.chance(3) => Kind::Free,
+                None if source.has_chance(3) => Kind::Free,
                 _ => KINDS[source.index_below(KINDS.len())],
             };
-            let body = source.body(kind, parent, &style);
+            let body = source.random_body(kind, parent, &style);
             bodies.push(body);
         }
         if bodies.iter().all(|body| body.kind == Kind::Weld) {
@@ -407,12 +416,12 @@ pub fn spec(seed: u64, style: Style) -> Spec {
         }
     }
     let tries = source.index_below(4) + rigged;
-    let elements = (0..tries).filter_map(|_| source.element(&bodies)).collect();
-    Spec { gravity: source.vector(10.0), bodies, elements, symbolic: source.chance(2) }
+    let elements = (0..tries).filter_map(|_| source.random_element(&bodies)).collect();
+    Spec { gravity: source.random_vector(10.0), bodies, elements, symbolic: source.has_chance(2) }
 }
 
 /// Adds identical limbs to a trunk. Returns the number of further elements to generate.
-fn limbs(source: &mut Source, style: &Style, bodies: &mut Vec<Body>) -> usize {
+fn add_identical_limbs(source: &mut Source, style: &Style, bodies: &mut Vec<Body>) -> usize {
     let trunk = match source.index_below(4) {
         0 => None,
         1 => Some(Kind::Free),
@@ -420,20 +429,20 @@ fn limbs(source: &mut Source, style: &Style, bodies: &mut Vec<Body>) -> usize {
         _ => Some(KINDS[source.index_below(KINDS.len())]),
     };
     if let Some(kind) = trunk {
-        bodies.push(source.body(kind, None, style));
+        bodies.push(source.random_body(kind, None, style));
     }
     let root = bodies.len().checked_sub(1);
     let joints: Vec<Kind> =
         (0..1 + source.index_below(2)).map(|_| LIMB_KINDS[source.index_below(LIMB_KINDS.len())]).collect();
-    let plain: Vec<Body> = joints.iter().map(|kind| source.body(*kind, None, style)).collect();
-    let same = source.chance(2);
+    let plain: Vec<Body> = joints.iter().map(|kind| source.random_body(*kind, None, style)).collect();
+    let same = source.has_chance(2);
     for _ in 0..style.limbs {
         for (k, pattern) in plain.iter().enumerate() {
             let parent = if k == 0 { root } else { Some(bodies.len() - 1) };
-            let mut body = if same { pattern.clone() } else { source.body(pattern.kind, None, style) };
+            let mut body = if same { pattern.clone() } else { source.random_body(pattern.kind, None, style) };
             body.slider = None;
             body.parent = parent;
-            body.on_parent.at = source.vector(0.5);
+            body.on_parent.at = source.random_vector(0.5);
             bodies.push(body);
         }
     }

@@ -6,7 +6,7 @@ use std::fmt::Write;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Returns the source text of a random mechanism: arguments of the attribute, and the struct.
-pub fn source(spec: &Spec, name: &str, requests: &str) -> (String, String) {
+pub fn mechanism_source(spec: &Spec, name: &str, requests: &str) -> (String, String) {
     let mut out = String::new();
     for (k, body) in spec.bodies.iter().enumerate() {
         write_body(k, body, spec.symbolic, &mut out);
@@ -27,19 +27,19 @@ fn write_body(k: usize, body: &Body, symbolic: bool, out: &mut String) {
         false => format!("{:?}", body.mass),
     };
     let [a, b, c] = body.moments;
-    let turned = rotated(&body.inertia_turns);
+    let turned = rotation_text(&body.inertia_turns);
     let _ = writeln!(
         out,
         "#[body(mass = {mass}, com = {:?}, inertia = diagonal({a:?}, {b:?}, {c:?}){turned})] body{k}: Body,",
         body.com
     );
-    let parent = name(body.parent);
+    let parent = body_name(body.parent);
     let _ = writeln!(
         out,
         "#[joint({} -> {}{})] joint{k}: {:?},",
-        placed(&parent, &body.on_parent),
-        placed(&format!("body{k}"), &body.on_child),
-        axes(body),
+        placement_text(&parent, &body.on_parent),
+        placement_text(&format!("body{k}"), &body.on_child),
+        axes_text(body),
         body.kind
     );
     if let Some((mass, at)) = body.particle {
@@ -60,16 +60,16 @@ fn write_body(k: usize, body: &Body, symbolic: bool, out: &mut String) {
     }
 }
 
-fn name(body: Option<usize>) -> String {
+fn body_name(body: Option<usize>) -> String {
     body.map_or("ground".to_string(), |k| format!("body{k}"))
 }
 
-fn placed(name: &str, place: &Place) -> String {
+fn placement_text(name: &str, place: &Place) -> String {
     let at = if place.at == [0.0; 3] { String::new() } else { format!(".at({:?})", place.at) };
-    format!("{name}{at}{}", rotated(&place.turns))
+    format!("{name}{at}{}", rotation_text(&place.turns))
 }
 
-fn rotated(turns: &[(usize, f64)]) -> String {
+fn rotation_text(turns: &[(usize, f64)]) -> String {
     if turns.is_empty() {
         return String::new();
     }
@@ -77,7 +77,7 @@ fn rotated(turns: &[(usize, f64)]) -> String {
     format!(".rotated({})", list.join(", "))
 }
 
-fn axes(body: &Body) -> String {
+fn axes_text(body: &Body) -> String {
     let [a, b] = body.axes.map(|axis| format!("unit({axis:?})"));
     match body.kind {
         Kind::Pin | Kind::Collar => format!(", about = {a}"),
@@ -91,15 +91,20 @@ fn axes(body: &Body) -> String {
     }
 }
 
-pub fn point(end: &End) -> String {
-    format!("{}.at({:?})", name(end.body), end.at)
+pub fn end_text(end: &End) -> String {
+    format!("{}.at({:?})", body_name(end.body), end.at)
 }
 
 fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String) {
     let _ = match element {
         Element::Between(law, a, b) => {
             let (words, kind) = law_words(*law, "free_length");
-            writeln!(out, "#[acts(between = ({}, {}), {words})] element{k}: {kind},", point(a), point(b))
+            writeln!(
+                out,
+                "#[acts(between = ({}, {}), {words})] element{k}: {kind},",
+                end_text(a),
+                end_text(b)
+            )
         }
         Element::Along(law, path) => {
             let (words, kind) = law_words(*law, "free_length");
@@ -107,7 +112,7 @@ fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String)
         }
         Element::On(law, body, coordinate) => {
             let kind = bodies[*body].kind;
-            let which = kind.coordinates()[*coordinate];
+            let which = kind.coordinate_names()[*coordinate];
             let is_angle = matches!(which, ".turn" | ".first" | ".second" | ".angle")
                 || matches!(kind, Kind::Pin | Kind::Screw);
             let free = if is_angle { "free_angle" } else { "free_length" };
@@ -118,7 +123,7 @@ fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String)
             out,
             "#[acts(on = {}, value = ({x:?}) * ground.x + ({y:?}) * ground.y + ({z:?}) * ground.z)] \
              element{k}: Force,",
-            point(end)
+            end_text(end)
         ),
         Element::Twist(body, [x, y, z]) => writeln!(
             out,
@@ -126,12 +131,12 @@ fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String)
              element{k}: Torque,"
         ),
         Element::Follow(end, [x, y, z]) => {
-            let b = name(end.body);
+            let b = body_name(end.body);
             writeln!(
                 out,
                 "#[acts(on = {}, value = ({x:?}) * {b}.x + ({y:?}) * {b}.y + ({z:?}) * {b}.z)] element{k}: \
                  Force,",
-                point(end)
+                end_text(end)
             )
         }
     };
@@ -140,14 +145,14 @@ fn write_element(k: usize, element: &Element, bodies: &[Body], out: &mut String)
 fn length(path: &Path) -> String {
     match path {
         Path::Rope([a, b, c]) => {
-            format!("norm(r({0} / {1})) + norm(r({1} / {2}))", point(a), point(b), point(c))
+            format!("norm(r({0} / {1})) + norm(r({1} / {2}))", end_text(a), end_text(b), end_text(c))
         }
         Path::Cable { ends: [a, b], around, radius, axis } => {
             let surface = match axis {
                 None => format!("sphere({radius:?})"),
                 Some(axis) => format!("cylinder({radius:?}, unit({axis:?}))"),
             };
-            format!("cable({} / {}, {}.{surface})", point(a), point(b), point(around))
+            format!("cable({} / {}, {}.{surface})", end_text(a), end_text(b), end_text(around))
         }
     }
 }

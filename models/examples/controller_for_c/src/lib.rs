@@ -13,7 +13,7 @@ mod controller;
 #[path = "../../regulator/mod.rs"]
 mod regulator;
 
-use controller::{Cart, Regulator, control, costs};
+use controller::{Cart, Regulator, force_on_cart, quadratic_costs};
 use linkwork::discrete;
 use linkwork::prelude::{Rk4, SVector};
 
@@ -29,8 +29,13 @@ pub struct Gains {
 #[unsafe(no_mangle)]
 pub extern "C" fn cart_design(period: f64, gains: &mut Gains) -> bool {
     let (upright, still) = (SVector::zeros(), SVector::zeros());
-    let Some((found, _)) = regulator::regulator(&Cart {}, &Rk4::step(period), &upright, &still, &costs())
-    else {
+    let Some((found, _)) = regulator::linear_quadratic_regulator(
+        &Cart {},
+        &Rk4::step(period),
+        &upright,
+        &still,
+        &quadratic_costs(),
+    ) else {
         return false;
     };
     *gains = Gains { q: found.by_q.transpose().into(), v: found.by_v.transpose().into() };
@@ -42,7 +47,7 @@ pub extern "C" fn cart_design(period: f64, gains: &mut Gains) -> bool {
 pub extern "C" fn cart_push(gains: &Gains, q: &[f64; 3], v: &[f64; 3]) -> f64 {
     let [by_q, by_v] = [gains.q, gains.v].map(|gain| SVector::from(gain).transpose());
     let regulator = Regulator { change: SVector::zeros(), by_q, by_v, expected: [0.0; 2] };
-    control(&regulator, &(*q).into(), &(*v).into())
+    force_on_cart(&regulator, &(*q).into(), &(*v).into())
 }
 
 /// Simulates the cart for one period. If the state after it is not finite, it returns `false` and leaves the

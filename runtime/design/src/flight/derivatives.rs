@@ -44,7 +44,7 @@ pub struct Derivatives {
 }
 
 /// Returns the wrench `w × (M v)` for a twist `w`, with the linear part first.
-fn bias(mass: &DMatrix<f64>, w: &DVector<f64>, v: &DVector<f64>) -> DVector<f64> {
+fn bias_wrench(mass: &DMatrix<f64>, w: &DVector<f64>, v: &DVector<f64>) -> DVector<f64> {
     let momentum = mass * v;
     let three_entries_from = |x: &DVector<f64>, from: usize| x.fixed_rows::<3>(from).into_owned();
     let (force, moment) = (three_entries_from(&momentum, 0), three_entries_from(&momentum, 3));
@@ -86,13 +86,14 @@ impl Derivatives {
         let mut by_velocity = DMatrix::from_fn(6, 6, |i, j| -by_v[(i, j)]);
         for k in 0..6 {
             let unit = DVector::from_fn(6, |i, _| if i == k { 1.0 } else { 0.0 });
-            let change = bias(&mass, &unit, &velocity) + bias(&mass, &velocity, &unit);
+            let change = bias_wrench(&mass, &unit, &velocity) + bias_wrench(&mass, &velocity, &unit);
             by_velocity.column_mut(k).zip_apply(&change, |x, y| *x += y);
         }
         let by_acceleration = DMatrix::from_fn(6, 6, |i, j| mass[(i, j)] - all[(i, j)]);
         let by_u = DMatrix::from_fn(NV, NU, |i, j| motion.by_u[(i, j)]);
         let by_input = (all * by_u).rows(0, 6).into_owned();
-        let forces = &mass * acceleration + bias(&mass, &velocity, &velocity) - weight(m, q);
+        let forces =
+            &mass * acceleration + bias_wrench(&mass, &velocity, &velocity) - weight_on_free_joint(m, q);
         let parts =
             [by_velocity.as_slice(), by_acceleration.as_slice(), by_input.as_slice(), forces.as_slice()];
         if parts.iter().any(|part| part.iter().any(|x| !x.is_finite())) {
@@ -127,15 +128,15 @@ impl Derivatives {
     ///
     /// [`Error::Unknown`] with the list of existing names.
     pub fn of_force(&self, force: &str, by: &str) -> Result<f64, Error> {
-        let row = place("force", &FORCES, force)?;
+        let row = index_of_known_name("force", &FORCES, force)?;
         if let Some(velocity) = by.strip_suffix('\'') {
-            return Ok(self.by_acceleration[(row, place("velocity", &VELOCITIES, velocity)?)]);
+            return Ok(self.by_acceleration[(row, index_of_known_name("velocity", &VELOCITIES, velocity)?)]);
         }
         if let Some(column) = VELOCITIES.iter().position(|name| *name == by) {
             return Ok(self.by_velocity[(row, column)]);
         }
         let names: Vec<&str> = VELOCITIES.iter().copied().chain(self.inputs.iter().copied()).collect();
-        Ok(self.by_input[(row, place("velocity or input", &names, by)?.saturating_sub(6))])
+        Ok(self.by_input[(row, index_of_known_name("velocity or input", &names, by)?.saturating_sub(6))])
     }
 
     /// Returns a derivative made dimensionless as by Etkin and Reid (*Dynamics of Flight*, 1996, table 4.1).
@@ -159,7 +160,11 @@ impl Derivatives {
             "L" | "N" => span,
             _ => 1.0,
         };
-        let own = if by == "u" { 2.0 * self.forces[place("force", &FORCES, force)?] / speed } else { 0.0 };
+        let own = if by == "u" {
+            2.0 * self.forces[index_of_known_name("force", &FORCES, force)?] / speed
+        } else {
+            0.0
+        };
         let unit = match by {
             "u" | "v" | "w" => 1.0 / speed,
             "q" => chord / (2.0 * speed),
@@ -196,7 +201,10 @@ impl Derivatives {
 
 /// Returns the generalized forces of the potential on the free joint, by central differences, which are exact
 /// for a uniform field.
-fn weight<M, const NQ: usize, const NV: usize, const NU: usize>(m: &M, q: &SVector<f64, NQ>) -> DVector<f64>
+fn weight_on_free_joint<M, const NQ: usize, const NV: usize, const NU: usize>(
+    m: &M,
+    q: &SVector<f64, NQ>,
+) -> DVector<f64>
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
@@ -208,7 +216,7 @@ where
     })
 }
 
-fn place(kind: &'static str, names: &[&str], name: &str) -> Result<usize, Error> {
+fn index_of_known_name(kind: &'static str, names: &[&str], name: &str) -> Result<usize, Error> {
     names.iter().position(|known| *known == name).ok_or_else(|| Error::Unknown {
         kind,
         name: name.to_owned(),

@@ -24,12 +24,16 @@ pub struct FlightModes {
     pub others: Vec<Mode>,
 }
 
-fn share(mode: &Mode, states: &[&str]) -> f64 {
+fn share_of_states(mode: &Mode, states: &[&str]) -> f64 {
     states.iter().filter_map(|state| mode.participation_of(state)).sum()
 }
 
 /// Removes and returns the mode of maximum `key` among the modes for which `fits` is true.
-fn take(modes: &mut Vec<Mode>, fits: impl Fn(&Mode) -> bool, key: impl Fn(&Mode) -> f64) -> Option<Mode> {
+fn take_matching_mode(
+    modes: &mut Vec<Mode>,
+    fits: impl Fn(&Mode) -> bool,
+    key: impl Fn(&Mode) -> f64,
+) -> Option<Mode> {
     let candidates = modes.iter().enumerate().filter(|(_, mode)| fits(mode));
     let (k, _) = candidates.max_by(|(_, a), (_, b)| key(a).total_cmp(&key(b)))?;
     Some(modes.remove(k))
@@ -50,37 +54,37 @@ impl FlightModes {
             return Err(Error::Unknown { kind: "state", name: LONGITUDINAL.join(", "), known });
         }
         let mut modes = system.modes()?;
-        let longitudinal_share = |mode: &Mode| share(mode, &LONGITUDINAL);
-        let lateral_share = |mode: &Mode| share(mode, &LATERAL);
+        let longitudinal_share = |mode: &Mode| share_of_states(mode, &LONGITUDINAL);
+        let lateral_share = |mode: &Mode| share_of_states(mode, &LATERAL);
         let in_plane = |mode: &Mode| longitudinal_share(mode) > 0.5;
         let is_lateral_mode = |mode: &Mode| lateral_share(mode) > 0.5;
         let is_oscillating_mode = |mode: &Mode| mode.exponent.im > 0.0;
-        let pitch_share = |mode: &Mode| share(mode, &["w", "q"]);
-        let surge_share = |mode: &Mode| share(mode, &["u", "theta", "h"]);
+        let pitch_share = |mode: &Mode| share_of_states(mode, &["w", "q"]);
+        let surge_share = |mode: &Mode| share_of_states(mode, &["u", "theta", "h"]);
         let is_short_period = |mode: &Mode| {
             in_plane(mode) && is_oscillating_mode(mode) && pitch_share(mode) > surge_share(mode)
         };
         let is_phugoid = |mode: &Mode| {
             in_plane(mode) && is_oscillating_mode(mode) && pitch_share(mode) <= surge_share(mode)
         };
-        let yaw_share = |mode: &Mode| share(mode, &["v", "r"]);
+        let yaw_share = |mode: &Mode| share_of_states(mode, &["v", "r"]);
         let is_aperiodic_lateral = |mode: &Mode| is_lateral_mode(mode) && !is_oscillating_mode(mode);
         Ok(Self {
-            short_period: take(&mut modes, is_short_period, Mode::frequency),
-            phugoid: take(&mut modes, is_phugoid, surge_share),
-            dutch_roll: take(
+            short_period: take_matching_mode(&mut modes, is_short_period, Mode::frequency),
+            phugoid: take_matching_mode(&mut modes, is_phugoid, surge_share),
+            dutch_roll: take_matching_mode(
                 &mut modes,
                 |mode| is_lateral_mode(mode) && is_oscillating_mode(mode) && yaw_share(mode) > 0.3,
                 yaw_share,
             ),
-            roll: take(
+            roll: take_matching_mode(
                 &mut modes,
-                |mode| is_aperiodic_lateral(mode) && share(mode, &["p"]) > 0.3,
+                |mode| is_aperiodic_lateral(mode) && share_of_states(mode, &["p"]) > 0.3,
                 Mode::frequency,
             ),
-            spiral: take(
+            spiral: take_matching_mode(
                 &mut modes,
-                |mode| is_aperiodic_lateral(mode) && share(mode, &["phi"]) > 0.3,
+                |mode| is_aperiodic_lateral(mode) && share_of_states(mode, &["phi"]) > 0.3,
                 |mode| -mode.frequency(),
             ),
             others: modes,

@@ -7,7 +7,7 @@ const MAX_SWEEPS: usize = 40;
 
 /// Returns `D⁻¹ A D`, whose rows and columns have similar norms, and the diagonal of `D` (Parlett and
 /// Reinsch, *Balancing a matrix for calculation of eigenvalues and eigenvectors*, 1969).
-pub(crate) fn balanced(a: &DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
+pub(crate) fn balance_matrix(a: &DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
     let n = a.nrows();
     let empty = (DMatrix::zeros(n, 0), DMatrix::zeros(0, n));
     let (a, _, _, d) = balance_system(a, &empty.0, &empty.1);

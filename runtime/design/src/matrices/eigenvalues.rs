@@ -1,6 +1,6 @@
 //! Eigenvalues of real matrices, in exactly conjugate pairs.
 
-use super::{C, balanced, check_square};
+use super::{C, balance_matrix, check_square};
 use crate::Error;
 use nalgebra::DMatrix;
 
@@ -16,19 +16,19 @@ const MAX_ITERATIONS: usize = 120;
 /// [`Error::Shape`], [`Error::NotFinite`], and [`Error::NotConverged`] if the iteration does not converge.
 pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<C>, Error> {
     let n = check_square("A", a)?;
-    let mut h = hessenberg(balanced(a).0);
+    let mut h = hessenberg(balance_matrix(a).0);
     let size = h.norm();
     let mut found = Vec::with_capacity(n);
     let (mut left, mut steps) = (n, 0);
     let mut moved = 0.0;
     while left > 0 {
         let high = left - 1;
-        let low = split(&h, high, size);
+        let low = first_row_of_active_block(&h, high, size);
         if low == high {
             found.push(C::new(h[(high, high)] + moved, 0.0));
             (left, steps) = (left - 1, 0);
         } else if low + 1 == high {
-            found.extend(pair(&h, low).map(|x| x + moved));
+            found.extend(eigenvalue_pair(&h, low).map(|x| x + moved));
             (left, steps) = (left - 2, 0);
         } else {
             steps += 1;
@@ -54,7 +54,7 @@ pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<C>, Error> {
 }
 
 /// Returns the first row of the active block that ends at row `high`.
-fn split(h: &DMatrix<f64>, high: usize, size: f64) -> usize {
+fn first_row_of_active_block(h: &DMatrix<f64>, high: usize, size: f64) -> usize {
     for k in (1..=high).rev() {
         let mut near = h[(k - 1, k - 1)].abs() + h[(k, k)].abs();
         if near == 0.0 {
@@ -68,7 +68,7 @@ fn split(h: &DMatrix<f64>, high: usize, size: f64) -> usize {
 }
 
 /// Returns the eigenvalues of the block of two rows at `k`.
-fn pair(h: &DMatrix<f64>, k: usize) -> [C; 2] {
+fn eigenvalue_pair(h: &DMatrix<f64>, k: usize) -> [C; 2] {
     let (a, b, c, d) = (h[(k, k)], h[(k, k + 1)], h[(k + 1, k)], h[(k + 1, k + 1)]);
     let half = 0.5 * (a - d);
     let square = half * half + b * c;

@@ -1,6 +1,6 @@
 //! Matrix exponential.
 
-use super::{check_square, norm_one, solve};
+use super::{check_square, norm_one, solve_linear_system};
 use crate::Error;
 use nalgebra::DMatrix;
 
@@ -57,7 +57,7 @@ pub fn exponential(a: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let high_order_sum = |b: [f64; 3]| &a6 * (&a6 * b[2] + &a4 * b[1] + &a2 * b[0]);
     let odd = &a * (high_order_sum([B[9], B[11], B[13]]) + low_order_sum([B[1], B[3], B[5], B[7]]));
     let even = high_order_sum([B[8], B[10], B[12]]) + low_order_sum([B[0], B[2], B[4], B[6]]);
-    let mut e = solve("the exponential's denominator", &(&even - &odd), &(&even + &odd))?;
+    let mut e = solve_linear_system("the exponential's denominator", &(&even - &odd), &(&even + &odd))?;
     for _ in 0..squarings as usize {
         e = &e * &e;
     }

@@ -1,6 +1,6 @@
 //! Matrix logarithm.
 
-use super::{C, CMatrix, Schur, check_square, complex};
+use super::{C, CMatrix, Schur, check_square, complex_matrix};
 use crate::Error;
 use nalgebra::DMatrix;
 
@@ -30,7 +30,7 @@ pub fn logarithm(a: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     if n == 0 {
         return Ok(a.clone());
     }
-    let Schur { q, mut t } = Schur::new(&complex(a))?;
+    let Schur { q, mut t } = Schur::new(&complex_matrix(a))?;
     let largest = t.diagonal().iter().map(|x| x.norm()).fold(0.0, f64::max);
     for x in t.diagonal().iter() {
         let rounding = 1e-13 * largest;

@@ -1,7 +1,7 @@
 //! Solvers of Sylvester and Lyapunov equations by Schur forms (Bartels and Stewart, *Solution of the matrix
 //! equation AX + XB = C*, 1972), with one step of iterative refinement.
 
-use super::{C, CMatrix, Schur, check, check_square, complex, symmetric};
+use super::{C, CMatrix, Schur, check_matrix, check_square, complex_matrix, symmetric_part};
 use crate::Error;
 use nalgebra::{DMatrix, DVector};
 
@@ -23,13 +23,13 @@ struct Sides {
 
 impl Sides {
     fn new(a: &DMatrix<f64>, b: &DMatrix<f64>, kind: Kind) -> Result<Self, Error> {
-        Ok(Self { left: Schur::new(&complex(a))?, right: Schur::new(&complex(b))?, kind })
+        Ok(Self { left: Schur::new(&complex_matrix(a))?, right: Schur::new(&complex_matrix(b))?, kind })
     }
 
     /// Solves `A X + X B = F`, or `A X B − X = F`, for `X`.
-    fn solve(&self, f: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+    fn solve_equation(&self, f: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
         let (t, s) = (&self.left.t, &self.right.t);
-        let f = self.left.q.adjoint() * complex(f) * &self.right.q;
+        let f = self.left.q.adjoint() * complex_matrix(f) * &self.right.q;
         let mut y = CMatrix::zeros(f.nrows(), f.ncols());
         for k in 0..f.ncols() {
             let mut before = CVector::zeros(f.nrows());
@@ -41,14 +41,14 @@ impl Sides {
                 Kind::Continuous => (C::new(1.0, 0.0), own, f.column(k) - before),
                 Kind::Discrete => (own, C::new(-1.0, 0.0), f.column(k) - t * before),
             };
-            y.set_column(k, &back(t, factor, plus, right)?);
+            y.set_column(k, &solve_shifted_triangular(t, factor, plus, right)?);
         }
         Ok((&self.left.q * y * self.right.q.adjoint()).map(|x| x.re))
     }
 }
 
 /// Solves `(factor T + plus I) x = right` for `x`.
-fn back(t: &CMatrix, factor: C, plus: C, mut right: CVector) -> Result<CVector, Error> {
+fn solve_shifted_triangular(t: &CMatrix, factor: C, plus: C, mut right: CVector) -> Result<CVector, Error> {
     for i in (0..right.nrows()).rev() {
         let sum: C = (i + 1..right.nrows()).map(|j| factor * t[(i, j)] * right[j]).sum();
         let (one, other) = (factor * t[(i, i)], plus);
@@ -78,11 +78,11 @@ fn back(t: &CMatrix, factor: C, plus: C, mut right: CVector) -> Result<CVector, 
 /// eigenvalue of `A` is the negative of an eigenvalue of `B`.
 pub fn sylvester(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let (n, m) = (check_square("A", a)?, check_square("B", b)?);
-    check("C", c, n, m)?;
+    check_matrix("C", c, n, m)?;
     let sides = Sides::new(a, b, Kind::Continuous)?;
-    let x = sides.solve(c)?;
+    let x = sides.solve_equation(c)?;
     let residual = c - a * &x - &x * b;
-    Ok(&x + sides.solve(&residual)?)
+    Ok(&x + sides.solve_equation(&residual)?)
 }
 
 /// Solves `A X B − X + C = 0` for `X`.
@@ -97,11 +97,11 @@ pub fn discrete_sylvester(
     c: &DMatrix<f64>,
 ) -> Result<DMatrix<f64>, Error> {
     let (n, m) = (check_square("A", a)?, check_square("B", b)?);
-    check("C", c, n, m)?;
+    check_matrix("C", c, n, m)?;
     let sides = Sides::new(a, b, Kind::Discrete)?;
-    let x = sides.solve(&-c)?;
+    let x = sides.solve_equation(&-c)?;
     let residual = -(c + a * &x * b - &x);
-    Ok(&x + sides.solve(&residual)?)
+    Ok(&x + sides.solve_equation(&residual)?)
 }
 
 /// Solves `A X + X Aᵀ + Q = 0` for `X`, the covariance of a stable system under white noise. `X` is symmetric
@@ -113,8 +113,8 @@ pub fn discrete_sylvester(
 /// eigenvalues of `A` add up to zero.
 pub fn lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = check_square("A", a)?;
-    check("Q", q, n, n)?;
-    Ok(like(q, sylvester(a, &a.transpose(), &-q)?))
+    check_matrix("Q", q, n, n)?;
+    Ok(restore_symmetry(q, sylvester(a, &a.transpose(), &-q)?))
 }
 
 /// Solves `A X Aᵀ − X + Q = 0` for `X`, which is symmetric if `Q` is symmetric.
@@ -125,11 +125,11 @@ pub fn lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Erro
 /// of two eigenvalues of `A` is one.
 pub fn discrete_lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = check_square("A", a)?;
-    check("Q", q, n, n)?;
-    Ok(like(q, discrete_sylvester(a, &a.transpose(), q)?))
+    check_matrix("Q", q, n, n)?;
+    Ok(restore_symmetry(q, discrete_sylvester(a, &a.transpose(), q)?))
 }
 
 /// Removes the asymmetric rounding error of a solution if `Q` is symmetric.
-fn like(q: &DMatrix<f64>, x: DMatrix<f64>) -> DMatrix<f64> {
-    if *q == q.transpose() { symmetric(&x) } else { x }
+fn restore_symmetry(q: &DMatrix<f64>, x: DMatrix<f64>) -> DMatrix<f64> {
+    if *q == q.transpose() { symmetric_part(&x) } else { x }
 }

@@ -1,6 +1,6 @@
 //! Numerical rank of matrices by orthogonal transformations.
 
-use super::check;
+use super::check_matrix;
 use crate::Error;
 use nalgebra::DMatrix;
 
@@ -55,7 +55,7 @@ impl Compression {
 /// [`Error::NotFinite`] for entries that are infinite or NaN, [`Error::NotConverged`] if the singular values
 /// do not converge.
 pub fn rank(m: &DMatrix<f64>, tolerance: f64) -> Result<usize, Error> {
-    check("the matrix", m, m.nrows(), m.ncols())?;
+    check_matrix("the matrix", m, m.nrows(), m.ncols())?;
     if m.is_empty() {
         return Ok(0);
     }

@@ -2,8 +2,8 @@
 //! by an invariant subspace or by doubling; Newton's method refines both solutions.
 
 use super::{
-    C, CMatrix, Schur, balance_system, balanced, check, check_square, complex, discrete_lyapunov,
-    eigenvalues, lyapunov, smallest_singular, solve, symmetric,
+    C, CMatrix, Schur, balance_matrix, balance_system, check_matrix, check_square, complex_matrix,
+    discrete_lyapunov, eigenvalues, lyapunov, smallest_singular, solve_linear_system, symmetric_part,
 };
 use crate::Error;
 use nalgebra::DMatrix;
@@ -43,19 +43,19 @@ impl Cost {
         self
     }
 
-    fn check(&self, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<usize, Error> {
+    fn check_weights(&self, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<usize, Error> {
         let n = check_square("A", a)?;
-        check("B", b, n, b.ncols())?;
-        check("Q", &self.q, n, n)?;
-        check("R", &self.r, b.ncols(), b.ncols())?;
-        check("N", &self.n, n, b.ncols())?;
+        check_matrix("B", b, n, b.ncols())?;
+        check_matrix("Q", &self.q, n, n)?;
+        check_matrix("R", &self.r, b.ncols(), b.ncols())?;
+        check_matrix("N", &self.n, n, b.ncols())?;
         for (matrix, m) in [("Q", &self.q), ("R", &self.r)] {
             if (m - m.transpose()).amax() > 1e-10 * m.amax() {
                 return Err(Error::Indefinite { matrix });
             }
         }
         if b.ncols() > 0 {
-            let values = symmetric(&self.r).symmetric_eigenvalues();
+            let values = symmetric_part(&self.r).symmetric_eigenvalues();
             if values.iter().all(|x| x.abs() <= f64::EPSILON * self.r.amax()) || values.amin() == 0.0 {
                 return Err(Error::Singular { what: "R" });
             }
@@ -68,9 +68,9 @@ impl Cost {
 
     /// Returns `A − B R⁻¹ Nᵀ`, `B R⁻¹ Bᵀ` and `Q − N R⁻¹ Nᵀ`, the equivalent problem without products.
     fn without_products(&self, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<[DMatrix<f64>; 3], Error> {
-        let both = solve("R", &self.r, &self.n.transpose())?;
-        let g = b * solve("R", &self.r, &b.transpose())?;
-        Ok([a - b * &both, symmetric(&g), symmetric(&(&self.q - &self.n * both))])
+        let both = solve_linear_system("R", &self.r, &self.n.transpose())?;
+        let g = b * solve_linear_system("R", &self.r, &b.transpose())?;
+        Ok([a - b * &both, symmetric_part(&g), symmetric_part(&(&self.q - &self.n * both))])
     }
 }
 
@@ -105,7 +105,7 @@ pub struct Riccati {
 /// [`Error::Unstabilizable`] and [`Error::Undetectable`] with the mode that causes it; [`Error::Singular`]
 /// and [`Error::Indefinite`] with the weight; [`Error::Shape`] and [`Error::NotFinite`] with the matrix.
 pub fn riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
-    let n = cost.check(a, b)?;
+    let n = cost.check_weights(a, b)?;
     check_modes(a, b, cost, |mode| mode.re >= 0.0, |mode| mode.re.abs())?;
     let [f, g, q] = cost.without_products(a, b)?;
     let mut h = DMatrix::zeros(2 * n, 2 * n);
@@ -113,9 +113,9 @@ pub fn riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccat
     h.view_mut((0, n), (n, n)).copy_from(&-&g);
     h.view_mut((n, 0), (n, n)).copy_from(&-&q);
     h.view_mut((n, n), (n, n)).copy_from(&-f.transpose());
-    let d = symplectic(&h);
+    let d = symplectic_scaling(&h);
     let scaled = DMatrix::from_fn(2 * n, 2 * n, |i, j| h[(i, j)] * d[j] / d[i]);
-    let mut schur = Schur::new(&complex(&scaled))?;
+    let mut schur = Schur::new(&complex_matrix(&scaled))?;
     if schur.reorder(|x| x.re < 0.0) != n {
         return Err(Error::NotConverged {
             what: "Riccati's equation, with eigenvalues on the imaginary axis,",
@@ -127,8 +127,8 @@ pub fn riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccat
         let closed = &f - &g * x;
         Ok(x + lyapunov(&closed.transpose(), &riccati_residual(x))?)
     };
-    let x = refine(x, riccati_residual, newton_step)?;
-    let gain = solve("R", &cost.r, &(b.transpose() * &x + cost.n.transpose()))?;
+    let x = refine_by_newton(x, riccati_residual, newton_step)?;
+    let gain = solve_linear_system("R", &cost.r, &(b.transpose() * &x + cost.n.transpose()))?;
     let poles = eigenvalues(&(a - b * &gain))?;
     if poles.iter().any(|p| p.re >= 0.0) {
         return Err(Error::NotConverged { what: "Riccati's equation" });
@@ -138,17 +138,17 @@ pub fn riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccat
 
 /// Returns powers of two that balance a Hamiltonian matrix and preserve its structure: the second half are
 /// the reciprocals of the first half.
-fn symplectic(h: &DMatrix<f64>) -> Vec<f64> {
+fn symplectic_scaling(h: &DMatrix<f64>) -> Vec<f64> {
     let n = h.nrows() / 2;
     let sizes = h.map(f64::abs);
-    let (_, d) = balanced(&sizes);
+    let (_, d) = balance_matrix(&sizes);
     let balancing_scale = |i: usize| (0.5 * (d[i].log2() - d[n + i].log2())).round().exp2();
     (0..n).map(balancing_scale).chain((0..n).map(|i| 1.0 / balancing_scale(i))).collect()
 }
 
 /// Refines the solution of a Riccati equation by at most four Newton steps, as long as they reduce the
 /// residual.
-fn refine(
+fn refine_by_newton(
     mut x: DMatrix<f64>,
     residual: impl Fn(&DMatrix<f64>) -> DMatrix<f64>,
     newton: impl Fn(&DMatrix<f64>) -> Result<DMatrix<f64>, Error>,
@@ -160,7 +160,7 @@ fn refine(
         }
         // A step may fail if the equation is nearly singular; the solution so far is returned then.
         let Ok(next) = newton(&x) else { break };
-        let next = symmetric(&next);
+        let next = symmetric_part(&next);
         let smaller = residual(&next).norm();
         if smaller.is_nan() || smaller >= size {
             break;
@@ -179,7 +179,7 @@ fn check_modes(
     unstable: impl Fn(C) -> bool,
     distance: impl Fn(C) -> f64,
 ) -> Result<(), Error> {
-    let size = balanced(a).0.norm().max(f64::MIN_POSITIVE);
+    let size = balance_matrix(a).0.norm().max(f64::MIN_POSITIVE);
     for mode in eigenvalues(a)? {
         if (unstable(mode) || distance(mode) <= 1e-10 * size) && is_fixed(a, b, mode) {
             return Err(Error::Unstabilizable { mode });
@@ -222,7 +222,7 @@ pub(crate) fn is_fixed(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C) -> bool {
 /// [`Error::Unstabilizable`] and [`Error::Undetectable`] with the mode that causes it; [`Error::Singular`]
 /// and [`Error::Indefinite`] with the weight; [`Error::Shape`] and [`Error::NotFinite`] with the matrix.
 pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
-    match cost.check(a, b) {
+    match cost.check_weights(a, b) {
         Err(Error::Singular { .. }) if cost.r.clone().symmetric_eigenvalues().iter().all(|x| *x >= 0.0) => {
             return with_free_inputs(a, b, cost);
         }
@@ -231,11 +231,11 @@ pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Resu
     check_modes(a, b, cost, |mode| mode.norm() >= 1.0, |mode| (mode.norm() - 1.0).abs())?;
     let [f, g, q] = cost.without_products(a, b)?;
     // The symplectic matrix loses digits if A is nearly singular, doubling if A is far from stable.
-    let ways = [symplectic_subspace(&f, &g, &q), doubling(&f, &g, &q)];
+    let ways = [symplectic_subspace(&f, &g, &q), doubling_limit(&f, &g, &q)];
     let mut best = Err(Error::NotConverged { what: "the discrete Riccati equation" });
     let mut least = f64::INFINITY;
     for x in ways.into_iter().flatten() {
-        let Ok((found, residual)) = refined(a, b, cost, x) else { continue };
+        let Ok((found, residual)) = refine_discrete_solution(a, b, cost, x) else { continue };
         if residual < least {
             (best, least) = (Ok(found), residual);
         }
@@ -253,11 +253,11 @@ fn with_free_inputs(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<R
     let m = b.ncols();
     let near = Cost { r: &cost.r + DMatrix::identity(m, m) * little, ..cost.clone() };
     let found = discrete_riccati(a, b, &near)?;
-    Ok(refined(a, b, cost, found.x)?.0)
+    Ok(refine_discrete_solution(a, b, cost, found.x)?.0)
 }
 
 /// Computes the solution of a discrete Riccati equation as the limit of the doubling iteration.
-fn doubling(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
+fn doubling_limit(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = f.nrows();
     let (mut a_k, mut g_k, mut h_k) = (f.clone(), g.clone(), q.clone());
     let identity = DMatrix::<f64>::identity(n, n);
@@ -265,9 +265,9 @@ fn doubling(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMat
         let lu = (&identity + &g_k * &h_k).lu();
         let singular = Error::Singular { what: "the doubled equation" };
         let (Some(wa), Some(wg)) = (lu.solve(&a_k), lu.solve(&g_k)) else { return Err(singular) };
-        let change = symmetric(&(a_k.transpose() * &h_k * &wa));
+        let change = symmetric_part(&(a_k.transpose() * &h_k * &wa));
         h_k += &change;
-        g_k = symmetric(&(&g_k + &a_k * wg * a_k.transpose()));
+        g_k = symmetric_part(&(&g_k + &a_k * wg * a_k.transpose()));
         a_k *= wa;
         if !change.iter().all(|x| x.is_finite()) {
             break;
@@ -283,16 +283,16 @@ fn doubling(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMat
 /// 1979).
 fn symplectic_subspace(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = f.nrows();
-    let inverse = solve("A", &f.transpose(), &DMatrix::identity(n, n))?;
-    let below = solve("A", &f.transpose(), q)?;
+    let inverse = solve_linear_system("A", &f.transpose(), &DMatrix::identity(n, n))?;
+    let below = solve_linear_system("A", &f.transpose(), q)?;
     let mut s = DMatrix::zeros(2 * n, 2 * n);
     s.view_mut((0, 0), (n, n)).copy_from(&(f + g * &below));
     s.view_mut((0, n), (n, n)).copy_from(&-(g * &inverse));
     s.view_mut((n, 0), (n, n)).copy_from(&-below);
     s.view_mut((n, n), (n, n)).copy_from(&inverse);
-    let d = symplectic(&s);
+    let d = symplectic_scaling(&s);
     let scaled = DMatrix::from_fn(2 * n, 2 * n, |i, j| s[(i, j)] * d[j] / d[i]);
-    let mut schur = Schur::new(&complex(&scaled))?;
+    let mut schur = Schur::new(&complex_matrix(&scaled))?;
     if schur.reorder(|x| x.norm() < 1.0) != n {
         return Err(Error::NotConverged { what: "the discrete Riccati equation" });
     }
@@ -306,12 +306,12 @@ fn subspace_solution(schur: &Schur, d: &[f64]) -> Result<DMatrix<f64>, Error> {
     let x: CMatrix =
         upper.transpose().lu().solve(&lower.transpose()).ok_or(Error::Singular { what: "the subspace" })?;
     let x = DMatrix::from_fn(n, n, |i, j| 0.5 * (x[(i, j)].re + x[(j, i)].re) * d[n + i] / d[j]);
-    Ok(symmetric(&x))
+    Ok(symmetric_part(&x))
 }
 
 /// Refines a solution by Newton's method. Returns it with its gain and relative residual, or an error if it
 /// does not stabilise.
-fn refined(
+fn refine_discrete_solution(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,
     cost: &Cost,
@@ -319,8 +319,8 @@ fn refined(
 ) -> Result<(Riccati, f64), Error> {
     let n = a.nrows();
     let feedback_gain = |x: &DMatrix<f64>| {
-        let weight = symmetric(&(&cost.r + b.transpose() * x * b));
-        solve("R + BᵀXB", &weight, &(b.transpose() * x * a + cost.n.transpose()))
+        let weight = symmetric_part(&(&cost.r + b.transpose() * x * b));
+        solve_linear_system("R + BᵀXB", &weight, &(b.transpose() * x * a + cost.n.transpose()))
     };
     let riccati_residual = |x: &DMatrix<f64>| match feedback_gain(x) {
         Ok(k) => a.transpose() * x * a - x - (a.transpose() * x * b + &cost.n) * k + &cost.q,
@@ -328,9 +328,9 @@ fn refined(
     };
     let newton_step = |x: &DMatrix<f64>| {
         let closed = a - b * feedback_gain(x)?;
-        Ok(x + discrete_lyapunov(&closed.transpose(), &symmetric(&riccati_residual(x)))?)
+        Ok(x + discrete_lyapunov(&closed.transpose(), &symmetric_part(&riccati_residual(x)))?)
     };
-    let x = refine(x, riccati_residual, newton_step)?;
+    let x = refine_by_newton(x, riccati_residual, newton_step)?;
     let left = riccati_residual(&x).norm() / (x.norm() + cost.q.norm());
     let gain = feedback_gain(&x)?;
     let poles = eigenvalues(&(a - b * &gain))?;

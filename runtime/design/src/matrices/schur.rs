@@ -21,7 +21,7 @@ struct Rotation {
 }
 
 impl Rotation {
-    fn givens(x: C, y: C) -> Self {
+    fn givens_rotation(x: C, y: C) -> Self {
         let (a, b) = (x.norm(), y.norm());
         if b == 0.0 {
             return Self { c: 1.0, s: C::new(0.0, 0.0) };
@@ -33,7 +33,7 @@ impl Rotation {
         Self { c: a / r, s: x / a * y.conj() / r }
     }
 
-    fn rows(self, m: &mut CMatrix, k: usize, columns: std::ops::Range<usize>) {
+    fn rotate_rows(self, m: &mut CMatrix, k: usize, columns: std::ops::Range<usize>) {
         for j in columns {
             let (x, y) = (m[(k, j)], m[(k + 1, j)]);
             m[(k, j)] = x * self.c + self.s * y;
@@ -41,7 +41,7 @@ impl Rotation {
         }
     }
 
-    fn columns(self, m: &mut CMatrix, k: usize, rows: std::ops::Range<usize>) {
+    fn rotate_columns(self, m: &mut CMatrix, k: usize, rows: std::ops::Range<usize>) {
         for i in rows {
             let (x, y) = (m[(i, k)], m[(i, k + 1)]);
             m[(i, k)] = x * self.c + self.s.conj() * y;
@@ -90,7 +90,7 @@ impl Schur {
         let mut high = n.saturating_sub(1);
         let mut steps = 0;
         while high > 0 {
-            let low = split(&mut t, high, size);
+            let low = split_active_block(&mut t, high, size);
             if low == high {
                 (high, steps) = (high - 1, 0);
                 continue;
@@ -99,7 +99,7 @@ impl Schur {
             if steps > MAX_ITERATIONS {
                 return Err(Error::NotConverged { what: "the QR algorithm" });
             }
-            let shift = shift(&t, high, steps);
+            let shift = wilkinson_shift(&t, high, steps);
             step(&mut t, &mut q, low, high, shift);
         }
         for j in 0..n {
@@ -126,16 +126,16 @@ impl Schur {
 
     /// Moves the eigenvalue at the index `from` up to the index `to`.
     pub fn raise(&mut self, from: usize, to: usize) {
-        (to..from).rev().for_each(|j| self.swap(j));
+        (to..from).rev().for_each(|j| self.swap_eigenvalues(j));
     }
 
-    fn swap(&mut self, k: usize) {
+    fn swap_eigenvalues(&mut self, k: usize) {
         let n = self.t.nrows();
         let (first, second) = (self.t[(k, k)], self.t[(k + 1, k + 1)]);
-        let rotation = Rotation::givens(self.t[(k, k + 1)], second - first);
-        rotation.rows(&mut self.t, k, k..n);
-        rotation.columns(&mut self.t, k, 0..k + 2);
-        rotation.columns(&mut self.q, k, 0..n);
+        let rotation = Rotation::givens_rotation(self.t[(k, k + 1)], second - first);
+        rotation.rotate_rows(&mut self.t, k, k..n);
+        rotation.rotate_columns(&mut self.t, k, 0..k + 2);
+        rotation.rotate_columns(&mut self.q, k, 0..n);
         self.t[(k, k)] = second;
         self.t[(k + 1, k + 1)] = first;
         self.t[(k + 1, k)] = C::new(0.0, 0.0);
@@ -151,7 +151,7 @@ impl Schur {
         y[k] = C::new(1.0, 0.0);
         for i in (0..k).rev() {
             let sum: C = (i + 1..=k).map(|j| self.t[(i, j)] * y[j]).sum();
-            y[i] = -sum / pivot(self.t[(i, i)] - lambda, least);
+            y[i] = -sum / nonzero_pivot(self.t[(i, i)] - lambda, least);
         }
         let v = &self.q * y;
         let norm = v.norm();
@@ -167,7 +167,7 @@ impl Schur {
         y[k] = C::new(1.0, 0.0);
         for i in k + 1..n {
             let sum: C = (k..i).map(|j| self.t[(j, i)] * y[j]).sum();
-            y[i] = -sum / pivot(self.t[(i, i)] - lambda, least);
+            y[i] = -sum / nonzero_pivot(self.t[(i, i)] - lambda, least);
         }
         let w = &self.q * y.map(|x| x.conj());
         let norm = w.norm();
@@ -175,13 +175,13 @@ impl Schur {
     }
 }
 
-fn pivot(x: C, least: f64) -> C {
+fn nonzero_pivot(x: C, least: f64) -> C {
     if x.norm() < least { C::new(least, 0.0) } else { x }
 }
 
 /// Returns the first row of the active block that ends at row `high`. The subdiagonal entry above that block
 /// is set to zero.
-fn split(t: &mut CMatrix, high: usize, size: f64) -> usize {
+fn split_active_block(t: &mut CMatrix, high: usize, size: f64) -> usize {
     for k in (1..=high).rev() {
         let mut near = t[(k - 1, k - 1)].norm() + t[(k, k)].norm();
         if near == 0.0 {
@@ -196,7 +196,7 @@ fn split(t: &mut CMatrix, high: usize, size: f64) -> usize {
 }
 
 /// Returns Wilkinson's shift, or an exceptional shift in every tenth step.
-fn shift(t: &CMatrix, high: usize, steps: usize) -> C {
+fn wilkinson_shift(t: &CMatrix, high: usize, steps: usize) -> C {
     let d = t[(high, high)];
     if steps.is_multiple_of(10) {
         return d + C::new(0.75 * t[(high, high - 1)].norm(), 0.0);
@@ -213,10 +213,10 @@ fn step(t: &mut CMatrix, q: &mut CMatrix, low: usize, high: usize, shift: C) {
     let n = t.nrows();
     let (mut x, mut y) = (t[(low, low)] - shift, t[(low + 1, low)]);
     for k in low..high {
-        let rotation = Rotation::givens(x, y);
-        rotation.rows(t, k, k.saturating_sub(1).max(low)..n);
-        rotation.columns(t, k, 0..(k + 3).min(high + 1));
-        rotation.columns(q, k, 0..n);
+        let rotation = Rotation::givens_rotation(x, y);
+        rotation.rotate_rows(t, k, k.saturating_sub(1).max(low)..n);
+        rotation.rotate_columns(t, k, 0..(k + 3).min(high + 1));
+        rotation.rotate_columns(q, k, 0..n);
         if k > low {
             t[(k + 1, k - 1)] = C::new(0.0, 0.0);
         }

@@ -43,16 +43,16 @@ impl Axis {
         let rough = width / most.max(2) as f64;
         if self.logarithmic && width >= 1.0 {
             let every = rough.ceil().max(1.0);
-            return multiples(self.low, self.high, every);
+            return multiples_of_step(self.low, self.high, every);
         }
         if self.logarithmic {
-            let decades = multiples(self.low.floor(), self.high.ceil(), 1.0);
+            let decades = multiples_of_step(self.low.floor(), self.high.ceil(), 1.0);
             let within = decades.iter().flat_map(|k| [1.0, 2.0, 5.0].map(|m: f64| k + m.log10()));
             return within.filter(|x| (self.low..=self.high).contains(x)).collect();
         }
         let power = 10f64.powf(rough.log10().floor());
         let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|s| *s >= rough * 0.999);
-        multiples(self.low, self.high, step.unwrap_or(rough))
+        multiples_of_step(self.low, self.high, step.unwrap_or(rough))
     }
 
     /// Returns the label of a tick, with the number of decimals that the distance of the ticks requires.
@@ -60,8 +60,8 @@ impl Axis {
         if self.logarithmic {
             let nearest = x.round();
             return match (x - nearest).abs() < 1e-9 && nearest.abs() > 3.0 {
-                true => format!("10{}", superscript(nearest as i64)),
-                false => plain(10f64.powf(x), 10f64.powf(x)),
+                true => format!("10{}", superscript_number(nearest as i64)),
+                false => format_decimal(10f64.powf(x), 10f64.powf(x)),
             };
         }
         let ticks = self.ticks(most);
@@ -69,34 +69,34 @@ impl Axis {
         let largest = ticks.iter().map(|x| x.abs()).fold(0.0, f64::max);
         let x = if x.abs() < 1e-9 * largest { 0.0 } else { x };
         if largest >= 1e5 || (largest < 1e-3 && largest > 0.0) {
-            return scientific(x, step);
+            return format_scientific(x, step);
         }
-        plain(x, step)
+        format_decimal(x, step)
     }
 }
 
-fn multiples(low: f64, high: f64, step: f64) -> Vec<f64> {
+fn multiples_of_step(low: f64, high: f64, step: f64) -> Vec<f64> {
     let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
     let count = (last - first).clamp(-1.0, 100.0) as i64;
     (0..=count).map(|k| (first + k as f64) * step).collect()
 }
 
 /// Formats a number with the number of decimals that the step requires.
-fn plain(x: f64, step: f64) -> String {
+fn format_decimal(x: f64, step: f64) -> String {
     let decimals = (-(step * 1.0001).log10().floor()).clamp(0.0, 12.0) as usize;
     format!("{x:.decimals$}").replace('-', "−")
 }
 
-fn scientific(x: f64, step: f64) -> String {
+fn format_scientific(x: f64, step: f64) -> String {
     if x == 0.0 {
         return "0".into();
     }
     let power = x.abs().log10().floor();
-    let part = plain(x / 10f64.powf(power), step / 10f64.powf(power));
-    format!("{part}·10{}", superscript(power as i64))
+    let part = format_decimal(x / 10f64.powf(power), step / 10f64.powf(power));
+    format!("{part}·10{}", superscript_number(power as i64))
 }
 
-fn superscript(k: i64) -> String {
+fn superscript_number(k: i64) -> String {
     let superscript_digit = |c: char| match c.to_digit(10) {
         Some(digit) => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit as usize],
         None => '⁻',

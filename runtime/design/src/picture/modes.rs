@@ -10,7 +10,7 @@ const RADIUS: f64 = 62.0;
 /// 20 s.
 const TURN: f64 = 4.0;
 
-fn escaped(text: &str) -> String {
+fn escape_markup(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
@@ -71,7 +71,11 @@ fn write_mode(out: &mut String, name: &str, mode: &Mode, y: f64) {
     out.push_str("</g></g>\n");
     let write_text_row = |out: &mut String, row: f64, colour: &str, words: &str| {
         let place = y - 45.0 + 19.0 * row;
-        let _ = writeln!(out, "<text x=\"180\" y=\"{place:.1}\" fill=\"{colour}\">{}</text>", escaped(words));
+        let _ = writeln!(
+            out,
+            "<text x=\"180\" y=\"{place:.1}\" fill=\"{colour}\">{}</text>",
+            escape_markup(words)
+        );
     };
     let text = mode.to_string();
     let heading = text.rsplit_once(": ").map_or(text.as_str(), |(heading, _)| heading);
@@ -84,7 +88,7 @@ fn write_mode(out: &mut String, name: &str, mode: &Mode, y: f64) {
         let words = format!(
             "{name}: takes part {:.1} %, phasor {}{unit} at {:.0}°",
             100.0 * part,
-            significant(shape.norm()),
+            format_significant(shape.norm()),
             shape.arg().to_degrees()
         );
         write_text_row(out, row as f64 + 1.2, COLOURS[place % COLOURS.len()], &words);
@@ -92,7 +96,7 @@ fn write_mode(out: &mut String, name: &str, mode: &Mode, y: f64) {
 }
 
 /// Formats a number with three significant digits.
-fn significant(x: f64) -> String {
+fn format_significant(x: f64) -> String {
     let decimals = if x > 0.0 { (2.0 - x.log10().floor()).clamp(0.0, 9.0) as usize } else { 0 };
     format!("{x:.decimals$}")
 }

@@ -25,12 +25,12 @@ const NAMES: u32 = 22;
 /// Maximum number of points drawn per curve: more would be closer together than a pixel.
 const MAX_POINTS: usize = 3000;
 
-fn units(pixels: u32) -> u32 {
+fn units_of_pixels(pixels: u32) -> u32 {
     pixels * UNITS
 }
 
-fn text(size: u32) -> TextStyle<'static> {
-    (FONT, units(size)).into_font().color(&BLACK)
+fn text_style(size: u32) -> TextStyle<'static> {
+    (FONT, units_of_pixels(size)).into_font().color(&BLACK)
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -70,7 +70,7 @@ pub struct Panel {
 }
 
 impl Panel {
-    fn points(&self) -> impl Iterator<Item = (f64, f64)> {
+    fn all_points(&self) -> impl Iterator<Item = (f64, f64)> {
         let curves = self.curves.iter().flat_map(|c| c.points.iter().copied());
         let lines = self.lines.iter().flatten().copied();
         curves.chain(lines).chain(self.marks.iter().map(|(_, x, y)| (*x, *y)))
@@ -78,14 +78,14 @@ impl Panel {
 
     /// Returns both axes for an area of this size. With equal scales, the shorter axis is extended to the
     /// aspect ratio of the area.
-    fn axes(&self, (width, height): (u32, u32)) -> Option<(Axis, Axis)> {
+    fn axes_for_area(&self, (width, height): (u32, u32)) -> Option<(Axis, Axis)> {
         let window_test = |k: usize| {
             let window = self.window.map(|window| window[k]);
             move |v: f64| window.is_none_or(|(low, high)| (low..=high).contains(&v))
         };
         let along = if self.equal { 0.06 } else { 0.0 };
         let (in_x, in_y) = (window_test(0), window_test(1));
-        let shown: Vec<_> = self.points().filter(|(x, y)| in_x(*x) && in_y(*y)).collect();
+        let shown: Vec<_> = self.all_points().filter(|(x, y)| in_x(*x) && in_y(*y)).collect();
         let x = Axis::fit(shown.iter().map(|p| p.0), along, self.logarithmic)?;
         let y = Axis::fit(shown.iter().map(|p| p.1), 0.06, self.decades)?;
         if !self.equal {
@@ -96,113 +96,122 @@ impl Panel {
         Some((x.widened(have_x.max(have_y * shape)), y.widened(have_y.max(have_x / shape))))
     }
 
-    fn draw<DB: DrawingBackend>(&self, area: DrawingArea<DB, Shift>) -> Result<(), Error> {
+    fn draw_panel<DB: DrawingBackend>(&self, area: DrawingArea<DB, Shift>) -> Result<(), Error> {
         let mut area = area;
         if !self.title.is_empty() {
-            let (top, rest) = area.split_vertically(units(HEADING));
-            let middle =
-                (i32::try_from(top.dim_in_pixel().0).unwrap_or(0) / 2, as_i32(units(HEADING / 2 + 2)));
-            let style = text(16).pos(Pos::new(HPos::Center, VPos::Center));
-            top.draw_text(&self.title, &style, middle).map_err(failed)?;
+            let (top, rest) = area.split_vertically(units_of_pixels(HEADING));
+            let middle = (
+                i32::try_from(top.dim_in_pixel().0).unwrap_or(0) / 2,
+                as_i32(units_of_pixels(HEADING / 2 + 2)),
+            );
+            let style = text_style(16).pos(Pos::new(HPos::Center, VPos::Center));
+            top.draw_text(&self.title, &style, middle).map_err(drawing_error)?;
             area = rest;
         }
         if self.curves.iter().any(|c| !c.name.is_empty()) || !self.mark_names.is_empty() {
-            let (top, rest) = area.split_vertically(units(NAMES));
+            let (top, rest) = area.split_vertically(units_of_pixels(NAMES));
             self.draw_names(&top)?;
             area = rest;
         }
         let (width, height) = area.dim_in_pixel();
-        let (left, below, border) = (units(74), units(46), units(10));
-        let inner =
-            (width.saturating_sub(left + border + units(24)), height.saturating_sub(below + 2 * border));
-        let Some((x, y)) = self.axes(inner) else {
+        let (left, below, border) = (units_of_pixels(74), units_of_pixels(46), units_of_pixels(10));
+        let inner = (
+            width.saturating_sub(left + border + units_of_pixels(24)),
+            height.saturating_sub(below + 2 * border),
+        );
+        let Some((x, y)) = self.axes_for_area(inner) else {
             return Err(Error::Picture("no finite values to draw".into()));
         };
-        let most_x = (inner.0 / units(if self.logarithmic { 60 } else { 80 })).max(2) as usize;
-        let most_y = (inner.1 / units(36)).max(2) as usize;
+        let most_x = (inner.0 / units_of_pixels(if self.logarithmic { 60 } else { 80 })).max(2) as usize;
+        let most_y = (inner.1 / units_of_pixels(36)).max(2) as usize;
         let (across, up) = (x.clone(), y.clone());
         let mut chart = ChartBuilder::on(&area)
             .margin(border)
-            .margin_right(units(24))
+            .margin_right(units_of_pixels(24))
             .x_label_area_size(below)
             .y_label_area_size(left)
             .build_cartesian_2d(
                 Ticked { axis: x.clone(), most: most_x },
                 Ticked { axis: y.clone(), most: most_y },
             )
-            .map_err(failed)?;
+            .map_err(drawing_error)?;
         chart
             .configure_mesh()
             .x_desc(&self.x)
             .y_desc(&self.y)
-            .axis_desc_style(text(14))
-            .label_style(text(13))
+            .axis_desc_style(text_style(14))
+            .label_style(text_style(13))
             .light_line_style(TRANSPARENT)
             .bold_line_style(RGBColor(225, 228, 232).stroke_width(UNITS))
             .axis_style(GREY.stroke_width(UNITS))
-            .set_all_tick_mark_size(units(4))
+            .set_all_tick_mark_size(units_of_pixels(4))
             .x_labels(100)
             .y_labels(100)
             .x_label_formatter(&|v| across.label(*v, most_x))
             .y_label_formatter(&|v| up.label(*v, most_y))
             .draw()
-            .map_err(failed)?;
+            .map_err(drawing_error)?;
         for line in &self.lines {
-            for run in clipped(line, &x, &y) {
-                chart.draw_series(LineSeries::new(run, GREY.stroke_width(UNITS))).map_err(failed)?;
+            for run in clip_curve(line, &x, &y) {
+                chart.draw_series(LineSeries::new(run, GREY.stroke_width(UNITS))).map_err(drawing_error)?;
             }
         }
         for (at, word) in self.instants.iter().filter(|(at, _)| (x.low..=x.high).contains(at)) {
             let line = [(*at, y.low), (*at, y.high)];
-            let dashed =
-                DashedLineSeries::new(line, units(4) as i32, units(4) as i32, GREY.stroke_width(UNITS));
-            chart.draw_series(dashed).map_err(failed)?;
+            let dashed = DashedLineSeries::new(
+                line,
+                units_of_pixels(4) as i32,
+                units_of_pixels(4) as i32,
+                GREY.stroke_width(UNITS),
+            );
+            chart.draw_series(dashed).map_err(drawing_error)?;
             let place = (at + 0.008 * (x.high - x.low), y.high - 0.03 * (y.high - y.low));
-            chart.draw_series([Text::new(word.clone(), place, text(13))]).map_err(failed)?;
+            chart.draw_series([Text::new(word.clone(), place, text_style(13))]).map_err(drawing_error)?;
         }
         for (curve, colour) in self.curves.iter().zip(COLOURS.iter().cycle()) {
-            for run in clipped(&thinned(&curve.points), &x, &y) {
+            for run in clip_curve(&thin_out_points(&curve.points), &x, &y) {
                 let series = LineSeries::new(run, colour.stroke_width(2 * UNITS));
-                chart.draw_series(series).map_err(failed)?;
+                chart.draw_series(series).map_err(drawing_error)?;
             }
         }
         let style = BLACK.stroke_width(2 * UNITS);
         for (mark, x, y) in &self.marks {
             match mark {
-                Mark::Cross => chart.draw_series([Cross::new((*x, *y), units(5), style)]),
-                Mark::Circle => chart.draw_series([Circle::new((*x, *y), units(6), style)]),
+                Mark::Cross => chart.draw_series([Cross::new((*x, *y), units_of_pixels(5), style)]),
+                Mark::Circle => chart.draw_series([Circle::new((*x, *y), units_of_pixels(6), style)]),
             }
-            .map_err(failed)?;
+            .map_err(drawing_error)?;
         }
         Ok(())
     }
 
     /// Draws the names of curves and marks in a row.
     fn draw_names<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Error> {
-        let (mut x, y) = (as_i32(units(84)), as_i32(units(NAMES / 2 + 2)));
-        let style = text(14).pos(Pos::new(HPos::Left, VPos::Center));
+        let (mut x, y) = (as_i32(units_of_pixels(84)), as_i32(units_of_pixels(NAMES / 2 + 2)));
+        let style = text_style(14).pos(Pos::new(HPos::Left, VPos::Center));
         let draw_word = |x: &mut i32, word: &str| {
-            let place = (*x + as_i32(units(26)), y);
-            *x += as_i32(units(26 + 20)) + (word.chars().count() * units(8) as usize) as i32;
-            area.draw_text(word, &style, place).map_err(failed)
+            let place = (*x + as_i32(units_of_pixels(26)), y);
+            *x += as_i32(units_of_pixels(26 + 20))
+                + (word.chars().count() * units_of_pixels(8) as usize) as i32;
+            area.draw_text(word, &style, place).map_err(drawing_error)
         };
-        let end_of_line_sample = |x: i32| x + as_i32(units(20));
+        let end_of_line_sample = |x: i32| x + as_i32(units_of_pixels(20));
         for (curve, colour) in self.curves.iter().zip(COLOURS.iter().cycle()) {
             if !curve.name.is_empty() {
                 let line =
                     PathElement::new([(x, y), (end_of_line_sample(x), y)], colour.stroke_width(2 * UNITS));
-                area.draw(&line).map_err(failed)?;
+                area.draw(&line).map_err(drawing_error)?;
                 draw_word(&mut x, &curve.name)?;
             }
         }
         let thick = BLACK.stroke_width(2 * UNITS);
         for (mark, name) in &self.mark_names {
-            let middle = (x + as_i32(units(12)), y);
+            let middle = (x + as_i32(units_of_pixels(12)), y);
             match mark {
-                Mark::Cross => area.draw(&Cross::new(middle, units(5), thick)),
-                Mark::Circle => area.draw(&Circle::new(middle, units(6), thick)),
+                Mark::Cross => area.draw(&Cross::new(middle, units_of_pixels(5), thick)),
+                Mark::Circle => area.draw(&Circle::new(middle, units_of_pixels(6), thick)),
             }
-            .map_err(failed)?;
+            .map_err(drawing_error)?;
             draw_word(&mut x, name)?;
         }
         Ok(())
@@ -215,7 +224,7 @@ fn as_i32(n: u32) -> i32 {
 
 /// Reduces the number of points: the lowest and the highest point of each group remain, so that peaks are
 /// preserved.
-fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+fn thin_out_points(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     if points.len() <= MAX_POINTS {
         return points.to_vec();
     }
@@ -231,7 +240,7 @@ fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 /// Clips a curve to the axes and returns its visible pieces. Points that are not finite interrupt it.
-fn clipped(points: &[(f64, f64)], x: &Axis, y: &Axis) -> Vec<Vec<(f64, f64)>> {
+fn clip_curve(points: &[(f64, f64)], x: &Axis, y: &Axis) -> Vec<Vec<(f64, f64)>> {
     let mut runs: Vec<Vec<(f64, f64)>> = Vec::new();
     let mut open = false;
     for pair in points.windows(2) {
@@ -271,7 +280,7 @@ fn part_within(a: (f64, f64), b: (f64, f64), x: &Axis, y: &Axis) -> Option<((f64
     (first <= last).then(|| (from, if last < 1.0 { point_on_segment(last) } else { b }))
 }
 
-fn failed(error: impl std::fmt::Display) -> Error {
+fn drawing_error(error: impl std::fmt::Display) -> Error {
     Error::Picture(error.to_string())
 }
 
@@ -279,13 +288,18 @@ fn failed(error: impl std::fmt::Display) -> Error {
 pub fn draw(panels: &[Panel], (width, height): (u32, u32)) -> Result<String, Error> {
     let mut svg = String::new();
     {
-        let root = SVGBackend::with_string(&mut svg, (units(width), units(height))).into_drawing_area();
-        root.fill(&WHITE).map_err(failed)?;
+        let root = SVGBackend::with_string(&mut svg, (units_of_pixels(width), units_of_pixels(height)))
+            .into_drawing_area();
+        root.fill(&WHITE).map_err(drawing_error)?;
         for (panel, area) in panels.iter().zip(root.split_evenly((panels.len().max(1), 1))) {
-            panel.draw(area)?;
+            panel.draw_panel(area)?;
         }
-        root.present().map_err(failed)?;
+        root.present().map_err(drawing_error)?;
     }
     let size_attributes = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
-    Ok(svg.replacen(&size_attributes(units(width), units(height)), &size_attributes(width, height), 1))
+    Ok(svg.replacen(
+        &size_attributes(units_of_pixels(width), units_of_pixels(height)),
+        &size_attributes(width, height),
+        1,
+    ))
 }

@@ -3,7 +3,7 @@
 use super::problem::{Place, Problem, dynamic};
 use super::solve::check_steady;
 use super::{SteadyState, Trim};
-use crate::mechanism::{displacements, effective_mass, input_names, signals, state_names};
+use crate::mechanism::{displacement_signals, effective_mass, input_names, signals_with_units, state_names};
 use crate::{Error, SecondOrderForm, StateSpace};
 use linkwork::{Derivatives, OutputDerivatives};
 use nalgebra::{DMatrix, SVector};
@@ -51,7 +51,7 @@ struct Dependence {
 }
 
 impl Dependence {
-    fn eliminate(mut left: DMatrix<f64>, mut right: DMatrix<f64>) -> Self {
+    fn eliminate_dependent_entries(mut left: DMatrix<f64>, mut right: DMatrix<f64>) -> Self {
         let (rows, columns) = left.shape();
         let mut pivots: Vec<(usize, usize)> = Vec::new();
         let small = ROUNDING * left.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -75,7 +75,7 @@ impl Dependence {
     }
 
     /// Returns the indices of the independent entries, and the matrix that maps them to all entries.
-    fn free(&self) -> (Vec<usize>, DMatrix<f64>) {
+    fn independent_entries(&self) -> (Vec<usize>, DMatrix<f64>) {
         let columns = self.left.ncols();
         let free: Vec<usize> = (0..columns).filter(|j| self.pivots.iter().all(|(_, c)| c != j)).collect();
         let mut shape = DMatrix::zeros(columns, free.len());
@@ -87,7 +87,7 @@ impl Dependence {
     }
 
     /// Returns the matrix that maps `y` to all entries while the independent entries are zero.
-    fn particular(&self) -> DMatrix<f64> {
+    fn particular_solution(&self) -> DMatrix<f64> {
         let mut all = DMatrix::zeros(self.left.ncols(), self.right.ncols());
         self.pivots.iter().for_each(|(row, column)| all.set_row(*column, &self.right.row(*row)));
         all
@@ -120,7 +120,7 @@ where
     });
     let held = &problem.held;
     let by_force = dynamic(&motion.by_force);
-    let lock = locked(&by_force, held);
+    let lock = locking_projector(&by_force, held);
     let (by_q, by_v) = (&lock * dynamic(&motion.by_q), &lock * dynamic(&motion.by_v));
     let by_u = &lock * dynamic(&motion.by_u);
     let empty = DMatrix::zeros(0, NV);
@@ -132,12 +132,13 @@ where
     let placeless: Vec<usize> = held.iter().copied().chain(NV.saturating_sub(M::FIRST_ORDER)..NV).collect();
     let on_configurations = with_rows(&jacobian.rows(0, holonomic).clone_owned(), NV, &placeless);
     let rows = on_configurations.nrows();
-    let positions = Dependence::eliminate(on_configurations, DMatrix::zeros(rows, NV));
+    let positions = Dependence::eliminate_dependent_entries(on_configurations, DMatrix::zeros(rows, NV));
     let on_velocities = with_rows(jacobian, NV, held);
     let right = (-rates_by_q).resize(on_velocities.nrows(), NV, 0.0);
-    let velocities = Dependence::eliminate(on_velocities, right);
-    let ((coordinates, shape), (speeds, gamma)) = (positions.free(), velocities.free());
-    let carried = velocities.particular() * &shape;
+    let velocities = Dependence::eliminate_dependent_entries(on_velocities, right);
+    let ((coordinates, shape), (speeds, gamma)) =
+        (positions.independent_entries(), velocities.independent_entries());
+    let carried = velocities.particular_solution() * &shape;
     let drift = turning * &shape + &carried;
     let by_position = &by_q * &shape + &by_v * &carried;
     let by_speed = &by_v * &gamma;
@@ -162,7 +163,7 @@ where
 
 /// Returns the projector that locks the held coordinates' accelerations: `1 − P Lᵀ (L P Lᵀ)⁻¹ L`, where `P`
 /// is the derivative of the accelerations with respect to forces and `L` selects the held coordinates.
-fn locked(by_force: &DMatrix<f64>, held: &[usize]) -> DMatrix<f64> {
+fn locking_projector(by_force: &DMatrix<f64>, held: &[usize]) -> DMatrix<f64> {
     let n = by_force.nrows();
     let (columns, small) = (by_force.select_columns(held), by_force.select_columns(held).select_rows(held));
     let selected = DMatrix::from_fn(held.len(), n, |i, j| if held[i] == j { 1.0 } else { 0.0 });
@@ -194,11 +195,13 @@ where
     /// [`Error::NotFinite`] if the mass matrix is singular; [`Error::NotSteady`] if the state violates a
     /// condition of this trim, with the condition that is violated most and its residual.
     pub fn linear_system(&self, found: &SteadyState<NQ, NV, NU>) -> Result<StateSpace, Error> {
-        let system = Self::system(&linear(self, found)?)?;
+        let system = Self::system_of_linear_model(&linear(self, found)?)?;
         Ok(system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_states_as_outputs())
     }
 
-    fn system(Linear { coordinates, speeds, a, b, .. }: &Linear) -> Result<StateSpace, Error> {
+    fn system_of_linear_model(
+        Linear { coordinates, speeds, a, b, .. }: &Linear,
+    ) -> Result<StateSpace, Error> {
         let n = a.nrows();
         let system = StateSpace::new(a.clone(), b.clone(), DMatrix::identity(n, n), DMatrix::zeros(n, NU))?;
         system.with_states(state_names::<M, NQ, NV, NU>(coordinates.iter().copied(), speeds.iter().copied()))
@@ -259,9 +262,9 @@ where
             if j < np { by_positions[(i, j)] } else { by_speeds[(i, j - np)] }
         });
         let d = dynamic(&seen.by_u) + of_a * by_u;
-        let names = Self::system(&linear)?;
+        let names = Self::system_of_linear_model(&linear)?;
         let system = StateSpace::new(linear.a, linear.b, c, d)?.with_states(names.states().to_vec())?;
-        let outputs = signals(&M::OUTPUTS, &M::OUTPUT_UNITS);
+        let outputs = signals_with_units(&M::OUTPUTS, &M::OUTPUT_UNITS);
         system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_outputs(outputs)
     }
 
@@ -337,6 +340,6 @@ where
         let position = -(&mass * (by_position - by_speed * drift));
         let input = &mass * b.rows(np, ns);
         let form = SecondOrderForm::new(mass, velocity, position, input)?;
-        form.with_names(displacements::<M, NQ, NV, NU>(speeds), input_names::<M, NQ, NV, NU>())
+        form.with_names(displacement_signals::<M, NQ, NV, NU>(speeds), input_names::<M, NQ, NV, NU>())
     }
 }

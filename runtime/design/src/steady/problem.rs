@@ -36,7 +36,7 @@ pub fn dynamic<const R: usize, const C: usize>(m: &SMatrix<f64, R, C>) -> DMatri
     DMatrix::from_column_slice(R, C, m.as_slice())
 }
 
-fn vector<const N: usize>(x: &SVector<f64, N>) -> DVector<f64> {
+fn dynamic_vector<const N: usize>(x: &SVector<f64, N>) -> DVector<f64> {
     DVector::from_column_slice(x.as_slice())
 }
 
@@ -61,13 +61,15 @@ where
         let constraint_rates_displaced = |h: f64| m.constraint_rates(t, &m.integrate(q, &unit(j, h)), v);
         rates_by_q.set_column(
             j,
-            &vector(&((constraint_rates_displaced(STEP) - constraint_rates_displaced(-STEP)) / (2.0 * STEP))),
+            &dynamic_vector(
+                &((constraint_rates_displaced(STEP) - constraint_rates_displaced(-STEP)) / (2.0 * STEP)),
+            ),
         );
     }
     Bounds {
         names: &const { M::CONSTRAINTS },
-        residuals: vector(&m.constraint_residuals(t, q)),
-        rates: vector(&m.constraint_rates(t, q, v)),
+        residuals: dynamic_vector(&m.constraint_residuals(t, q)),
+        rates: dynamic_vector(&m.constraint_rates(t, q, v)),
         jacobian: dynamic(&m.constraint_jacobian(t, q)),
         rates_by_q,
     }
@@ -87,7 +89,7 @@ where
     let by = m.output_derivatives(t, q, v, a, u);
     Measured {
         names: M::OUTPUTS.to_vec(),
-        values: vector(&m.outputs(t, q, v, a, u)),
+        values: dynamic_vector(&m.outputs(t, q, v, a, u)),
         by_q: dynamic(&by.by_q),
         by_v: dynamic(&by.by_v),
         by_a: dynamic(&by.by_a),
@@ -165,7 +167,7 @@ fn index(kind: &'static str, name: &str, known: &[&str]) -> Result<usize, Error>
     })
 }
 
-fn indices(kind: &'static str, names: &[String], known: &[&str]) -> Result<Vec<usize>, Error> {
+fn indices_of_names(kind: &'static str, names: &[String], known: &[&str]) -> Result<Vec<usize>, Error> {
     check_repeated(kind, names)?;
     names.iter().map(|name| index(kind, name, known)).collect()
 }
@@ -176,7 +178,7 @@ fn check_repeated(kind: &'static str, names: &[String]) -> Result<(), Error> {
     twice.map_or(Ok(()), |(_, name)| Err(Error::Repeated { kind, name: name.clone() }))
 }
 
-fn names<T>(list: &[(String, T)]) -> Vec<String> {
+fn names_in_list<T>(list: &[(String, T)]) -> Vec<String> {
     list.iter().map(|(name, _)| name.clone()).collect()
 }
 
@@ -185,15 +187,15 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     pub fn new(trim: &'a Trim<'m, M, NQ, NV, NU>) -> Result<Self, Error> {
-        check_repeated("parameter", &names(&trim.parameters))?;
-        check_repeated("velocity", &names(&trim.accelerations))?;
-        check_repeated("output", &names(&trim.conditions))?;
+        check_repeated("parameter", &names_in_list(&trim.parameters))?;
+        check_repeated("velocity", &names_in_list(&trim.accelerations))?;
+        check_repeated("output", &names_in_list(&trim.conditions))?;
         let quantities: Vec<String> = trim.quantities.iter().map(|(name, ..)| name.clone()).collect();
         check_repeated("condition", &quantities)?;
-        let held = indices("coordinate", &trim.held, &M::VELOCITIES)?;
-        let fixed = indices("coordinate", &trim.fixed, &M::VELOCITIES)?;
+        let held = indices_of_names("coordinate", &trim.held, &M::VELOCITIES)?;
+        let fixed = indices_of_names("coordinate", &trim.fixed, &M::VELOCITIES)?;
         let among = match &trim.coordinates {
-            Some(names) => indices("coordinate", names, &M::VELOCITIES)?,
+            Some(names) => indices_of_names("coordinate", names, &M::VELOCITIES)?,
             None => (0..NV).collect(),
         };
         let is_free_coordinate = |k: &usize| !held.contains(k) && !fixed.contains(k);
@@ -201,11 +203,11 @@ where
         let places = 0..first_order.start;
         let mut unknowns: Vec<Unknown> =
             places.filter(|k| among.contains(k) && is_free_coordinate(k)).map(Unknown::Coordinate).collect();
-        let mut speeds = indices("speed", &trim.speeds, &M::VELOCITIES)?;
+        let mut speeds = indices_of_names("speed", &trim.speeds, &M::VELOCITIES)?;
         let states = first_order.filter(|k| is_free_coordinate(k) && !speeds.contains(k)).collect::<Vec<_>>();
         speeds.extend(states);
         unknowns.extend(speeds.into_iter().map(Unknown::Speed));
-        unknowns.extend(indices("input", &trim.inputs, &M::INPUTS)?.into_iter().map(Unknown::Input));
+        unknowns.extend(indices_of_names("input", &trim.inputs, &M::INPUTS)?.into_iter().map(Unknown::Input));
         unknowns.extend(held.iter().copied().map(Unknown::Holding));
         unknowns.extend((0..trim.parameters.len()).map(Unknown::Parameter));
         let mut targets = vec![Some(0.0); NV];
@@ -301,7 +303,7 @@ where
             let by_u = by_force * force_by_u;
             // Accelerations without constraints. Zero if the unconstrained mass matrix is not positive
             // definite.
-            let push = vector(&(tau - Mechanism::bias_forces(m, t, q, v)));
+            let push = dynamic_vector(&(tau - Mechanism::bias_forces(m, t, q, v)));
             let free =
                 dynamic(&Mechanism::mass_matrix(m, t, q)).cholesky().map_or(0.0, |c| c.solve(&push).amax());
             let free = if M::CONSTRAINED && free.is_finite() { free } else { 0.0 };
@@ -312,14 +314,14 @@ where
 
     /// Computes the residuals of the conditions and their derivatives with respect to the unknowns.
     pub fn equations(&self, place: &Place<NQ, NV, NU>) -> Result<Equations, Error> {
-        let mut equations = self.generated(place)?;
+        let mut equations = self.generated_equations(place)?;
         for (j, unknown) in self.unknowns.iter().enumerate() {
             let Unknown::Parameter(k) = *unknown else { continue };
             let step = STEP * if place.parameters[k] == 0.0 { 1.0 } else { place.parameters[k].abs() };
             let residuals_displaced = |h: f64| {
                 let mut place = place.clone();
                 place.parameters[k] += h;
-                Ok::<_, Error>(self.generated(&place)?.residuals)
+                Ok::<_, Error>(self.generated_equations(&place)?.residuals)
             };
             equations
                 .jacobian
@@ -330,12 +332,12 @@ where
 
     /// Computes the residuals of all conditions, and their derivatives except those with respect to
     /// parameters.
-    fn generated(&self, place: &Place<NQ, NV, NU>) -> Result<Equations, Error> {
+    fn generated_equations(&self, place: &Place<NQ, NV, NU>) -> Result<Equations, Error> {
         let motion = self.motion(place)?;
         let mut rows: Vec<Row> = Vec::new();
         for (i, target) in self.targets.iter().enumerate() {
             let Some(target) = target else { continue };
-            let by = self.row(|unknown| entry(&motion, i, unknown));
+            let by = self.derivative_row(|unknown| acceleration_derivative(&motion, i, unknown));
             rows.push(Row { residual: motion.value[i] - target, by, floor: motion.scale });
         }
         if let Some(bounds) = self.bounds(place) {
@@ -362,7 +364,7 @@ where
             };
             rows.push(Row {
                 residual: *residual,
-                by: self.row(derivative_of_residual),
+                by: self.derivative_row(derivative_of_residual),
                 floor: residual_floor(i),
             });
         }
@@ -372,7 +374,11 @@ where
                 Unknown::Speed(k) => bounds.jacobian[(i, k)],
                 _ => 0.0,
             };
-            rows.push(Row { residual: *rate, by: self.row(derivative_of_rate), floor: residual_floor(i) });
+            rows.push(Row {
+                residual: *rate,
+                by: self.derivative_row(derivative_of_rate),
+                floor: residual_floor(i),
+            });
         }
     }
 
@@ -385,11 +391,13 @@ where
                     Unknown::Input(k) => seen.by_u[(*i, k)],
                     Unknown::Holding(_) | Unknown::Parameter(_) => 0.0,
                 };
-                (0..NV).fold(direct, |sum, a| sum + seen.by_a[(*i, a)] * entry(motion, a, unknown))
+                (0..NV).fold(direct, |sum, a| {
+                    sum + seen.by_a[(*i, a)] * acceleration_derivative(motion, a, unknown)
+                })
             };
             let all = [&seen.by_q, &seen.by_v, &seen.by_u].map(|derivative| derivative.row(*i).norm());
             let floor = BESIDE * all.into_iter().fold(0.0, f64::max);
-            rows.push(Row { residual: seen.values[*i] - value, by: self.row(derivative), floor });
+            rows.push(Row { residual: seen.values[*i] - value, by: self.derivative_row(derivative), floor });
         }
     }
 
@@ -421,7 +429,7 @@ where
         }
     }
 
-    fn row(&self, by: impl Fn(Unknown) -> f64) -> Vec<f64> {
+    fn derivative_row(&self, by: impl Fn(Unknown) -> f64) -> Vec<f64> {
         self.unknowns.iter().map(|unknown| by(*unknown)).collect()
     }
 }
@@ -435,7 +443,11 @@ struct Row {
 }
 
 /// Returns the derivative of acceleration `i` with respect to an unknown; zero for parameters.
-fn entry<const NV: usize, const NU: usize>(motion: &Accelerated<NV, NU>, i: usize, unknown: Unknown) -> f64 {
+fn acceleration_derivative<const NV: usize, const NU: usize>(
+    motion: &Accelerated<NV, NU>,
+    i: usize,
+    unknown: Unknown,
+) -> f64 {
     match unknown {
         Unknown::Coordinate(k) => motion.by_q[(i, k)],
         Unknown::Speed(k) => motion.by_v[(i, k)],

@@ -37,13 +37,13 @@ struct Scales {
 }
 
 impl Scales {
-    fn update(&mut self, equations: &Equations, sizes: &[f64]) {
+    fn update_scales(&mut self, equations: &Equations, sizes: &[f64]) {
         let Equations { jacobian, floors, .. } = equations;
         for ((scale, row), floor) in self.rows.iter_mut().zip(jacobian.row_iter()).zip(floors) {
             let norm = row.iter().zip(sizes).map(|(x, size)| (x * size).powi(2)).sum::<f64>().sqrt();
             *scale = scale.max(norm).max(*floor);
         }
-        let weights: Vec<f64> = (0..self.rows.len()).map(|k| self.weight(k)).collect();
+        let weights: Vec<f64> = (0..self.rows.len()).map(|k| self.weight_of_condition(k)).collect();
         for (scale, column) in self.columns.iter_mut().zip(jacobian.column_iter()) {
             let norm = column.iter().zip(&weights).map(|(x, w)| (x * w).powi(2)).sum::<f64>().sqrt();
             *scale = scale.max(norm);
@@ -55,28 +55,28 @@ impl Scales {
     }
 
     /// Returns the factor that a condition is multiplied by.
-    fn weight(&self, row: usize) -> f64 {
+    fn weight_of_condition(&self, row: usize) -> f64 {
         if self.rows[row] > 0.0 { 1.0 / self.rows[row] } else { 1.0 }
     }
 
-    fn weighted(&self, residuals: &DVector<f64>) -> DVector<f64> {
-        DVector::from_fn(residuals.len(), |i, _| residuals[i] * self.weight(i))
+    fn weighted_residuals(&self, residuals: &DVector<f64>) -> DVector<f64> {
+        DVector::from_fn(residuals.len(), |i, _| residuals[i] * self.weight_of_condition(i))
     }
 
     /// Scales the Jacobian: rows by the weights of the conditions, columns by the scales of the unknowns.
-    fn scaled(&self, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
+    fn scaled_jacobian(&self, jacobian: &DMatrix<f64>) -> DMatrix<f64> {
         DMatrix::from_fn(jacobian.nrows(), jacobian.ncols(), |i, j| {
-            jacobian[(i, j)] * self.weight(i) / self.column(j)
+            jacobian[(i, j)] * self.weight_of_condition(i) / self.scale_of_unknown(j)
         })
     }
 
-    fn column(&self, j: usize) -> f64 {
+    fn scale_of_unknown(&self, j: usize) -> f64 {
         if self.columns[j] > 0.0 { self.columns[j] } else { 1.0 }
     }
 }
 
 /// Solves the damped least-squares problem `min |A x + r|² + μ |x|²`.
-fn damped(a: &DMatrix<f64>, r: &DVector<f64>, mu: f64) -> Option<DVector<f64>> {
+fn damped_least_squares(a: &DMatrix<f64>, r: &DVector<f64>, mu: f64) -> Option<DVector<f64>> {
     let (rows, columns) = a.shape();
     let mut stacked = DMatrix::zeros(rows + columns, columns);
     stacked.view_mut((0, 0), (rows, columns)).copy_from(a);
@@ -102,9 +102,9 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
     let problem = Problem::new(trim)?;
-    let ended = descend(&problem)?;
+    let ended = descend_to_solution(&problem)?;
     let Ended { place, scales, equations: Equations { residuals, jacobian, .. }, iterations } = &ended;
-    let left = scales.weighted(residuals);
+    let left = scales.weighted_residuals(residuals);
     let worst = left.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     if let Some((row, _)) = worst.filter(|(_, left)| left.abs() > LEFT) {
         return Err(Error::NoSteadyState {
@@ -115,7 +115,7 @@ where
             place: named_unknowns(&problem, place),
         });
     }
-    let open = open_directions(&problem, &scales.scaled(jacobian));
+    let open = open_directions(&problem, &scales.scaled_jacobian(jacobian));
     if !trim.nearest && !open.is_empty() {
         return Err(Error::Undetermined { unknowns: open, place: named_unknowns(&problem, place) });
     }
@@ -152,7 +152,7 @@ where
     all
 }
 
-fn descend<M, const NQ: usize, const NV: usize, const NU: usize>(
+fn descend_to_solution<M, const NQ: usize, const NV: usize, const NU: usize>(
     problem: &Problem<'_, '_, M, NQ, NV, NU>,
 ) -> Result<Ended<NQ, NV, NU>, Error>
 where
@@ -170,10 +170,11 @@ where
     while iterations < problem.trim.iterations && mu < DAMPED {
         iterations += 1;
         let sizes: Vec<f64> = problem.unknowns.iter().map(|u| problem.size(&place, *u)).collect();
-        scales.update(&equations, &sizes);
-        let (a, r) = (scales.scaled(&equations.jacobian), scales.weighted(&equations.residuals));
-        let Some(step) = damped(&a, &r, mu) else { break };
-        let mut change = DVector::from_fn(step.len(), |j, _| step[j] / scales.column(j));
+        scales.update_scales(&equations, &sizes);
+        let (a, r) =
+            (scales.scaled_jacobian(&equations.jacobian), scales.weighted_residuals(&equations.residuals));
+        let Some(step) = damped_least_squares(&a, &r, mu) else { break };
+        let mut change = DVector::from_fn(step.len(), |j, _| step[j] / scales.scale_of_unknown(j));
         let is_rounding = change.iter().zip(&sizes).all(|(x, size)| x.abs() <= ENOUGH * size);
         if is_rounding {
             break;
@@ -186,7 +187,8 @@ where
         let next = problem.displace(&place, &change);
         // If friction jams or a value is not finite, the step was too long.
         let trial = problem.equations(&next).ok();
-        let weighted_squared_residual = |trial: &Equations| scales.weighted(&trial.residuals).norm_squared();
+        let weighted_squared_residual =
+            |trial: &Equations| scales.weighted_residuals(&trial.residuals).norm_squared();
         let better = trial
             .map(|trial| (r.norm_squared() - weighted_squared_residual(&trial), trial))
             .filter(|(gained, _)| *gained > 0.0);
@@ -203,7 +205,7 @@ where
         }
     }
     let sizes: Vec<f64> = problem.unknowns.iter().map(|u| problem.size(&place, *u)).collect();
-    scales.update(&equations, &sizes);
+    scales.update_scales(&equations, &sizes);
     Ok(Ended { place, scales, equations, iterations })
 }
 
@@ -219,8 +221,8 @@ where
     let (rows, columns) = equations.jacobian.shape();
     let mut scales = Scales { rows: vec![0.0; rows], columns: vec![0.0; columns] };
     let sizes: Vec<f64> = problem.unknowns.iter().map(|unknown| problem.size(place, *unknown)).collect();
-    scales.update(&equations, &sizes);
-    let left = scales.weighted(&equations.residuals);
+    scales.update_scales(&equations, &sizes);
+    let left = scales.weighted_residuals(&equations.residuals);
     let worst = left.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     match worst.filter(|(_, left)| left.abs() > STEADY || left.is_nan()) {
         None => Ok(()),

@@ -3,7 +3,7 @@
 use super::linear::{Linear, linear};
 use super::{SteadyState, Trim};
 use crate::Error;
-use crate::matrices::symmetric;
+use crate::matrices::symmetric_part;
 use linkwork::Derivatives;
 use nalgebra::DMatrix;
 
@@ -94,9 +94,9 @@ where
         // Zᵀ M P = Zᵀ for the derivative P of the accelerations by forces, which eliminates the
         // multipliers.
         let matrix = -(shape.transpose() * &mass * by_q * &shape);
-        let own = symmetric(&(shape.transpose() * mass * &shape));
+        let own = symmetric_part(&(shape.transpose() * mass * &shape));
         let lower = own.cholesky().ok_or(Error::Indefinite { matrix: "M" })?.l();
-        let curvatures = curvatures(&lower, &matrix)?;
+        let curvatures = relative_eigenvalues(&lower, &matrix)?;
         let size = matrix.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let skew = (&matrix - matrix.transpose()).iter().fold(0.0, |most: f64, x| most.max(x.abs())) / 2.0;
         let asymmetry = if size > 0.0 { skew / size } else { 0.0 };
@@ -106,11 +106,11 @@ where
 }
 
 /// Returns the eigenvalues of `L⁻¹ K L⁻ᵀ` in ascending order.
-fn curvatures(lower: &DMatrix<f64>, matrix: &DMatrix<f64>) -> Result<Vec<f64>, Error> {
+fn relative_eigenvalues(lower: &DMatrix<f64>, matrix: &DMatrix<f64>) -> Result<Vec<f64>, Error> {
     let singular = Error::Indefinite { matrix: "M" };
-    let half = lower.solve_lower_triangular(&symmetric(matrix)).ok_or(singular.clone())?;
+    let half = lower.solve_lower_triangular(&symmetric_part(matrix)).ok_or(singular.clone())?;
     let whole = lower.solve_lower_triangular(&half.transpose()).ok_or(singular)?;
-    let mut all: Vec<f64> = symmetric(&whole).symmetric_eigenvalues().iter().copied().collect();
+    let mut all: Vec<f64> = symmetric_part(&whole).symmetric_eigenvalues().iter().copied().collect();
     all.sort_by(f64::total_cmp);
     Ok(all)
 }

@@ -1,6 +1,6 @@
 //! Static equilibria under loads, compared with closed forms.
 
-use super::close;
+use super::assert_relatively_close;
 use linkwork::prelude::*;
 use linkwork_design::Error;
 use linkwork_design::steady::{Verdict, constrained_equilibrium, equilibrium};
@@ -53,8 +53,8 @@ fn a_column_buckles_at_eulers_load() {
     for found in &bent[..2] {
         let (first, second) = (found.q[0], found.q[0] + found.q[1]);
         let restoring_moment = |angle: f64| 1.2 * critical * 0.5 * angle.sin();
-        close(20.0 * (second - first), restoring_moment(second), 1e-10);
-        close(20.0 * first - 20.0 * (second - first), restoring_moment(first), 1e-10);
+        assert_relatively_close(20.0 * (second - first), restoring_moment(second), 1e-10);
+        assert_relatively_close(20.0 * first - 20.0 * (second - first), restoring_moment(first), 1e-10);
         assert!(first.abs() > 0.3);
         assert_eq!(problem.stiffness(found).unwrap().verdict(), Verdict::Stable);
     }
@@ -182,7 +182,7 @@ fn six_legs_hold_a_platform() {
     let fixed = ["vx", "vy", "vz", "wx", "wy", "wz"].map(|axis| format!("pose.{axis}"));
     let found = constrained_equilibrium(&platform).from(q).fix(fixed).inputs(drives).find().unwrap();
     for (k, (n, length, _)) in legs.iter().enumerate() {
-        close(found.q[coordinate_index(&format!("slide_{k}"))], *length, 1e-12);
-        close(found.u[k], along[k] - n.dot(&weight_of_mass(2.0)), 1e-9);
+        assert_relatively_close(found.q[coordinate_index(&format!("slide_{k}"))], *length, 1e-12);
+        assert_relatively_close(found.u[k], along[k] - n.dot(&weight_of_mass(2.0)), 1e-9);
     }
 }

@@ -9,7 +9,7 @@ use nalgebra::vector;
 use std::f64::consts::PI;
 
 #[track_caller]
-fn close(found: f64, expected: f64, relative: f64) {
+fn assert_relatively_close(found: f64, expected: f64, relative: f64) {
     assert!(
         (found - expected).abs() <= relative * expected.abs().max(1e-3),
         "expected {expected}, found {found}"
@@ -17,7 +17,7 @@ fn close(found: f64, expected: f64, relative: f64) {
 }
 
 /// Finds a root between two points by bisection.
-fn root(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+fn root_by_bisection(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let side = f(low) > 0.0;
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
@@ -48,23 +48,23 @@ fn a_chain_hangs_in_its_catenary() {
     let (chain, weight) = (Chain { span: 0.9 }, 0.3 * 9.81);
     let slope_of_link = |pull: f64, k: usize| ((k as f64 - 2.5) * weight / pull).atan();
     let excess_reach = |pull: f64| (0..6).map(|k| 0.2 * slope_of_link(pull, k).cos()).sum::<f64>() - 0.9;
-    let pull = root(excess_reach, 0.1, 100.0);
+    let pull = root_by_bisection(excess_reach, 0.1, 100.0);
     let problem = constrained_equilibrium(&chain).from([-1.0, 0.3, 0.3, 0.3, 0.3, 0.3].into());
     let found = problem.find().unwrap();
     let mut angle = 0.0;
     for k in 0..6 {
         angle += found.q[k];
-        close(angle, slope_of_link(pull, k), 1e-10);
+        assert_relatively_close(angle, slope_of_link(pull, k), 1e-10);
     }
     let [(x, horizontal), (y, vertical)] = found.multipliers[..] else { panic!("two multipliers") };
     assert_eq!((x, y), ("last.x", "last.y"));
-    close(horizontal.abs(), pull, 1e-10);
-    close(vertical.abs(), 3.0 * weight, 1e-10);
+    assert_relatively_close(horizontal.abs(), pull, 1e-10);
+    assert_relatively_close(vertical.abs(), 3.0 * weight, 1e-10);
     let stiffness = problem.stiffness(&found).unwrap();
     assert_eq!((stiffness.verdict(), stiffness.curvatures.len()), (Verdict::Stable, 4));
     let system = problem.linear_system(&found).unwrap();
     for (curvature, mode) in stiffness.curvatures.iter().zip(system.modes().unwrap()) {
-        close(mode.frequency(), curvature.sqrt(), 1e-6);
+        assert_relatively_close(mode.frequency(), curvature.sqrt(), 1e-6);
     }
     // The arch, which is the mirrored shape, is also an equilibrium.
     let arch = problem.from([1.0, -0.3, -0.3, -0.3, -0.3, -0.3].into());
@@ -100,12 +100,12 @@ fn a_governor_opens_with_its_speed() {
     let lifted = (9.81 / (speed * speed * 0.4)).acos();
     let problem = equilibrium(&Governor {}).fix(["turn"]).moving(vector![speed, 0.0, 0.0]);
     let found = problem.from(vector![0.0, -0.8, -0.8]).find().unwrap();
-    close(found.q[1], -lifted, 1e-12);
-    close(found.q[2], -lifted, 1e-12);
+    assert_relatively_close(found.q[1], -lifted, 1e-12);
+    assert_relatively_close(found.q[2], -lifted, 1e-12);
     // Inverse problem: at which speed are the arms raised by one radian?
     let problem = equilibrium(&Governor {}).from(vector![0.0, 1.0, 1.0]).coordinates([] as [&str; 0]);
     let problem = problem.moving(vector![5.0, 0.0, 0.0]).speeds(["turn"]);
-    close(problem.find().unwrap().v[0], (9.81 / (0.4 * 1.0_f64.cos())).sqrt(), 1e-12);
+    assert_relatively_close(problem.find().unwrap().v[0], (9.81 / (0.4 * 1.0_f64.cos())).sqrt(), 1e-12);
     assert!(matches!(problem.stiffness(&problem.find().unwrap()), Err(Error::NoPotential { .. })));
 }
 
@@ -141,7 +141,7 @@ fn a_bead_on_a_hoop_has_four_equilibria() {
         assert_eq!(problem.stiffness(found).unwrap().verdict(), verdict, "at {theta}");
     }
     let mode = &problem.linear_system(&all[3]).unwrap().modes().unwrap()[0];
-    close(mode.frequency(), 6.0 * lifted.sin(), 1e-12);
+    assert_relatively_close(mode.frequency(), 6.0 * lifted.sin(), 1e-12);
 }
 
 /// Test mechanism: a spinning top in massless gimbals.
@@ -182,12 +182,12 @@ fn a_top_precesses_slowly_or_fast() {
             .speeds(["precession", "spin"])
             .output("axial_rate", n);
         let found = problem.find().unwrap();
-        close(found.v[0], rate, 1e-12);
-        close(found.v[2] + found.v[0] * theta.cos(), n, 1e-12);
+        assert_relatively_close(found.v[0], rate, 1e-12);
+        assert_relatively_close(found.v[2] + found.v[0] * theta.cos(), n, 1e-12);
         let kappa = moment / a;
         let expected = (rate * rate - 2.0 * kappa * theta.cos() + (kappa / rate).powi(2)).sqrt();
         let modes = problem.linear_system(&found).unwrap().modes().unwrap();
-        close(modes.last().unwrap().frequency(), expected, 1e-6);
+        assert_relatively_close(modes.last().unwrap().frequency(), expected, 1e-6);
     }
     // A top that spins too slowly cannot precess at this inclination.
     let slow = equilibrium(&Top {})
@@ -233,15 +233,19 @@ fn what_is_wrong_is_named() {
     // tangent of the angle.
     let leaning =
         equilibrium(&cart).coordinates(["hinge"]).acceleration("rail", 2.0).inputs(["push"]).find().unwrap();
-    close(leaning.q[1], -(2.0 / 9.81_f64).atan(), 1e-12);
-    close(leaning.u[0], 2.3 * 2.0, 1e-12);
+    assert_relatively_close(leaning.q[1], -(2.0 / 9.81_f64).atan(), 1e-12);
+    assert_relatively_close(leaning.u[0], 2.3 * 2.0, 1e-12);
     // With a locked cart, the pole is unstable, and the system has one degree of freedom.
     let held = equilibrium(&cart).hold(["rail"]);
     let upright = held.find().unwrap();
     let system = held.linear_system(&upright).unwrap();
     assert_eq!(system.states()[0].name, "hinge");
     let poles = system.poles().unwrap();
-    close(poles.iter().map(|pole| pole.re).fold(0.0, f64::max), (1.5_f64 * 9.81).sqrt(), 1e-12);
+    assert_relatively_close(
+        poles.iter().map(|pole| pole.re).fold(0.0, f64::max),
+        (1.5_f64 * 9.81).sqrt(),
+        1e-12,
+    );
     assert_eq!(held.stiffness(&upright).unwrap().verdict(), Verdict::Unstable);
     let error = equilibrium(&cart).fix(["hinges"]).find().unwrap_err();
     assert_eq!(error.to_string(), "no coordinate `hinges`, perhaps `hinge`; there are rail, hinge");
@@ -324,13 +328,13 @@ fn an_aircraft_climbs_and_turns() {
         let drag = pressure * (0.03 + 0.05 * cl * cl);
         let thrust = found.u[Aircraft::INPUTS.iter().position(|n| *n == "thrust").unwrap()];
         let slope = (climb / speed).asin();
-        close(thrust * alpha.cos(), drag + mass * g * slope.sin(), 1e-9);
+        assert_relatively_close(thrust * alpha.cos(), drag + mass * g * slope.sin(), 1e-9);
         // Perpendicular to the path: the weight and the centripetal force.
         let across = pressure * cl + thrust * alpha.sin();
         let turned = mass * speed * slope.cos() * rate;
-        close(across, (mass * g * slope.cos()).hypot(turned), 1e-9);
+        assert_relatively_close(across, (mass * g * slope.cos()).hypot(turned), 1e-9);
         if climb == 0.0 {
-            close(aircraft.bank(&found.q), (speed * rate / g).atan().sin(), 1e-9);
+            assert_relatively_close(aircraft.bank(&found.q), (speed * rate / g).atan().sin(), 1e-9);
         }
         // Two unknowns too few.
         let short = problem.inputs([] as [&str; 0]).coordinates(["flight.wy"]);

@@ -46,7 +46,7 @@ impl From<Error> for Failure {
 }
 
 impl Failure {
-    fn code(&self) -> c_int {
+    fn error_code(&self) -> c_int {
         match self {
             Failure::Linkwork(Error::File { .. }) => 1,
             Failure::Linkwork(Error::Syntax(_)) => 2,
@@ -60,7 +60,7 @@ impl Failure {
         }
     }
 
-    fn text(&self) -> String {
+    fn error_text(&self) -> String {
         match self {
             Failure::Null => "a pointer is NULL, or a text is not UTF-8".to_string(),
             Failure::Index(index) => format!("there is no entry {index}"),
@@ -79,21 +79,21 @@ fn c_text(text: &str) -> CString {
 }
 
 /// Runs a function; keeps the message of its failure and returns its code. No panic passes.
-fn guarded(run: impl FnOnce() -> Result<(), Failure>) -> c_int {
+fn run_guarded(run: impl FnOnce() -> Result<(), Failure>) -> c_int {
     let internal_error = |_| Err(Failure::Linkwork(Error::Internal("a panic".to_string())));
     match catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(internal_error) {
         Ok(()) => 0,
         Err(failure) => {
-            let _ = MESSAGE.try_with(|message| message.replace(c_text(&failure.text())));
-            failure.code()
+            let _ = MESSAGE.try_with(|message| message.replace(c_text(&failure.error_text())));
+            failure.error_code()
         }
     }
 }
 
 /// Runs a function and returns its value, or the value `otherwise` if the function fails.
-fn value<T>(otherwise: T, run: impl FnOnce() -> Result<T, Failure>) -> T {
+fn value_or_default<T>(otherwise: T, run: impl FnOnce() -> Result<T, Failure>) -> T {
     let mut found = otherwise;
-    guarded(|| {
+    run_guarded(|| {
         found = run()?;
         Ok(())
     });
@@ -123,18 +123,18 @@ impl LwRobot {
         }
     }
 
-    fn list(&self, list: c_int) -> Result<&[(CString, CString)], Failure> {
+    fn names_of_list(&self, list: c_int) -> Result<&[(CString, CString)], Failure> {
         let index = usize::try_from(list).unwrap_or(usize::MAX);
         self.lists.get(index).map(Vec::as_slice).ok_or(Failure::Index(index))
     }
 
-    fn function(&self, index: usize) -> Result<(&Function, &Signature), Failure> {
+    fn function_with_signature(&self, index: usize) -> Result<(&Function, &Signature), Failure> {
         self.functions.get(index).zip(self.signatures.get(index)).ok_or(Failure::Index(index))
     }
 }
 
-fn give(to: *mut *mut LwRobot, load: impl FnOnce() -> Result<Robot, Failure>) -> c_int {
-    guarded(|| {
+fn load_robot_into(to: *mut *mut LwRobot, load: impl FnOnce() -> Result<Robot, Failure>) -> c_int {
+    run_guarded(|| {
         // SAFETY: the header says that the pointer is that of a variable of the caller.
         let to = unsafe { raw::unique(to) }?;
         *to = std::ptr::null_mut();
@@ -144,7 +144,7 @@ fn give(to: *mut *mut LwRobot, load: impl FnOnce() -> Result<Robot, Failure>) ->
 }
 
 /// Returns the text of options passed from C; a null pointer counts as an empty text.
-unsafe fn options<'a>(options: *const c_char) -> Result<&'a str, Failure> {
+unsafe fn options_text<'a>(options: *const c_char) -> Result<&'a str, Failure> {
     // SAFETY: as the caller promises.
     if options.is_null() { Ok("") } else { unsafe { raw::text(options) } }
 }
@@ -157,7 +157,7 @@ pub extern "C" fn lw_message() -> *const c_char {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_load(path: *const c_char, more: *const c_char, to: *mut *mut LwRobot) -> c_int {
     // SAFETY: texts of the caller, as the header says.
-    give(to, || unsafe { Ok(Loader::file(raw::text(path)?).options(options(more)?).load()?) })
+    load_robot_into(to, || unsafe { Ok(Loader::file(raw::text(path)?).options(options_text(more)?).load()?) })
 }
 
 #[unsafe(no_mangle)]
@@ -167,18 +167,18 @@ pub unsafe extern "C" fn lw_declare(
     to: *mut *mut LwRobot,
 ) -> c_int {
     // SAFETY: texts of the caller, as the header says.
-    give(to, || unsafe { Ok(Loader::text(raw::text(text)?).options(options(more)?).load()?) })
+    load_robot_into(to, || unsafe { Ok(Loader::text(raw::text(text)?).options(options_text(more)?).load()?) })
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_copy(robot: *const LwRobot, to: *mut *mut LwRobot) -> c_int {
     // SAFETY: a robot of this library, as the header says.
-    give(to, || Ok(unsafe { raw::shared(robot) }?.robot.clone()))
+    load_robot_into(to, || Ok(unsafe { raw::shared(robot) }?.robot.clone()))
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_free(robot: *mut LwRobot) {
-    guarded(|| {
+    run_guarded(|| {
         // SAFETY: a robot of this library that was not freed, as the header says.
         unsafe { raw::free(robot) };
         Ok(())
@@ -188,29 +188,29 @@ pub unsafe extern "C" fn lw_free(robot: *mut LwRobot) {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_mechanism(robot: *const LwRobot) -> *const c_char {
     // SAFETY: a robot of this library, as the header says.
-    value(std::ptr::null(), || Ok(unsafe { raw::shared(robot) }?.name.as_ptr()))
+    value_or_default(std::ptr::null(), || Ok(unsafe { raw::shared(robot) }?.name.as_ptr()))
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_count(robot: *const LwRobot, list: c_int) -> usize {
     // SAFETY: a robot of this library, as the header says.
-    value(0, || Ok(unsafe { raw::shared(robot) }?.list(list)?.len()))
+    value_or_default(0, || Ok(unsafe { raw::shared(robot) }?.names_of_list(list)?.len()))
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_name(robot: *const LwRobot, list: c_int, index: usize) -> *const c_char {
-    value(std::ptr::null(), || {
+    value_or_default(std::ptr::null(), || {
         // SAFETY: a robot of this library, as the header says.
-        let list = unsafe { raw::shared(robot) }?.list(list)?;
+        let list = unsafe { raw::shared(robot) }?.names_of_list(list)?;
         Ok(list.get(index).ok_or(Failure::Index(index))?.0.as_ptr())
     })
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_unit(robot: *const LwRobot, list: c_int, index: usize) -> *const c_char {
-    value(std::ptr::null(), || {
+    value_or_default(std::ptr::null(), || {
         // SAFETY: a robot of this library, as the header says.
-        let list = unsafe { raw::shared(robot) }?.list(list)?;
+        let list = unsafe { raw::shared(robot) }?.names_of_list(list)?;
         Ok(list.get(index).ok_or(Failure::Index(index))?.1.as_ptr())
     })
 }
@@ -222,11 +222,11 @@ pub unsafe extern "C" fn lw_index(
     name: *const c_char,
     to: *mut usize,
 ) -> c_int {
-    guarded(|| {
+    run_guarded(|| {
         // SAFETY: a robot of this library, a text and a variable of the caller, as the header says.
         let (robot, name, to) = unsafe { (raw::shared(robot)?, raw::text(name)?, raw::unique(to)?) };
         let is_searched_name = |known: &CStr| known.to_bytes() == name.as_bytes();
-        let found = robot.list(list)?.iter().position(|(known, _)| is_searched_name(known));
+        let found = robot.names_of_list(list)?.iter().position(|(known, _)| is_searched_name(known));
         let kinds = ["coordinate", "velocity", "input", "parameter", "frame", "function"];
         *to = match found {
             Some(index) => index,
@@ -245,7 +245,7 @@ pub unsafe extern "C" fn lw_index(
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_set_parameter(robot: *mut LwRobot, index: usize, number: f64) -> c_int {
-    guarded(|| {
+    run_guarded(|| {
         // SAFETY: a robot of this library that nothing else uses now, as the header says.
         let robot = &mut unsafe { raw::unique(robot) }?.robot;
         let name = robot.parameters().get(index).ok_or(Failure::Index(index))?.name.clone();
@@ -255,7 +255,7 @@ pub unsafe extern "C" fn lw_set_parameter(robot: *mut LwRobot, index: usize, num
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_parameter(robot: *const LwRobot, index: usize, to: *mut f64) -> c_int {
-    guarded(|| {
+    run_guarded(|| {
         // SAFETY: a robot of this library and a variable of the caller, as the header says.
         let (robot, to) = unsafe { (raw::shared(robot)?, raw::unique(to)?) };
         *to = *robot.robot.parameter_values().get(index).ok_or(Failure::Index(index))?;
@@ -266,7 +266,7 @@ pub unsafe extern "C" fn lw_parameter(robot: *const LwRobot, index: usize, to: *
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_validate(robot: *const LwRobot) -> c_int {
     // SAFETY: a robot of this library, as the header says.
-    guarded(|| Ok(unsafe { raw::shared(robot) }?.robot.validate()?))
+    run_guarded(|| Ok(unsafe { raw::shared(robot) }?.robot.validate()?))
 }
 
 #[unsafe(no_mangle)]
@@ -277,7 +277,7 @@ pub unsafe extern "C" fn lw_limits(
     velocity: *mut f64,
     effort: *mut f64,
 ) -> c_int {
-    guarded(|| {
+    run_guarded(|| {
         // SAFETY: a robot of this library, as the header says.
         let robot = &unsafe { raw::shared(robot) }?.robot;
         let n = robot.nv();
@@ -300,16 +300,18 @@ pub unsafe extern "C" fn lw_limits(
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_documentation(robot: *const LwRobot, function: usize) -> *const c_char {
-    value(std::ptr::null(), || {
+    value_or_default(std::ptr::null(), || {
         // SAFETY: a robot of this library, as the header says.
-        Ok(unsafe { raw::shared(robot) }?.function(function)?.1.documentation.as_ptr())
+        Ok(unsafe { raw::shared(robot) }?.function_with_signature(function)?.1.documentation.as_ptr())
     })
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_arguments(robot: *const LwRobot, function: usize) -> usize {
     // SAFETY: a robot of this library, as the header says.
-    value(0, || Ok(unsafe { raw::shared(robot) }?.function(function)?.1.arguments.len()))
+    value_or_default(0, || {
+        Ok(unsafe { raw::shared(robot) }?.function_with_signature(function)?.1.arguments.len())
+    })
 }
 
 #[unsafe(no_mangle)]
@@ -320,10 +322,15 @@ pub unsafe extern "C" fn lw_argument(
     name: *mut *const c_char,
     length: *mut usize,
 ) -> c_int {
-    guarded(|| {
+    run_guarded(|| {
         // SAFETY: a robot of this library and variables of the caller, as the header says.
         let (robot, to, size) = unsafe { (raw::shared(robot)?, raw::unique(name)?, raw::unique(length)?) };
-        let found = robot.function(function)?.1.arguments.get(argument).ok_or(Failure::Index(argument))?;
+        let found = robot
+            .function_with_signature(function)?
+            .1
+            .arguments
+            .get(argument)
+            .ok_or(Failure::Index(argument))?;
         (*to, *size) = (found.0.as_ptr(), found.1);
         Ok(())
     })
@@ -332,7 +339,9 @@ pub unsafe extern "C" fn lw_argument(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_results(robot: *const LwRobot, function: usize) -> usize {
     // SAFETY: a robot of this library, as the header says.
-    value(0, || Ok(unsafe { raw::shared(robot) }?.function(function)?.1.results.len()))
+    value_or_default(0, || {
+        Ok(unsafe { raw::shared(robot) }?.function_with_signature(function)?.1.results.len())
+    })
 }
 
 #[unsafe(no_mangle)]
@@ -344,12 +353,13 @@ pub unsafe extern "C" fn lw_result(
     rows: *mut usize,
     columns: *mut usize,
 ) -> c_int {
-    guarded(|| {
+    run_guarded(|| {
         // SAFETY: a robot of this library and variables of the caller, as the header says.
         let (robot, to) = unsafe { (raw::shared(robot)?, raw::unique(name)?) };
         // SAFETY: as before.
         let (rows, columns) = unsafe { (raw::unique(rows)?, raw::unique(columns)?) };
-        let found = robot.function(function)?.1.results.get(result).ok_or(Failure::Index(result))?;
+        let found =
+            robot.function_with_signature(function)?.1.results.get(result).ok_or(Failure::Index(result))?;
         (*to, *rows, *columns) = (found.0.as_ptr(), found.1, found.2);
         Ok(())
     })
@@ -358,14 +368,14 @@ pub unsafe extern "C" fn lw_result(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_length(robot: *const LwRobot, function: usize) -> usize {
     // SAFETY: a robot of this library, as the header says.
-    value(0, || Ok(unsafe { raw::shared(robot) }?.function(function)?.0.length()))
+    value_or_default(0, || Ok(unsafe { raw::shared(robot) }?.function_with_signature(function)?.0.length()))
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_compile(robot: *const LwRobot, function: usize) -> c_int {
-    guarded(|| {
+    run_guarded(|| {
         // SAFETY: a robot of this library, as the header says.
-        unsafe { raw::shared(robot) }?.function(function)?.0.compile();
+        unsafe { raw::shared(robot) }?.function_with_signature(function)?.0.compile();
         Ok(())
     })
 }
@@ -380,10 +390,10 @@ pub unsafe extern "C" fn lw_call(
     values: *const *const f64,
     results: *mut f64,
 ) -> c_int {
-    guarded(|| {
+    run_guarded(|| {
         // SAFETY: a robot of this library, as the header says.
         let robot = unsafe { raw::shared(robot) }?;
-        let (f, signature) = robot.function(function)?;
+        let (f, signature) = robot.function_with_signature(function)?;
         let count = signature.arguments.len();
         // SAFETY: pointers to the arguments and the results, of the lengths that the header says.
         let (pointers, out) = unsafe { (raw::array(values, count)?, raw::array_mut(results, f.length())?) };
@@ -407,10 +417,10 @@ pub unsafe extern "C" fn lw_call_many(
     results: *mut f64,
     length: usize,
 ) -> c_int {
-    guarded(|| {
+    run_guarded(|| {
         // SAFETY: a robot of this library, as the header says.
         let robot = unsafe { raw::shared(robot) }?;
-        let f = robot.function(function)?.0;
+        let f = robot.function_with_signature(function)?.0;
         // SAFETY: lists of `arguments` pointers and lengths, and an array of `length` values.
         let (pointers, lengths, out) = unsafe {
             (
@@ -445,10 +455,10 @@ pub struct LwSimulation {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn lw_sample(robot: *const LwRobot) -> usize {
     // SAFETY: a robot of this library, as the header says.
-    value(0, || Ok(width(&unsafe { raw::shared(robot) }?.robot)))
+    value_or_default(0, || Ok(sample_width(&unsafe { raw::shared(robot) }?.robot)))
 }
 
-fn width(robot: &Robot) -> usize {
+fn sample_width(robot: &Robot) -> usize {
     1 + robot.nq() + robot.nv() + robot.states() + robot.nu()
 }
 
@@ -462,11 +472,11 @@ pub unsafe extern "C" fn lw_simulate(
     rows: usize,
     count: *mut usize,
 ) -> c_int {
-    guarded(|| {
+    run_guarded(|| {
         // SAFETY: a robot of this library, and variables of the caller, as the header says.
         let (robot, settings, count) =
             unsafe { (&raw::shared(robot)?.robot, raw::shared(settings)?, raw::unique(count)?) };
-        let width = width(robot);
+        let width = sample_width(robot);
         *count = 0;
         // SAFETY: arrays of these lengths, as the header says.
         let (q, v, samples) = unsafe {
@@ -526,7 +536,7 @@ pub unsafe extern "C" fn lw_assemble(
     count: usize,
     result: *mut f64,
 ) -> c_int {
-    guarded(|| {
+    run_guarded(|| {
         // SAFETY: a robot of this library, as the header says.
         let robot = &unsafe { raw::shared(robot) }?.robot;
         // SAFETY: arrays of these lengths, as the header says.
@@ -547,7 +557,7 @@ pub unsafe extern "C" fn lw_complete_velocity(
     count: usize,
     result: *mut f64,
 ) -> c_int {
-    guarded(|| {
+    run_guarded(|| {
         // SAFETY: a robot of this library, as the header says.
         let robot = &unsafe { raw::shared(robot) }?.robot;
         // SAFETY: arrays of these lengths, as the header says.

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-fn run(compiler: &str, file: &str) -> Result<(), Box<dyn std::error::Error>> {
+fn run_program(compiler: &str, file: &str) -> Result<(), Box<dyn std::error::Error>> {
     if Command::new(compiler).arg("--version").output().is_err() {
         println!("skipped: there is no {compiler}");
         return Ok(());
@@ -32,10 +32,10 @@ fn run(compiler: &str, file: &str) -> Result<(), Box<dyn std::error::Error>> {
 
 #[test]
 fn programs_in_c_run() -> Result<(), Box<dyn std::error::Error>> {
-    run("cc", "pendulum.c")
+    run_program("cc", "pendulum.c")
 }
 
 #[test]
 fn programs_in_cpp_run() -> Result<(), Box<dyn std::error::Error>> {
-    run("c++", "pendulum.cpp")
+    run_program("c++", "pendulum.cpp")
 }

@@ -161,7 +161,7 @@ impl Translator<'_> {
             Op::Neg(_) => self.builder.ins().fneg(a),
             Op::Call(Elementary::Sqrt, _) => self.builder.ins().sqrt(a),
             Op::Call(Elementary::Abs, _) => self.builder.ins().fabs(a),
-            Op::Call(f, _) => self.number(f.name(), &[a])?,
+            Op::Call(f, _) => self.number(f.function_name(), &[a])?,
             Op::Add(..) => {
                 let b = self.value(b)?;
                 self.builder.ins().fadd(a, b)
@@ -199,8 +199,9 @@ impl Translator<'_> {
             }
             Op::Table(lookup, ..) => {
                 let [y, z] = [self.value(b)?, self.value(c)?];
-                let orders = (0..lookup.variables()).fold(0, |all, k| all | lookup.order(k) << (2 * k));
-                let table = self.builder.ins().iconst(types::I64, lookup.table() as i64);
+                let orders = (0..lookup.variable_count())
+                    .fold(0, |all, k| all | lookup.derivative_order(k) << (2 * k));
+                let table = self.builder.ins().iconst(types::I64, lookup.table_index() as i64);
                 let orders = self.builder.ins().iconst(types::I64, orders as i64);
                 self.number("lookup", &[self.parameters[2], table, orders, a, y, z])?
             }

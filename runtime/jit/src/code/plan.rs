@@ -121,7 +121,7 @@ impl Allocation {
             places: vec![None; n],
             free: Vec::new(),
         };
-        let angles = Angles::find(program);
+        let angles = Angles::find_angles(program);
         planner.angles(&angles)?;
         planner.body(&angles, results)?;
         Ok(planner.plan)
@@ -216,7 +216,7 @@ impl Planner<'_> {
         for k in (0..n).rev() {
             live[k] &= !angles.covered[k];
             if live[k] {
-                program.instructions[k].operands(|operand| {
+                program.instructions[k].visit_operands(|operand| {
                     if let Operand::Value(j) = operand {
                         live[j] = true;
                     }
@@ -244,7 +244,7 @@ impl Planner<'_> {
     /// Returns the values that an instruction uses, without sines and cosines that are computed before.
     fn operands(&self, k: usize) -> Vec<usize> {
         let mut list = Vec::with_capacity(3);
-        self.program.instructions[k].operands(|operand| {
+        self.program.instructions[k].visit_operands(|operand| {
             if let Operand::Value(j) = operand
                 && !self.sines.contains_key(&j)
                 && !list.contains(&j)
@@ -266,7 +266,7 @@ impl Planner<'_> {
             }
         }
         if let Op::Table(lookup, ..) = op {
-            self.plan.tables = self.plan.tables.max(lookup.table() + 1);
+            self.plan.tables = self.plan.tables.max(lookup.table_index() + 1);
         }
         let places = self.places_of(op)?;
         // Their memory is not overwritten before the operation.
@@ -300,7 +300,7 @@ impl Planner<'_> {
     /// Returns the places of the operands; one that does not exist repeats the first.
     fn places_of(&mut self, op: Op) -> Result<[Place; 3], String> {
         let mut list = Vec::with_capacity(3);
-        op.operands(|operand| list.push(operand));
+        op.visit_operands(|operand| list.push(operand));
         let mut places = Vec::with_capacity(3);
         for operand in list {
             places.push(match operand {

@@ -1,7 +1,7 @@
 //! Random programs: machine code equals an evaluation of one operation after the other, bit for bit.
 
 use super::plan::padded;
-use super::{Code, sines};
+use super::{Code, write_sines_and_cosines};
 use crate::layout::Layout;
 use crate::table::AnyTable;
 use linkwork::Table;
@@ -57,7 +57,7 @@ impl Random {
             29 => Op::Atan2(a, b),
             30 => Op::Pow(a, b),
             31 => Op::Extreme([Extreme::Min, Extreme::Max][self.index_below(2)], a, b),
-            _ => Op::Table(Lookup::new(0, 1).slope(0).unwrap_or(Lookup::new(0, 1)), a, a, a),
+            _ => Op::Table(Lookup::new(0, 1).partial_derivative(0).unwrap_or(Lookup::new(0, 1)), a, a, a),
         }
     }
 
@@ -73,7 +73,7 @@ impl Random {
         }
         let outputs = 1 + self.index_below(40);
         program.outputs = (0..outputs).map(|_| self.operand(length, length)).collect();
-        program.sweep();
+        program.remove_unused();
         program
     }
 }
@@ -97,11 +97,11 @@ fn values(
             Op::MulAdd(a, b, c) => get(a).mul_add(get(b), get(c)),
             Op::MulSub(a, b, c) => get(a).mul_add(get(b), -get(c)),
             Op::NegMulAdd(a, b, c) => (-get(a)).mul_add(get(b), get(c)),
-            Op::Call(f, a) => f.apply(get(a)),
+            Op::Call(f, a) => f.evaluate_at(get(a)),
             Op::Atan2(a, b) => get(a).atan2(get(b)),
             Op::Pow(a, b) => get(a).powf(get(b)),
-            Op::Extreme(f, a, b) => f.apply(get(a), get(b)),
-            Op::Table(_, a, ..) => table.value([get(a); 3], [1, 0, 0]),
+            Op::Extreme(f, a, b) => f.evaluate_extreme(get(a), get(b)),
+            Op::Table(_, a, ..) => table.derivative_value([get(a); 3], [1, 0, 0]),
             Op::Sum(..) | Op::Lane(..) | Op::Join(..) => f64::NAN,
         };
         values.push(known.get(&k).copied().unwrap_or(found));
@@ -120,7 +120,7 @@ fn evaluate(program: &Program, layout: &Layout, inputs: &[&[f64]], table: &AnyTa
         Operand::Tuple(_) | Operand::Gather(_) => f64::NAN,
     };
     let before = values(program, &value, table, &HashMap::new());
-    let angles = Angles::find(program);
+    let angles = Angles::find_angles(program);
     let list = angles.widest_first(program, |_| 1);
     let count = padded(list.len());
     let mut array = vec![0.0; 3 * count];
@@ -128,7 +128,7 @@ fn evaluate(program: &Program, layout: &Layout, inputs: &[&[f64]], table: &AnyTa
         *entry = value(&before, list[if at < list.len() { at } else { 0 }].angle);
     }
     if count > 0 {
-        sines(array.as_mut_ptr(), count as u64);
+        write_sines_and_cosines(array.as_mut_ptr(), count as u64);
     }
     let mut known = HashMap::new();
     for (k, op) in program.instructions.iter().enumerate().filter(|(k, _)| angles.covered[*k]) {
@@ -169,7 +169,7 @@ fn agree(compile: fn(&Program, &Layout, usize) -> Result<Code, String>) {
 #[test]
 fn assembled_programs_equal_an_evaluation_operation_by_operation() {
     if super::x86::is_supported() {
-        agree(Code::assembled);
+        agree(Code::assemble_x86_code);
     }
 }
 

@@ -269,15 +269,16 @@ impl Writer<'_> {
     /// Writes a call of a function of numbers in memory.
     fn call_of(&mut self, op: Op, to: u8, places: [Place; 3]) -> Result<(), String> {
         let (name, count) = match op {
-            Op::Call(f, _) => (f.name(), 1),
+            Op::Call(f, _) => (f.function_name(), 1),
             Op::Atan2(..) => ("atan2", 2),
             Op::Pow(..) => ("pow", 2),
             Op::Extreme(Extreme::Min, ..) => ("min", 2),
             Op::Extreme(Extreme::Max, ..) => ("max", 2),
             Op::Table(lookup, ..) => {
                 self.copy(RDI, TABLES);
-                self.immediate(RSI, lookup.table() as u64);
-                let orders = (0..lookup.variables()).fold(0, |all, k| all | lookup.order(k) << (2 * k));
+                self.immediate(RSI, lookup.table_index() as u64);
+                let orders = (0..lookup.variable_count())
+                    .fold(0, |all, k| all | lookup.derivative_order(k) << (2 * k));
                 self.immediate(RDX, orders as u64);
                 ("lookup", 3)
             }

@@ -2,7 +2,7 @@
 
 use super::Padded;
 use crate::internal::Internal;
-use crate::names::{List, numbers};
+use crate::names::{List, numbers_of_names};
 use crate::robot::{Robot, State};
 use linkwork::__private::{
     Elimination, Responses, Structure, careful_dynamics, careful_response, independent_solution,
@@ -24,25 +24,29 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Returns the number of constraints of the robot.
-    fn rows(&self) -> usize {
+    fn constraint_count(&self) -> usize {
         self.robot().shared.constraints.names.len()
     }
 
     /// Returns the group of each constraint row; each row of the padding is a group of its own.
-    pub(super) fn groups(&self) -> [usize; NV] {
+    pub(super) fn constraint_groups(&self) -> [usize; NV] {
         let groups = &self.robot().shared.constraints.groups;
         std::array::from_fn(|k| groups.get(k).copied().unwrap_or(NV + k))
     }
 
     /// Returns the constraint rows of sliding contacts.
-    pub(super) fn slipping(&self) -> [usize; NV] {
+    pub(super) fn sliding_rows(&self) -> [usize; NV] {
         let rows = &self.robot().shared.constraints.slipping;
         std::array::from_fn(|k| rows.get(k).copied().unwrap_or(NO_ROW))
     }
 
-    fn structure(&self) -> Structure<'_, NV> {
+    fn constraint_structure(&self) -> Structure<'_, NV> {
         let constraints = &self.robot().shared.constraints;
-        Structure { groups: self.groups(), determining: &constraints.determining, rank: constraints.rank }
+        Structure {
+            groups: self.constraint_groups(),
+            determining: &constraints.determining,
+            rank: constraints.rank,
+        }
     }
 
     pub(super) fn constraints_nearly_singular(
@@ -51,18 +55,18 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         q: &SVector<f64, NQ>,
         dv: &SVector<f64, NV>,
     ) -> bool {
-        nearly_singular::<Self, f64, NQ, NV, NU, NV, NV>(self, &self.structure(), t, q, dv)
+        nearly_singular::<Self, f64, NQ, NV, NU, NV, NV>(self, &self.constraint_structure(), t, q, dv)
     }
 
     /// Evaluates an elimination of the constraint equations. Rows of the padding get pivots of one, and
     /// accelerations of the padding are taken from `more`.
-    pub(super) fn elimination(
+    pub(super) fn evaluate_elimination(
         &self,
         f: Internal,
         state: State<'_>,
         more: &SVector<f64, NV>,
     ) -> Elimination<f64, NV, NV> {
-        let (n, rows) = (self.robot().nv(), self.rows());
+        let (n, rows) = (self.robot().nv(), self.constraint_count());
         let mut found = [0.0; 64];
         let mut heap = Vec::new();
         let length = n + 3 * rows;
@@ -73,7 +77,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
                 &mut heap[..]
             }
         };
-        self.call(f, state, found);
+        self.call_function(f, state, found);
         let (accelerations, rest) = found.split_at(n);
         let padded_row_values = |first: usize, padding: f64| {
             std::array::from_fn(|k| if k < rows { rest[first * rows + k] } else { padding })
@@ -89,10 +93,15 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Evaluates the quantities from which accelerations under redundant constraints follow.
-    fn responses(&self, f: Internal, state: State<'_>, more: &SVector<f64, NV>) -> Responses<f64, NV, NV> {
-        let (n, rows) = (self.robot().nv(), self.rows());
+    fn evaluate_responses(
+        &self,
+        f: Internal,
+        state: State<'_>,
+        more: &SVector<f64, NV>,
+    ) -> Responses<f64, NV, NV> {
+        let (n, rows) = (self.robot().nv(), self.constraint_count());
         let mut found = vec![0.0; n + rows + rows * rows + n * rows];
-        self.call(f, state, &mut found);
+        self.call_function(f, state, &mut found);
         let mut all = Responses {
             free: more.data.0[0],
             lacking: [0.0; NV],
@@ -112,7 +121,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Accelerations and multipliers by an elimination, or `None` where it loses digits.
-    fn eliminated(
+    fn solution_by_elimination(
         &self,
         f: Internal,
         independent: bool,
@@ -121,10 +130,18 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     ) -> Option<Solution<NV>> {
         let constraints = &self.robot().shared.constraints;
         if constraints.overdetermined {
-            return least_solution(&self.groups(), constraints.rank, &self.responses(f, state, more));
+            return least_solution(
+                &self.constraint_groups(),
+                constraints.rank,
+                &self.evaluate_responses(f, state, more),
+            );
         }
-        let found = self.elimination(f, state, more);
-        if independent { independent_solution(&found) } else { regular_solution(&self.groups(), &found) }
+        let found = self.evaluate_elimination(f, state, more);
+        if independent {
+            independent_solution(&found)
+        } else {
+            regular_solution(&self.constraint_groups(), &found)
+        }
     }
 
     /// Accelerations and multipliers of a mechanism with sliding contacts.
@@ -136,13 +153,13 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         tau: &SVector<f64, NV>,
     ) -> Result<Solution<NV>, ConstraintError> {
         let slipping = self.robot().shared.constraints.slipping.len();
-        let state = State { tau: self.velocity(tau), ..self.state(t, q, v) };
+        let state = State { tau: self.velocity_entries(tau), ..self.state_with_velocity(t, q, v) };
         let mut more = *tau;
         self.add_free_rates(state, 1.0, &mut more);
         let names = Self::CONSTRAINTS;
-        slipping_solution(&self.slipping(), &self.groups(), &names, |sides: &[f64; NV]| {
+        slipping_solution(&self.sliding_rows(), &self.constraint_groups(), &names, |sides: &[f64; NV]| {
             let state = State { other: [&sides[..slipping], &[], &[]], ..state };
-            self.elimination(Internal::ConstrainedDynamics, state, &more)
+            self.evaluate_elimination(Internal::ConstrainedDynamics, state, &more)
         })
     }
 
@@ -155,12 +172,19 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         force: &[f64; NV],
         bias: &[f64; NV],
     ) -> SVector<f64, NV> {
-        let (n, rows) = (self.robot().nv(), self.rows());
-        let state = State { other: [&force[..n], &bias[..rows], &[]], ..self.instant(t, q) };
+        let (n, rows) = (self.robot().nv(), self.constraint_count());
+        let state = State { other: [&force[..n], &bias[..rows], &[]], ..self.state_without_velocity(t, q) };
         let more = SVector::from(*force);
-        self.eliminated(Internal::ConstraintCorrection, false, state, &more)
+        self.solution_by_elimination(Internal::ConstraintCorrection, false, state, &more)
             .unwrap_or_else(|| {
-                careful_response::<Self, f64, NQ, NV, NU, NV, NV>(self, &self.structure(), t, q, force, bias)
+                careful_response::<Self, f64, NQ, NV, NU, NV, NV>(
+                    self,
+                    &self.constraint_structure(),
+                    t,
+                    q,
+                    force,
+                    bias,
+                )
             })
             .0
     }
@@ -169,7 +193,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constrained<NQ, NV, NU, NV, NV>
     for Padded<NQ, NV, NU, R>
 {
-    const CONSTRAINTS: [&'static str; NV] = numbers(List::Constraints);
+    const CONSTRAINTS: [&'static str; NV] = numbers_of_names(List::Constraints);
 
     fn holonomic(&self) -> usize {
         self.robot().shared.constraints.holonomic
@@ -188,21 +212,41 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
         let count = self.robot().shared.constraints.holonomic;
         match count {
             0 => SVector::zeros(),
-            _ => self.vector(Internal::ConstraintResiduals, self.instant(t, q), count, SVector::zeros()),
+            _ => self.fill_vector(
+                Internal::ConstraintResiduals,
+                self.state_without_velocity(t, q),
+                count,
+                SVector::zeros(),
+            ),
         }
     }
 
     fn constraint_rates(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        self.vector(Internal::ConstraintRates, self.state(t, q, v), self.rows(), SVector::zeros())
+        self.fill_vector(
+            Internal::ConstraintRates,
+            self.state_with_velocity(t, q, v),
+            self.constraint_count(),
+            SVector::zeros(),
+        )
     }
 
     fn constraint_jacobian(&self, t: f64, q: &SVector<f64, NQ>) -> SMatrix<f64, NV, NV> {
-        let size = (self.rows(), self.robot().nv());
-        self.matrix(Internal::ConstraintJacobian, self.instant(t, q), size, SMatrix::zeros())
+        let size = (self.constraint_count(), self.robot().nv());
+        self.fill_matrix(
+            Internal::ConstraintJacobian,
+            self.state_without_velocity(t, q),
+            size,
+            SMatrix::zeros(),
+        )
     }
 
     fn constraint_bias(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        self.vector(Internal::ConstraintBias, self.state(t, q, v), self.rows(), SVector::zeros())
+        self.fill_vector(
+            Internal::ConstraintBias,
+            self.state_with_velocity(t, q, v),
+            self.constraint_count(),
+            SVector::zeros(),
+        )
     }
 
     fn constrained_dynamics(
@@ -218,12 +262,20 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Constr
             let found = self.slipping_dynamics(t, q, v, tau);
             return found.unwrap_or((undetermined, undetermined));
         }
-        let state = State { tau: self.velocity(tau), ..self.state(t, q, v) };
+        let state = State { tau: self.velocity_entries(tau), ..self.state_with_velocity(t, q, v) };
         let mut more = *tau;
         self.add_free_rates(state, 1.0, &mut more);
-        self.eliminated(Internal::ConstrainedDynamics, constraints.independent, state, &more).unwrap_or_else(
-            || careful_dynamics::<Self, f64, NQ, NV, NU, NV, NV>(self, &self.structure(), t, q, v, tau),
-        )
+        self.solution_by_elimination(Internal::ConstrainedDynamics, constraints.independent, state, &more)
+            .unwrap_or_else(|| {
+                careful_dynamics::<Self, f64, NQ, NV, NU, NV, NV>(
+                    self,
+                    &self.constraint_structure(),
+                    t,
+                    q,
+                    v,
+                    tau,
+                )
+            })
     }
 
     fn constraint_correction(

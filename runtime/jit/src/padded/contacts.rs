@@ -3,7 +3,7 @@
 use super::{Padded, write_block};
 use crate::error::Error;
 use crate::internal::Internal;
-use crate::names::{List, numbers};
+use crate::names::{List, numbers_of_names};
 use crate::robot::{Robot, State};
 use linkwork::constraint::Projected;
 use linkwork::contact::{self, Assumed, Law, Responses, Restitution, Rows, Touched, Visitor};
@@ -67,7 +67,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
         self.plain.robot()
     }
 
-    fn rates(&self) -> usize {
+    fn contact_rate_count(&self) -> usize {
         self.robot().shared.contact_rates
     }
 }
@@ -88,9 +88,9 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
 {
     type Scalar = f64;
 
-    const CONFIGURATION: [&'static str; NQ] = numbers(List::Configuration);
-    const VELOCITIES: [&'static str; NV] = numbers(List::Velocities);
-    const INPUTS: [&'static str; NU] = numbers(List::Inputs);
+    const CONFIGURATION: [&'static str; NQ] = numbers_of_names(List::Configuration);
+    const VELOCITIES: [&'static str; NV] = numbers_of_names(List::Velocities);
+    const INPUTS: [&'static str; NU] = numbers_of_names(List::Inputs);
 
     forward! {
         neutral() -> Vector<NQ>;
@@ -151,7 +151,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
 impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize, R: Borrow<Robot>>
     Contacts<NQ, NV, NU, NK, NR> for PaddedContacts<NQ, NV, NU, NK, NR, R>
 {
-    const CONTACTS: [&'static str; NK] = numbers(List::Contacts);
+    const CONTACTS: [&'static str; NK] = numbers_of_names(List::Contacts);
     const CONTACT_ROWS: [Rows; NK] = [Rows { first: NR, count: 0 }; NK];
 
     fn contact_tables(&self) -> ([Rows; NK], [usize; NK]) {
@@ -165,31 +165,45 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
 
     fn contact_gaps(&self, t: f64, q: &Vector<NQ>) -> Vector<NK> {
         let count = self.robot().shared.contacts.len();
-        self.plain.vector(Internal::ContactGaps, self.plain.instant(t, q), count, SVector::repeat(FAR))
+        self.plain.fill_vector(
+            Internal::ContactGaps,
+            self.plain.state_without_velocity(t, q),
+            count,
+            SVector::repeat(FAR),
+        )
     }
 
     fn contact_rates(&self, t: f64, q: &Vector<NQ>, v: &Vector<NV>) -> Vector<NR> {
-        let state = self.plain.state(t, q, v);
-        self.plain.vector(Internal::ContactRates, state, self.rates(), SVector::zeros())
+        let state = self.plain.state_with_velocity(t, q, v);
+        self.plain.fill_vector(Internal::ContactRates, state, self.contact_rate_count(), SVector::zeros())
     }
 
     fn contact_jacobian(&self, t: f64, q: &Vector<NQ>) -> SMatrix<f64, NR, NV> {
-        let size = (self.rates(), self.robot().nv());
-        self.plain.matrix(Internal::ContactJacobian, self.plain.instant(t, q), size, SMatrix::zeros())
+        let size = (self.contact_rate_count(), self.robot().nv());
+        self.plain.fill_matrix(
+            Internal::ContactJacobian,
+            self.plain.state_without_velocity(t, q),
+            size,
+            SMatrix::zeros(),
+        )
     }
 
     fn contact_bias(&self, t: f64, q: &Vector<NQ>, v: &Vector<NV>) -> Vector<NR> {
-        let state = self.plain.state(t, q, v);
-        self.plain.vector(Internal::ContactBias, state, self.rates(), SVector::zeros())
+        let state = self.plain.state_with_velocity(t, q, v);
+        self.plain.fill_vector(Internal::ContactBias, state, self.contact_rate_count(), SVector::zeros())
     }
 
     fn contact_responses(&self, t: f64, q: &Vector<NQ>, closed: &[bool; NK]) -> Responses<f64, NV, NR> {
-        if !self.plain.has(Internal::ContactResponses) {
+        if !self.plain.has_function(Internal::ContactResponses) {
             return contact::responses(self, t, q, closed);
         }
-        let (n, rates) = (self.robot().nv(), self.rates());
+        let (n, rates) = (self.robot().nv(), self.contact_rate_count());
         let mut found = vec![0.0; rates * (n + rates)];
-        self.plain.call(Internal::ContactResponses, self.plain.instant(t, q), &mut found);
+        self.plain.call_function(
+            Internal::ContactResponses,
+            self.plain.state_without_velocity(t, q),
+            &mut found,
+        );
         let mut all = Responses { velocities: SMatrix::zeros(), rates: SMatrix::zeros() };
         write_block(&mut all.velocities, n, &found[..n * rates]);
         write_block(&mut all.rates, rates, &found[n * rates..]);
@@ -199,7 +213,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const N
     fn contact_laws(&self) -> [Law<f64>; NK] {
         let contacts = &self.robot().shared.contacts;
         let mut laws = vec![0.0; 3 * contacts.len()];
-        self.plain.call(Internal::ContactLaws, State::default(), &mut laws);
+        self.plain.call_function(Internal::ContactLaws, State::default(), &mut laws);
         std::array::from_fn(|k| {
             let contact_coefficient = |i: usize| laws.get(3 * k + i).copied().unwrap_or(0.0);
             let by_impulses = contacts.get(k).is_some_and(|contact| contact.of_impulses);

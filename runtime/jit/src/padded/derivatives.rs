@@ -16,19 +16,19 @@ use std::borrow::Borrow;
 type Square<const N: usize> = SMatrix<f64, N, N>;
 
 /// Returns `N` consecutive entries of a vector, from index `first` on.
-fn entries<const N: usize, const NV: usize>(v: &SVector<f64, NV>, first: usize) -> [f64; N] {
+fn consecutive_entries<const N: usize, const NV: usize>(v: &SVector<f64, NV>, first: usize) -> [f64; N] {
     std::array::from_fn(|k| v[first + k])
 }
 
 impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded<NQ, NV, NU, R> {
     /// Whether the robot was loaded with the option `derivatives`.
     pub(super) fn has_derivatives(&self) -> bool {
-        self.has(Internal::GeneralizedForcesDerivatives)
-            && (self.has(Internal::MotionDerivatives) || !self.is_constrained())
+        self.has_function(Internal::GeneralizedForcesDerivatives)
+            && (self.has_function(Internal::MotionDerivatives) || !self.is_constrained())
     }
 
     /// Evaluates a function whose results are matrices with as many rows as there are velocities.
-    fn matrices<const K: usize>(
+    fn evaluate_matrices<const K: usize>(
         &self,
         f: Internal,
         state: State<'_>,
@@ -36,7 +36,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     ) -> impl Iterator<Item = (usize, Vec<f64>)> + use<NQ, NV, NU, K, R> {
         let n = self.robot().nv();
         let mut found = vec![0.0; n * columns.iter().sum::<usize>()];
-        self.call(f, state, &mut found);
+        self.call_function(f, state, &mut found);
         let mut first = 0;
         columns.into_iter().map(move |count| {
             let own = found[n * first..n * (first + count)].to_vec();
@@ -47,13 +47,13 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
 
     /// Evaluates a function whose results are square matrices. Writes them to the first rows and columns of
     /// the given larger matrices.
-    fn squares<const K: usize>(
+    fn evaluate_square_matrices<const K: usize>(
         &self,
         f: Internal,
         state: State<'_>,
         mut all: [Square<NV>; K],
     ) -> [Square<NV>; K] {
-        let found = self.matrices(f, state, [self.robot().nv(); K]);
+        let found = self.evaluate_matrices(f, state, [self.robot().nv(); K]);
         for (to, (n, block)) in all.iter_mut().zip(found) {
             write_block(to, n, &block);
         }
@@ -67,12 +67,12 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
             match *chart {
                 Chart::Plain(..) => {}
                 Chart::Ball(_, v) => {
-                    let blocks = ball_integrate_derivatives(entries(dv, v.0));
+                    let blocks = ball_integrate_derivatives(consecutive_entries(dv, v.0));
                     put_block(&mut first, v.0, &blocks.0);
                     put_block(&mut second, v.0, &blocks.1);
                 }
                 Chart::Free(_, v) => {
-                    let blocks = free_integrate_derivatives(entries(dv, v.0));
+                    let blocks = free_integrate_derivatives(consecutive_entries(dv, v.0));
                     put_block(&mut first, v.0, &blocks.0);
                     put_block(&mut second, v.0, &blocks.1);
                 }
@@ -92,12 +92,18 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
             match *chart {
                 Chart::Plain(..) => {}
                 Chart::Ball(_, at) => {
-                    let blocks = ball_tangent_rate_derivatives(entries(dv, at.0), entries(v, at.0));
+                    let blocks = ball_tangent_rate_derivatives(
+                        consecutive_entries(dv, at.0),
+                        consecutive_entries(v, at.0),
+                    );
                     put_block(&mut first, at.0, &blocks.0);
                     put_block(&mut second, at.0, &blocks.1);
                 }
                 Chart::Free(_, at) => {
-                    let blocks = free_tangent_rate_derivatives(entries(dv, at.0), entries(v, at.0));
+                    let blocks = free_tangent_rate_derivatives(
+                        consecutive_entries(dv, at.0),
+                        consecutive_entries(v, at.0),
+                    );
                     put_block(&mut first, at.0, &blocks.0);
                     put_block(&mut second, at.0, &blocks.1);
                 }
@@ -111,26 +117,32 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 
     /// Converts a vector between speeds and joint velocities.
-    fn converted(&self, f: Internal, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
-        let state = State { q: self.configuration(q), v: self.velocity(v), ..State::default() };
-        self.vector(f, state, self.robot().nv(), *v)
+    fn convert_velocity(&self, f: Internal, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
+        let state =
+            State { q: self.configuration_entries(q), v: self.velocity_entries(v), ..State::default() };
+        self.fill_vector(f, state, self.robot().nv(), *v)
     }
 
     pub(crate) fn speed_matrix(&self, f: Internal, q: &SVector<f64, NQ>) -> Square<NV> {
         let n = self.robot().nv();
-        let state = State { q: self.configuration(q), ..State::default() };
-        self.matrix(f, state, (n, n), Square::identity())
+        let state = State { q: self.configuration_entries(q), ..State::default() };
+        self.fill_matrix(f, state, (n, n), Square::identity())
     }
 
     fn rate_changes(&self, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> Square<NV> {
         let n = self.robot().nv();
-        let state = State { q: self.configuration(q), v: self.velocity(v), ..State::default() };
-        self.matrix(Internal::RateChanges, state, (n, n), Square::zeros())
+        let state =
+            State { q: self.configuration_entries(q), v: self.velocity_entries(v), ..State::default() };
+        self.fill_matrix(Internal::RateChanges, state, (n, n), Square::zeros())
     }
 
     /// Displacement in joint velocities, and the configuration that it leads to.
-    fn displaced(&self, q: &SVector<f64, NQ>, dv: &SVector<f64, NV>) -> (SVector<f64, NV>, SVector<f64, NQ>) {
-        let way = self.converted(Internal::RatesOfSpeeds, q, dv);
+    fn displace_configuration(
+        &self,
+        q: &SVector<f64, NQ>,
+        dv: &SVector<f64, NV>,
+    ) -> (SVector<f64, NV>, SVector<f64, NQ>) {
+        let way = self.convert_velocity(Internal::RatesOfSpeeds, q, dv);
         let mut there = *q;
         let charts = &self.robot().shared.charts;
         crate::space::integrate(charts, q.as_slice(), way.as_slice(), there.as_mut_slice());
@@ -149,13 +161,13 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         let n = self.robot().nv();
         let rows = self.robot().shared.constraints.names.len();
         let state = State {
-            a: self.velocity(a),
+            a: self.velocity_entries(a),
             other: [&lambda.as_slice()[..rows], &[], &[]],
-            ..self.state(t, q, v)
+            ..self.state_with_velocity(t, q, v)
         };
         let lengths = [n, n, rows, rows, rows, n];
         let mut found = vec![0.0; n * lengths.iter().sum::<usize>()];
-        self.call(Internal::MotionDerivatives, state, &mut found);
+        self.call_function(Internal::MotionDerivatives, state, &mut found);
         let mut rest = &found[..];
         let take_padded_block = |rows: usize| {
             let (own, others) = rest.split_at(n * rows);
@@ -185,12 +197,12 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
                 self.constraint_solution(t, q, force, bias)
             });
         }
-        let (slipping, groups) = (self.slipping(), self.groups());
+        let (slipping, groups) = (self.sliding_rows(), self.constraint_groups());
         let (n, rows, sliding) = (self.robot().nv(), constraints.names.len(), constraints.slipping.len());
         let solve = slipping_response(&slipping, &groups, &lambda, |force, bias, sides| {
             let other = [&force[..n], &bias[..rows], &sides[..sliding]];
-            let state = State { other, ..self.state(t, q, v) };
-            self.elimination(Internal::SlippingResponse, state, &SVector::from(*force))
+            let state = State { other, ..self.state_with_velocity(t, q, v) };
+            self.evaluate_elimination(Internal::SlippingResponse, state, &SVector::from(*force))
         });
         constrained_derivatives(&parts, solve)
     }
@@ -225,7 +237,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         if !self.has_speeds() {
             return self.plain_integrate_derivatives(dv);
         }
-        let (way, there) = self.displaced(q, dv);
+        let (way, there) = self.displace_configuration(q, dv);
         integrate_derivatives_in_speeds(
             &self.speed_matrix(Internal::RateMatrix, q),
             &self.speed_matrix(Internal::SpeedMatrix, &there),
@@ -244,8 +256,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
             let (by_dv, by_v) = self.plain_rate_derivatives(dv, v);
             return (Square::zeros(), by_dv, by_v);
         }
-        let (way, there) = self.displaced(q, dv);
-        let rates = self.converted(Internal::RatesOfSpeeds, &there, v);
+        let (way, there) = self.displace_configuration(q, dv);
+        let rates = self.convert_velocity(Internal::RatesOfSpeeds, &there, v);
         let found = self.displacement_rate(q, dv, v);
         displacement_rate_derivatives_in_speeds(
             [
@@ -263,8 +275,12 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         match self.has_speeds() {
             true => {
                 let n = self.robot().nv();
-                let state = State { q: self.configuration(q), v: self.velocity(v), ..State::default() };
-                self.matrix(Internal::Turning, state, (n, n), Square::zeros())
+                let state = State {
+                    q: self.configuration_entries(q),
+                    v: self.velocity_entries(v),
+                    ..State::default()
+                };
+                self.fill_matrix(Internal::Turning, state, (n, n), Square::zeros())
             }
             false => self.plain_rate_derivatives(&SVector::zeros(), v).0 * 2.0,
         }
@@ -272,7 +288,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
 
     fn coriolis_matrix(&self, t: f64, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> Square<NV> {
         let n = self.robot().nv();
-        self.matrix(Internal::CoriolisMatrix, self.state(t, q, v), (n, n), Square::zeros())
+        self.fill_matrix(Internal::CoriolisMatrix, self.state_with_velocity(t, q, v), (n, n), Square::zeros())
     }
 
     fn inverse_dynamics_derivatives(
@@ -282,8 +298,9 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         v: &SVector<f64, NV>,
         a: &SVector<f64, NV>,
     ) -> (Square<NV>, Square<NV>) {
-        let state = State { a: self.velocity(a), ..self.state(t, q, v) };
-        self.squares(Internal::InverseDynamicsDerivatives, state, [Square::zeros(); 2]).into()
+        let state = State { a: self.velocity_entries(a), ..self.state_with_velocity(t, q, v) };
+        self.evaluate_square_matrices(Internal::InverseDynamicsDerivatives, state, [Square::zeros(); 2])
+            .into()
     }
 
     fn forward_dynamics_derivatives(
@@ -296,9 +313,9 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         if self.is_constrained() {
             return self.constrained_motion_derivatives(t, q, v, tau);
         }
-        let state = State { tau: self.velocity(tau), ..self.state(t, q, v) };
+        let state = State { tau: self.velocity_entries(tau), ..self.state_with_velocity(t, q, v) };
         let padding = [Square::zeros(), Square::zeros(), Square::identity()];
-        self.squares(Internal::ForwardDynamicsDerivatives, state, padding).into()
+        self.evaluate_square_matrices(Internal::ForwardDynamicsDerivatives, state, padding).into()
     }
 
     fn generalized_forces_derivatives(
@@ -309,9 +326,9 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         u: &SVector<f64, NU>,
     ) -> ByMotion<f64, NV, NU> {
         let (n, m) = (self.robot().nv(), self.robot().nu());
-        let state = State { u: self.inputs(u), ..self.state(t, q, v) };
+        let state = State { u: self.input_entries(u), ..self.state_with_velocity(t, q, v) };
         let mut all = (Square::zeros(), Square::zeros(), SMatrix::zeros());
-        let mut found = self.matrices(Internal::GeneralizedForcesDerivatives, state, [n, n, m]);
+        let mut found = self.evaluate_matrices(Internal::GeneralizedForcesDerivatives, state, [n, n, m]);
         for to in [&mut all.0, &mut all.1] {
             if let Some((n, block)) = found.next() {
                 write_block(to, n, &block);
@@ -330,8 +347,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         v: &SVector<f64, NV>,
     ) -> Square<NV> {
         let n = self.robot().nv();
-        let state = self.state(t, q, v);
-        self.matrix(Internal::GeneralizedMomentumDerivatives, state, (n, n), Square::zeros())
+        let state = self.state_with_velocity(t, q, v);
+        self.fill_matrix(Internal::GeneralizedMomentumDerivatives, state, (n, n), Square::zeros())
     }
 
     fn momentum_rate_derivatives(
@@ -340,6 +357,11 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Deriva
         q: &SVector<f64, NQ>,
         v: &SVector<f64, NV>,
     ) -> (Square<NV>, Square<NV>) {
-        self.squares(Internal::MomentumRateDerivatives, self.state(t, q, v), [Square::zeros(); 2]).into()
+        self.evaluate_square_matrices(
+            Internal::MomentumRateDerivatives,
+            self.state_with_velocity(t, q, v),
+            [Square::zeros(); 2],
+        )
+        .into()
     }
 }

@@ -71,19 +71,29 @@ impl Visitor for Moving<'_, '_, '_, '_> {
         let driver = self.driver;
         let start = PaddedState::new(driver.settings.start, self.q, self.v);
         match driver.settings.method {
-            Method::Automatic(e) => driver.automatic(robot, start, e),
-            Method::DormandPrince(e) => driver.go(robot, start, DormandPrince::new().tolerance(e, e)),
-            Method::DormandPrince8(e) => driver.go(robot, start, DormandPrince8::new().tolerance(e, e)),
-            Method::Rodas(e) => driver.go(robot, start, Rodas::new().tolerance(e, e)),
-            Method::Rk4(h) => driver.go(robot, start, Rk4::step(h)),
-            Method::ImplicitMidpoint(h) => driver.go(robot, start, ImplicitMidpoint::step(h)),
-            Method::Rosenbrock(h) => driver.go(robot, start, Rosenbrock::step(h)),
-            Method::SemiImplicitEuler(h) => driver.go(robot, start, SemiImplicitEuler::step(h)),
+            Method::Automatic(e) => driver.integrate_automatically(robot, start, e),
+            Method::DormandPrince(e) => {
+                driver.integrate_with_method(robot, start, DormandPrince::new().tolerance(e, e))
+            }
+            Method::DormandPrince8(e) => {
+                driver.integrate_with_method(robot, start, DormandPrince8::new().tolerance(e, e))
+            }
+            Method::Rodas(e) => driver.integrate_with_method(robot, start, Rodas::new().tolerance(e, e)),
+            Method::Rk4(h) => driver.integrate_with_method(robot, start, Rk4::step(h)),
+            Method::ImplicitMidpoint(h) => {
+                driver.integrate_with_method(robot, start, ImplicitMidpoint::step(h))
+            }
+            Method::Rosenbrock(h) => driver.integrate_with_method(robot, start, Rosenbrock::step(h)),
+            Method::SemiImplicitEuler(h) => {
+                driver.integrate_with_method(robot, start, SemiImplicitEuler::step(h))
+            }
             // Without contacts these methods are those between contacts.
             Method::TimeStepping(h) | Method::TimeSteppingMidpoint(h) | Method::TimeSteppingLeapfrog(h) => {
-                driver.go(robot, start, Rk4::step(h))
+                driver.integrate_with_method(robot, start, Rk4::step(h))
             }
-            Method::EventDriven(e) => driver.go(robot, start, DormandPrince8::new().tolerance(e, e)),
+            Method::EventDriven(e) => {
+                driver.integrate_with_method(robot, start, DormandPrince8::new().tolerance(e, e))
+            }
         }
     }
 }
@@ -95,10 +105,16 @@ impl ContactVisitor for Moving<'_, '_, '_, '_> {
         let driver = self.driver;
         let start = PaddedState::new(driver.settings.start, self.q, self.v);
         match driver.settings.method {
-            Method::TimeStepping(h) => driver.go(robot, start, TimeStepping::step(h)),
-            Method::TimeSteppingMidpoint(h) => driver.go(robot, start, TimeStepping::step(h).midpoint()),
-            Method::TimeSteppingLeapfrog(h) => driver.go(robot, start, TimeStepping::step(h).leapfrog()),
-            Method::EventDriven(e) => driver.go(robot, start, EventDriven::new().tolerance(e, e)),
+            Method::TimeStepping(h) => driver.integrate_with_method(robot, start, TimeStepping::step(h)),
+            Method::TimeSteppingMidpoint(h) => {
+                driver.integrate_with_method(robot, start, TimeStepping::step(h).midpoint())
+            }
+            Method::TimeSteppingLeapfrog(h) => {
+                driver.integrate_with_method(robot, start, TimeStepping::step(h).leapfrog())
+            }
+            Method::EventDriven(e) => {
+                driver.integrate_with_method(robot, start, EventDriven::new().tolerance(e, e))
+            }
             _ => Err(Error::Internal("a method without contacts".to_string())),
         }
     }
@@ -134,7 +150,7 @@ struct Section<const N: usize> {
 
 impl Settings<'_> {
     /// Returns the inputs at a time; at a jump the limit before or after it.
-    fn inputs<const N: usize>(&self, t: f64, is_before: bool) -> SVector<f64, N> {
+    fn inputs_at_time<const N: usize>(&self, t: f64, is_before: bool) -> SVector<f64, N> {
         let n = self.robot.nu();
         let row =
             |values: &[f64], k: usize| SVector::from_fn(|i, _| if i < n { values[k * n + i] } else { 0.0 });
@@ -159,7 +175,7 @@ impl Settings<'_> {
     }
 
     /// Returns the ends of the sections: the times at which inputs jump or have kinks, and the end.
-    fn stops(&self) -> Vec<f64> {
+    fn section_ends(&self) -> Vec<f64> {
         let mut stops = match self.inputs {
             Given::Samples(times, _) => times.to_vec(),
             _ => Vec::new(),
@@ -171,17 +187,17 @@ impl Settings<'_> {
     }
 
     /// Returns the time of the sample with an index.
-    fn time(&self, index: u64) -> Option<f64> {
+    fn sample_time(&self, index: u64) -> Option<f64> {
         let every = self.every?;
         let t = self.start + index as f64 * every;
         // A last interval that results from rounding alone is not counted.
         Some(if t > self.end - every * 1e-9 { self.end } else { t })
     }
 
-    fn sample<const N: usize>(&self, state: &PaddedState<N>, u: &SVector<f64, N>) -> Sample {
+    fn sample_of_state<const N: usize>(&self, state: &PaddedState<N>, u: &SVector<f64, N>) -> Sample {
         let (robot, t) = (self.robot, state.t);
         let u = match self.inputs {
-            Given::Samples(..) => self.inputs(t, false),
+            Given::Samples(..) => self.inputs_at_time(t, false),
             _ => *u,
         };
         let leading_entries = |x: &SVector<f64, N>, count: usize| x.as_slice()[..count].to_vec();
@@ -208,7 +224,7 @@ struct Feed<'f, 'i, const N: usize> {
 
 impl<const N: usize> Feed<'_, '_, N> {
     /// Calls the function of the inputs. Inputs that are NaN end the run.
-    fn controlled(&mut self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
+    fn call_control(&mut self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
         let Some((_, function)) = &mut self.controller else { return SVector::zeros() };
         let robot = self.settings.robot;
         let mut u = SVector::<f64, N>::zeros();
@@ -227,7 +243,7 @@ impl<const N: usize> integrate::Inputs<f64, N, N, N> for Feed<'_, '_, N> {
         self.evaluations.set(self.evaluations.get() + 1);
         match &self.controller {
             Some((Some(_), _)) => self.u,
-            Some((None, _)) => self.controlled(t, q, v),
+            Some((None, _)) => self.call_control(t, q, v),
             None => self.section.u + self.section.rate * (t - self.section.start.t),
         }
     }
@@ -237,7 +253,7 @@ impl<const N: usize> integrate::Inputs<f64, N, N, N> for Feed<'_, '_, N> {
     }
 
     fn renew(&mut self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) {
-        self.u = self.controlled(t, q, v);
+        self.u = self.call_control(t, q, v);
     }
 }
 
@@ -255,24 +271,24 @@ const OBSERVED: u64 = 2000;
 
 impl Driver<'_, '_, '_> {
     /// Integrates the motion section by section; sections end where the inputs jump or have kinks.
-    fn sections<const N: usize>(
+    fn integrate_sections<const N: usize>(
         &mut self,
         start: PaddedState<N>,
         mut integrate: impl FnMut(&mut Self, &Section<N>) -> Reached<N>,
     ) -> Result<(), Error> {
         let settings = self.settings;
         let (mut start, mut overlaps, mut next) = (start, settings.overlaps, 1);
-        for end in settings.stops() {
+        for end in settings.section_ends() {
             let mut times = Vec::new();
             while let Some(t) =
-                settings.time(next).filter(|t| *t <= end && times.last() != Some(&settings.end))
+                settings.sample_time(next).filter(|t| *t <= end && times.last() != Some(&settings.end))
             {
                 times.push(t);
                 next += 1;
             }
-            let u = settings.inputs::<N>(start.t, false);
+            let u = settings.inputs_at_time::<N>(start.t, false);
             let rate = match end > start.t {
-                true => (settings.inputs::<N>(end, true) - u) / (end - start.t),
+                true => (settings.inputs_at_time::<N>(end, true) - u) / (end - start.t),
                 false => SVector::zeros(),
             };
             let (reached, ended) = integrate(self, &Section { start, end, times, u, rate, overlaps });
@@ -283,12 +299,17 @@ impl Driver<'_, '_, '_> {
     }
 
     /// Integrates the whole motion with one method.
-    fn go<M, S, const N: usize>(&mut self, m: &M, start: PaddedState<N>, method: S) -> Result<(), Error>
+    fn integrate_with_method<M, S, const N: usize>(
+        &mut self,
+        m: &M,
+        start: PaddedState<N>,
+        method: S,
+    ) -> Result<(), Error>
     where
         M: Mechanism<N, N, N, Scalar = f64>,
         S: integrate::Method<f64> + Copy,
     {
-        self.sections(start, |driver, section| {
+        self.integrate_sections(start, |driver, section| {
             driver.integrate_section(m, section, section.start, method, &mut |_, _| true)
         })
     }
@@ -352,7 +373,7 @@ impl Driver<'_, '_, '_> {
             };
             if is_wanted {
                 self.has_begun = true;
-                (self.sink)(settings.sample(&last, &sample.u));
+                (self.sink)(settings.sample_of_state(&last, &sample.u));
             }
             if !goes_on(&last, evaluations.replace(0)) {
                 return (last, Ok(()));
@@ -363,7 +384,7 @@ impl Driver<'_, '_, '_> {
     }
 
     /// Integrates with an explicit method, and switches to an implicit method where that is cheaper.
-    fn automatic<const N: usize>(
+    fn integrate_automatically<const N: usize>(
         &mut self,
         m: &Padded<N, N, N, &Robot>,
         start: PaddedState<N>,
@@ -373,7 +394,7 @@ impl Driver<'_, '_, '_> {
         let explicit = explicit.max_steps(MOST_STEPS).min_step(SHORTEST);
         let implicit = Rodas::new().tolerance(tolerance, tolerance);
         let mut budget = OBSERVED;
-        self.sections(start, |driver, section| {
+        self.integrate_sections(start, |driver, section| {
             let mut from = section.start;
             loop {
                 if driver.stiff_from.is_some() {

@@ -66,7 +66,7 @@ impl Method {
     pub fn from_name(name: &str, setting: Option<f64>) -> Result<Method, Error> {
         let method_names = || Self::NAMES.iter().map(|(name, ..)| *name);
         let Some((_, has_step, _)) = Self::NAMES.iter().find(|(known, ..)| *known == name) else {
-            return Err(Error::unknown("method", name, method_names()));
+            return Err(Error::unknown_name_error("method", name, method_names()));
         };
         let setting = setting.unwrap_or(if *has_step { STEP } else { TOLERANCE });
         Ok(match name {

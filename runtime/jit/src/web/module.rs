@@ -50,7 +50,7 @@ impl BinaryModule {
     ///
     /// The program has lanes, or reads values that are no inputs of the layout.
     pub fn add(&mut self, name: &str, program: &Program, layout: &Layout) -> Result<(), String> {
-        let kind = self.kind(vec![I32; layout.len() + 1], Vec::new());
+        let kind = self.type_index(vec![I32; layout.len() + 1], Vec::new());
         let mut writer = BinaryWriter {
             module: self,
             program,
@@ -59,14 +59,14 @@ impl BinaryModule {
             values: vec![Value::Missing; program.instructions.len()],
             locals: 0,
         };
-        writer.body()?;
+        writer.write_body()?;
         let (code, locals) = (writer.code, writer.locals);
         let mut body = Vec::new();
         match locals {
             0 => body.push(0),
             count => {
                 body.push(1);
-                unsigned(&mut body, count);
+                write_unsigned(&mut body, count);
                 body.push(F64);
             }
         }
@@ -84,46 +84,46 @@ impl BinaryModule {
         for (parameters, results) in &self.types {
             types.push(0x60);
             for list in [parameters, results] {
-                unsigned(&mut types, list.len());
+                write_unsigned(&mut types, list.len());
                 types.extend(list);
             }
         }
-        section(&mut out, 1, self.types.len(), &types);
+        write_section(&mut out, 1, self.types.len(), &types);
         let mut imports = Vec::new();
-        text(&mut imports, "m");
-        text(&mut imports, "memory");
+        write_text(&mut imports, "m");
+        write_text(&mut imports, "memory");
         imports.extend([2, 0, 1]);
         for (name, kind) in &self.imports {
-            text(&mut imports, "m");
-            text(&mut imports, name);
+            write_text(&mut imports, "m");
+            write_text(&mut imports, name);
             imports.push(0);
-            unsigned(&mut imports, *kind);
+            write_unsigned(&mut imports, *kind);
         }
-        section(&mut out, 2, self.imports.len() + 1, &imports);
+        write_section(&mut out, 2, self.imports.len() + 1, &imports);
         let (mut kinds, mut exports, mut code) = (Vec::new(), Vec::new(), Vec::new());
         for (k, (name, kind, body)) in self.functions.iter().enumerate() {
-            unsigned(&mut kinds, *kind);
-            text(&mut exports, name);
+            write_unsigned(&mut kinds, *kind);
+            write_text(&mut exports, name);
             exports.push(0);
-            unsigned(&mut exports, self.imports.len() + k);
-            unsigned(&mut code, body.len());
+            write_unsigned(&mut exports, self.imports.len() + k);
+            write_unsigned(&mut code, body.len());
             code.extend(body);
         }
-        section(&mut out, 3, self.functions.len(), &kinds);
-        section(&mut out, 7, self.functions.len(), &exports);
-        section(&mut out, 10, self.functions.len(), &code);
+        write_section(&mut out, 3, self.functions.len(), &kinds);
+        write_section(&mut out, 7, self.functions.len(), &exports);
+        write_section(&mut out, 10, self.functions.len(), &code);
         out
     }
 
     /// Returns the index of a function type, which is added to the module if it is new.
-    fn kind(&mut self, parameters: Vec<u8>, results: Vec<u8>) -> usize {
+    fn type_index(&mut self, parameters: Vec<u8>, results: Vec<u8>) -> usize {
         let kind = (parameters, results);
         index_of(&mut self.types, kind)
     }
 
     /// Returns the index of an imported function of numbers.
-    fn import(&mut self, name: &str, parameters: Vec<u8>) -> usize {
-        let kind = self.kind(parameters, vec![F64]);
+    fn import_function(&mut self, name: &str, parameters: Vec<u8>) -> usize {
+        let kind = self.type_index(parameters, vec![F64]);
         index_of(&mut self.imports, (name.to_string(), kind))
     }
 }
@@ -155,11 +155,11 @@ struct BinaryWriter<'a> {
 }
 
 impl BinaryWriter<'_> {
-    fn body(&mut self) -> Result<(), String> {
+    fn write_body(&mut self) -> Result<(), String> {
         let program = self.program;
         for (k, op) in program.instructions.iter().enumerate() {
             let mut depth = 1;
-            op.operands(|operand| {
+            op.visit_operands(|operand| {
                 if let Operand::Value(a) = operand
                     && let Value::Nested(nested) = self.values[a]
                 {
@@ -170,109 +170,109 @@ impl BinaryWriter<'_> {
                 self.values[k] = Value::Nested(depth);
                 continue;
             }
-            self.instruction(k)?;
+            self.write_instruction(k)?;
             self.values[k] = Value::Local(self.locals);
             self.code.push(SET);
-            let local = self.local(self.locals);
-            unsigned(&mut self.code, local);
+            let local = self.local_index(self.locals);
+            write_unsigned(&mut self.code, local);
             self.locals += 1;
         }
         for (k, output) in program.outputs.iter().enumerate() {
             self.code.push(GET);
-            unsigned(&mut self.code, self.layout.len());
-            self.operand(*output)?;
+            write_unsigned(&mut self.code, self.layout.len());
+            self.write_operand(*output)?;
             self.code.extend([STORE, 3]);
-            unsigned(&mut self.code, 8 * k);
+            write_unsigned(&mut self.code, 8 * k);
         }
         Ok(())
     }
 
     /// Returns the index of a local behind the parameters.
-    fn local(&self, index: usize) -> usize {
+    fn local_index(&self, index: usize) -> usize {
         self.layout.len() + 1 + index
     }
 
     /// Writes the code that puts the result of an instruction on the stack.
-    fn instruction(&mut self, k: usize) -> Result<(), String> {
+    fn write_instruction(&mut self, k: usize) -> Result<(), String> {
         match self.program.instructions[k] {
-            Op::Neg(a) => self.operation(&[a], NEG),
-            Op::Add(a, b) => self.operation(&[a, b], ADD),
-            Op::Sub(a, b) => self.operation(&[a, b], SUB),
-            Op::Mul(a, b) => self.operation(&[a, b], MUL),
-            Op::Div(a, b) => self.operation(&[a, b], DIV),
-            Op::Extreme(Extreme::Min, a, b) => self.operation(&[a, b], MIN),
-            Op::Extreme(Extreme::Max, a, b) => self.operation(&[a, b], MAX),
+            Op::Neg(a) => self.write_operation(&[a], NEG),
+            Op::Add(a, b) => self.write_operation(&[a, b], ADD),
+            Op::Sub(a, b) => self.write_operation(&[a, b], SUB),
+            Op::Mul(a, b) => self.write_operation(&[a, b], MUL),
+            Op::Div(a, b) => self.write_operation(&[a, b], DIV),
+            Op::Extreme(Extreme::Min, a, b) => self.write_operation(&[a, b], MIN),
+            Op::Extreme(Extreme::Max, a, b) => self.write_operation(&[a, b], MAX),
             Op::MulAdd(a, b, c) => {
-                self.operation(&[a, b], MUL)?;
-                self.operation(&[c], ADD)
+                self.write_operation(&[a, b], MUL)?;
+                self.write_operation(&[c], ADD)
             }
             Op::MulSub(a, b, c) => {
-                self.operation(&[a, b], MUL)?;
-                self.operation(&[c], SUB)
+                self.write_operation(&[a, b], MUL)?;
+                self.write_operation(&[c], SUB)
             }
             Op::NegMulAdd(a, b, c) => {
-                self.operand(c)?;
-                self.operation(&[a, b], MUL)?;
+                self.write_operand(c)?;
+                self.write_operation(&[a, b], MUL)?;
                 self.code.push(SUB);
                 Ok(())
             }
-            Op::Call(Elementary::Sqrt, a) => self.operation(&[a], SQRT),
-            Op::Call(Elementary::Abs, a) => self.operation(&[a], ABS),
-            Op::Call(f, a) => self.call(f.name(), &[a]),
-            Op::Atan2(a, b) => self.call("atan2", &[a, b]),
-            Op::Pow(a, b) => self.call("pow", &[a, b]),
-            Op::Table(lookup, a, b, c) => self.lookup(lookup, [a, b, c]),
+            Op::Call(Elementary::Sqrt, a) => self.write_operation(&[a], SQRT),
+            Op::Call(Elementary::Abs, a) => self.write_operation(&[a], ABS),
+            Op::Call(f, a) => self.write_call(f.function_name(), &[a]),
+            Op::Atan2(a, b) => self.write_call("atan2", &[a, b]),
+            Op::Pow(a, b) => self.write_call("pow", &[a, b]),
+            Op::Table(lookup, a, b, c) => self.write_table_lookup(lookup, [a, b, c]),
             Op::Sum(..) | Op::Lane(..) | Op::Join(..) => Err("a program has lanes".to_string()),
         }
     }
 
-    fn operation(&mut self, operands: &[Operand], operation: u8) -> Result<(), String> {
-        operands.iter().try_for_each(|operand| self.operand(*operand))?;
+    fn write_operation(&mut self, operands: &[Operand], operation: u8) -> Result<(), String> {
+        operands.iter().try_for_each(|operand| self.write_operand(*operand))?;
         self.code.push(operation);
         Ok(())
     }
 
-    fn call(&mut self, name: &str, operands: &[Operand]) -> Result<(), String> {
-        operands.iter().try_for_each(|operand| self.operand(*operand))?;
-        let function = self.module.import(name, vec![F64; operands.len()]);
+    fn write_call(&mut self, name: &str, operands: &[Operand]) -> Result<(), String> {
+        operands.iter().try_for_each(|operand| self.write_operand(*operand))?;
+        let function = self.module.import_function(name, vec![F64; operands.len()]);
         self.code.push(CALL);
-        unsigned(&mut self.code, function);
+        write_unsigned(&mut self.code, function);
         Ok(())
     }
 
     /// Writes the lookup of a table: its index, orders of differentiation of two bits each, and three
     /// variables, of which a table may use fewer.
-    fn lookup(&mut self, lookup: Lookup, variables: [Operand; 3]) -> Result<(), String> {
-        let count = lookup.variables();
-        let orders = (0..count).fold(0, |all, k| all | lookup.order(k) << (2 * k));
-        for integer in [lookup.table(), orders] {
+    fn write_table_lookup(&mut self, lookup: Lookup, variables: [Operand; 3]) -> Result<(), String> {
+        let count = lookup.variable_count();
+        let orders = (0..count).fold(0, |all, k| all | lookup.derivative_order(k) << (2 * k));
+        for integer in [lookup.table_index(), orders] {
             self.code.push(INTEGER);
-            signed(&mut self.code, integer);
+            write_signed(&mut self.code, integer);
         }
         for (k, variable) in variables.into_iter().enumerate() {
-            self.operand(if k < count { variable } else { Operand::Const(0.0) })?;
+            self.write_operand(if k < count { variable } else { Operand::Const(0.0) })?;
         }
-        self.module.tables = self.module.tables.max(lookup.table() + 1);
-        let function = self.module.import("lookup", vec![I32, I32, F64, F64, F64]);
+        self.module.tables = self.module.tables.max(lookup.table_index() + 1);
+        let function = self.module.import_function("lookup", vec![I32, I32, F64, F64, F64]);
         self.code.push(CALL);
-        unsigned(&mut self.code, function);
+        write_unsigned(&mut self.code, function);
         Ok(())
     }
 
-    fn operand(&mut self, operand: Operand) -> Result<(), String> {
+    fn write_operand(&mut self, operand: Operand) -> Result<(), String> {
         match operand {
             Operand::Const(x) => {
                 self.code.push(NUMBER);
                 self.code.extend(x.to_le_bytes());
             }
-            Operand::Symbol(symbol) => self.symbol(symbol)?,
+            Operand::Symbol(symbol) => self.write_symbol(symbol)?,
             Operand::Value(k) => match self.values[k] {
                 Value::Local(local) => {
                     self.code.push(GET);
-                    let local = self.local(local);
-                    unsigned(&mut self.code, local);
+                    let local = self.local_index(local);
+                    write_unsigned(&mut self.code, local);
                 }
-                Value::Nested(_) => self.instruction(k)?,
+                Value::Nested(_) => self.write_instruction(k)?,
                 Value::Missing => return Err("a value is used before it is computed".to_string()),
             },
             Operand::Tuple(_) | Operand::Gather(_) => return Err("a program has lanes".to_string()),
@@ -280,18 +280,18 @@ impl BinaryWriter<'_> {
         Ok(())
     }
 
-    fn symbol(&mut self, symbol: Symbol) -> Result<(), String> {
+    fn write_symbol(&mut self, symbol: Symbol) -> Result<(), String> {
         let (slot, index) = self.layout.locate(symbol).ok_or("a program reads what it is not given")?;
         self.code.push(GET);
-        unsigned(&mut self.code, slot);
+        write_unsigned(&mut self.code, slot);
         self.code.extend([LOAD, 3]);
-        unsigned(&mut self.code, 8 * index);
+        write_unsigned(&mut self.code, 8 * index);
         Ok(())
     }
 }
 
 /// Writes an unsigned integer in LEB128 encoding.
-fn unsigned(out: &mut Vec<u8>, mut x: usize) {
+fn write_unsigned(out: &mut Vec<u8>, mut x: usize) {
     while x >= 0x80 {
         out.push((x & 0x7f) as u8 | 0x80);
         x >>= 7;
@@ -300,7 +300,7 @@ fn unsigned(out: &mut Vec<u8>, mut x: usize) {
 }
 
 /// Writes a signed integer, which is not negative, in LEB128.
-fn signed(out: &mut Vec<u8>, mut x: usize) {
+fn write_signed(out: &mut Vec<u8>, mut x: usize) {
     while x >= 0x40 {
         out.push((x & 0x7f) as u8 | 0x80);
         x >>= 7;
@@ -309,18 +309,18 @@ fn signed(out: &mut Vec<u8>, mut x: usize) {
 }
 
 /// Writes a name, preceded by its length.
-fn text(out: &mut Vec<u8>, name: &str) {
-    unsigned(out, name.len());
+fn write_text(out: &mut Vec<u8>, name: &str) {
+    write_unsigned(out, name.len());
     out.extend(name.bytes());
 }
 
 /// Writes a section: its number, its length, and a list with this number of entries.
-fn section(out: &mut Vec<u8>, number: u8, count: usize, entries: &[u8]) {
+fn write_section(out: &mut Vec<u8>, number: u8, count: usize, entries: &[u8]) {
     let mut list = Vec::new();
-    unsigned(&mut list, count);
+    write_unsigned(&mut list, count);
     list.extend(entries);
     out.push(number);
-    unsigned(out, list.len());
+    write_unsigned(out, list.len());
     out.extend(list);
 }
 
@@ -336,9 +336,9 @@ mod tests {
             write(&mut out, x);
             out
         };
-        assert_eq!(encoded_integer(unsigned, 624_485), [0xe5, 0x8e, 0x26]);
-        assert_eq!(encoded_integer(unsigned, 127), [0x7f]);
-        assert_eq!(encoded_integer(signed, 127), [0xff, 0]);
-        assert_eq!(encoded_integer(signed, 2), [2]);
+        assert_eq!(encoded_integer(write_unsigned, 624_485), [0xe5, 0x8e, 0x26]);
+        assert_eq!(encoded_integer(write_unsigned, 127), [0x7f]);
+        assert_eq!(encoded_integer(write_signed, 127), [0xff, 0]);
+        assert_eq!(encoded_integer(write_signed, 2), [2]);
     }
 }

@@ -1,9 +1,9 @@
 //! Accelerations in singular configurations, from the motion that passes through them.
 
-use super::{Structure, System, Triangle, Weak, safe_distance, zone};
+use super::{Structure, System, Triangle, Weak, safe_distance, well_conditioned_threshold};
 use crate::Real;
 use crate::constraint::Constrained;
-use crate::constraint::span::{Metric, Span, norm, rounding};
+use crate::constraint::span::{Metric, Span, norm, rounding_threshold};
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
 
@@ -25,7 +25,7 @@ struct Way<T, const NQ: usize, const NV: usize> {
 }
 
 /// Returns the largest magnitude of the entries of a vector.
-pub(super) fn size<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
+pub(super) fn largest_magnitude<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::zero(), |most, x| most.max(x.abs()))
 }
 
@@ -37,7 +37,7 @@ pub(super) fn size<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
 /// of stiff elements may change rapidly along the path. The path leads along the velocity of the state or, at
 /// rest, along the acceleration `least`. Returns `None` if the neighbouring configurations are singular as
 /// well, or if nothing moves.
-pub(super) fn acceleration<
+pub(super) fn acceleration_past_singularity<
     M,
     T: Real,
     const NQ: usize,
@@ -56,50 +56,53 @@ pub(super) fn acceleration<
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
-    let (speed, rate) = (size(v), size(least));
+    let (speed, rate) = (largest_magnitude(v), largest_magnitude(least));
     // Only velocities above rounding errors have a direction. If constraints depend on time, slow velocities
     // do not indicate the direction of motion.
-    let driven = size(&mechanism.constraint_rates(t, q, &SVector::zeros())) > T::zero();
+    let driven = largest_magnitude(&mechanism.constraint_rates(t, q, &SVector::zeros())) > T::zero();
     let clear = speed > epsilon::<T>().cbrt();
     let moves = clear && (!driven || speed * speed > rate * safe_distance::<T>() * constant(0.03));
     let way = Way { t, q: *q, v: *v, heading: if moves { *v } else { *least }, moves };
-    let (clear, within) = (safe_distance::<T>() * constant(0.4), zone::<T>() * constant(0.5));
+    let (clear, within) =
+        (safe_distance::<T>() * constant(0.4), well_conditioned_threshold::<T>() * constant(0.5));
     let acceleration_past_singularity = |way: &Way<T, NQ, NV>, parts: &[f64], clear: T| {
-        let pace = safe_distance::<T>() / size(&way.heading);
+        let pace = safe_distance::<T>() / largest_magnitude(&way.heading);
         let goes = pace > T::zero() && pace.is_finite();
         let steps = parts.iter().filter(|_| goes).map(|part| pace * constant(*part));
-        steps.into_iter().find_map(|step| way.points(step, clear).interpolated(mechanism, structure))
+        steps
+            .into_iter()
+            .find_map(|step| way.points_on_path(step, clear).interpolate_at_state(mechanism, structure))
     };
     // Other paths and step lengths are tried if the interpolation fails on the first ones.
     acceleration_past_singularity(&way, &[1.0, 2.0], clear)
         .or_else(|| {
             acceleration_past_singularity(
-                &way.deviating(mechanism, structure)?,
+                &way.deviating_path(mechanism, structure)?,
                 &[1.0, 2.0, 4.0, 8.0, 0.5],
                 clear,
             )
         })
         .or_else(|| {
             acceleration_past_singularity(
-                &way.deviating(mechanism, structure)?.across(&way),
+                &way.deviating_path(mechanism, structure)?.component_across_path(&way),
                 &[1.0, 2.0, 4.0, 8.0, 0.5],
                 clear,
             )
         })
         .or_else(|| acceleration_past_singularity(&way, &[4.0, 16.0], clear))
         .or_else(|| acceleration_past_singularity(&way, &[1.0, 0.5, 0.25], within))?
-        .acceleration(structure, system)
+        .permitted_acceleration(structure, system)
 }
 
 impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
-    fn points(&self, step: T, clear: T) -> Points<'_, T, NQ, NV> {
+    fn points_on_path(&self, step: T, clear: T) -> Points<'_, T, NQ, NV> {
         Points { way: self, step, clear }
     }
 
     /// Returns another path along the branch, for states with velocities that leave the singular
     /// configuration slowly in comparison with other coordinates. Its direction has components along all
     /// motions that are free shortly before and after.
-    fn deviating<M, const NU: usize, const NH: usize, const NC: usize>(
+    fn deviating_path<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
         structure: &Structure<'_, NC>,
@@ -107,21 +110,22 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
     {
-        let own = safe_distance::<T>() / size(&self.heading);
+        let own = safe_distance::<T>() / largest_magnitude(&self.heading);
         let any = SVector::from_fn(|k, _| constant::<T>([1.0, -0.7, 0.9, 0.6, -0.8][k % 5]));
         let still = Way { v: SVector::zeros(), moves: false, ..*self };
         let heading = [0.1, 0.3, 1.0, 3.0, 10.0].into_iter().find_map(|part| {
-            let points = still.points(own * constant(part), epsilon::<T>().cbrt());
+            let points = still.points_on_path(own * constant(part), epsilon::<T>().cbrt());
             let course = (SVector::zeros(), SVector::zeros());
-            let free_acceleration_at = |h: T| points.accelerations(mechanism, structure, h, &course);
+            let free_acceleration_at =
+                |h: T| points.permitted_accelerations(mechanism, structure, h, &course);
             Some((free_acceleration_at(-points.step)?.free + free_acceleration_at(points.step)?.free) * any)
         })?;
-        let size = size(&heading);
+        let size = largest_magnitude(&heading);
         (size > T::zero()).then(|| Way { heading: heading / size, moves: false, ..*self })
     }
 
     /// Returns the path without its component along another path.
-    fn across(&self, other: &Self) -> Self {
+    fn component_across_path(&self, other: &Self) -> Self {
         let part = self.heading.dot(&other.heading) / other.heading.norm_squared();
         Way { heading: self.heading - other.heading * part, ..*self }
     }
@@ -129,7 +133,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
     /// Returns time and state at distance `h` along the path, projected on the constraints. The projection
     /// uses the Euclidean metric of the coordinates, because heavy bodies would not move in the metric of the
     /// kinetic energy.
-    fn projected<M, const NU: usize, const NH: usize, const NC: usize>(
+    fn projected_state_on_path<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
         structure: &Structure<'_, NC>,
@@ -148,21 +152,22 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
         for _ in 0..MOST_STEPS {
             let residuals = mechanism.constraint_residuals(t, &q);
             let gap = SVector::<T, NC>::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
-            let off = size(&gap);
-            let room = Room::new(structure, &mechanism.constraint_jacobian(t, &q), zone());
-            q = mechanism.integrate(&q, &room.least(&gap));
+            let off = largest_magnitude(&gap);
+            let room =
+                Room::new(structure, &mechanism.constraint_jacobian(t, &q), well_conditioned_threshold());
+            q = mechanism.integrate(&q, &room.minimum_norm_correction(&gap));
             // The last correction is applied even if the residual before it is a rounding error.
-            if off <= rounding() || last.is_some_and(|last| off * constant(2.0) > last) {
+            if off <= rounding_threshold() || last.is_some_and(|last| off * constant(2.0) > last) {
                 break;
             }
             last = Some(off);
         }
-        let room = Room::new(structure, &mechanism.constraint_jacobian(t, &q), zone());
+        let room = Room::new(structure, &mechanism.constraint_jacobian(t, &q), well_conditioned_threshold());
         let mut v = later;
         for _ in 0..2 {
-            v += room.least(&mechanism.constraint_rates(t, &q, &v));
+            v += room.minimum_norm_correction(&mechanism.constraint_rates(t, &q, &v));
         }
-        let left = size(&mechanism.constraint_residuals(t, &q)) <= epsilon::<T>().sqrt();
+        let left = largest_magnitude(&mechanism.constraint_residuals(t, &q)) <= epsilon::<T>().sqrt();
         (left && v.iter().all(|v| v.is_finite())).then_some((t, q, v))
     }
 }
@@ -176,7 +181,7 @@ struct Points<'a, T, const NQ: usize, const NV: usize> {
 
 impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
     /// Returns the permitted accelerations at distance `h` along the path.
-    fn accelerations<M, const NU: usize, const NH: usize, const NC: usize>(
+    fn permitted_accelerations<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
         structure: &Structure<'_, NC>,
@@ -186,15 +191,15 @@ impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
     {
-        let (t, q, v) = self.way.projected(mechanism, structure, h, course)?;
+        let (t, q, v) = self.way.projected_state_on_path(mechanism, structure, h, course)?;
         let room = Room::new(structure, &mechanism.constraint_jacobian(t, &q), self.clear);
-        let bend = room.least(&mechanism.constraint_bias(t, &q, &v));
-        let possible = Possible { free: room.free(), bend };
+        let bend = room.minimum_norm_correction(&mechanism.constraint_bias(t, &q, &v));
+        let possible = Possible { free: room.null_space_projection(), bend };
         (room.regular && possible.bend.iter().all(|a| a.is_finite())).then_some(possible)
     }
 
     /// Returns the value at the state of the fifth-degree polynomial through six points of the path.
-    fn interpolated<M, const NU: usize, const NH: usize, const NC: usize>(
+    fn interpolate_at_state<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
         structure: &Structure<'_, NC>,
@@ -204,7 +209,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
     {
         let (step, half) = (self.step, constant::<T>(0.5));
         let accelerations =
-            |h: T, course: &Course<T, NV>| self.accelerations(mechanism, structure, h, course);
+            |h: T, course: &Course<T, NV>| self.permitted_accelerations(mechanism, structure, h, course);
         let mut course = (SVector::zeros(), SVector::zeros());
         // The path has the smallest curvature that the branch permits.
         for _ in 0..if self.way.moves { 2 } else { 0 } {
@@ -238,21 +243,21 @@ impl<T: Real, const NV: usize, const NC: usize> Room<T, NV, NC> {
         let mut span = Span::new(&Metric::new(&SMatrix::identity().data.0), jacobian, &structure.groups);
         span.extend(clear, structure.rank);
         let regular = span.rank >= structure.rank;
-        span.extend(rounding(), structure.rank);
+        span.extend(rounding_threshold(), structure.rank);
         let triangle = Triangle::new(&span);
         Self { span, triangle, regular }
     }
 
     /// Returns the `x` of minimum norm with `J x = −gap`.
-    fn least(&self, gap: &SVector<T, NC>) -> SVector<T, NV> {
-        let known = self.triangle.particular(&self.span, &gap.data.0[0]);
+    fn minimum_norm_correction(&self, gap: &SVector<T, NC>) -> SVector<T, NV> {
+        let known = self.triangle.particular_solution(&self.span, &gap.data.0[0]);
         let mut x = [T::zero(); NV];
         x.iter_mut().zip(&known).take(self.span.rank).for_each(|(x, known)| *x = *known);
         SVector::from(self.span.backward(x))
     }
 
     /// Returns the projection `P` on the null space of the rows.
-    fn free(&self) -> SMatrix<T, NV, NV> {
+    fn null_space_projection(&self) -> SMatrix<T, NV, NV> {
         let mut free = SMatrix::<T, NV, NV>::identity();
         for column in &mut free.data.0 {
             let mut x = self.span.forward(column);
@@ -272,7 +277,7 @@ struct Possible<T, const NV: usize> {
 impl<T: Real, const NV: usize> Possible<T, NV> {
     /// Returns the permitted acceleration that follows from masses and forces (Gauss's principle). Rows that
     /// span the complement of the permitted accelerations are treated as constraints.
-    fn acceleration<const NC: usize>(
+    fn permitted_acceleration<const NC: usize>(
         &self,
         structure: &Structure<'_, NC>,
         system: &System<T, NV, NC>,
@@ -300,12 +305,12 @@ impl<T: Real, const NV: usize> Possible<T, NV> {
             jacobian.data.0.iter_mut().zip(&normal).for_each(|(column, n)| column[row] = *n);
             bias[row] = -super::dot(&normal, &self.bend.data.0[0]);
         }
-        let (mass, force) = system.loaded(structure);
+        let (mass, force) = system.loaded_mass_and_forces(structure);
         let groups = core::array::from_fn(|k| k);
         let open = Structure { groups, determining: &[], rank: structure.rank };
         let system =
             System { mass: SMatrix::from_array_storage(nalgebra::ArrayStorage(mass)), jacobian, force, bias };
-        let ((a, _), regular) = system.solve(&open, rounding(), Weak::Dropped);
+        let ((a, _), regular) = system.solve_above_magnitude(&open, rounding_threshold(), Weak::Dropped);
         (regular && a.iter().all(|a| a.is_finite())).then_some(a)
     }
 }

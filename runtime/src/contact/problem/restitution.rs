@@ -3,7 +3,7 @@
 use super::super::{Law, Restitution, Rows};
 use super::{List, Problem, ROUNDINGS, entry};
 use crate::Real;
-use crate::private::{constant, epsilon};
+use crate::private::{constant, epsilon, positive_part};
 use nalgebra::SVector;
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
@@ -63,7 +63,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// The normal impulse that bounds friction, if `normal` is that beside what acts anyway.
     pub(super) fn bearing(&self, k: usize, normal: T) -> T {
-        normal.max(T::zero()) + self.floor[self.pressed_by[k]]
+        positive_part(normal) + self.floor[self.pressed_by[k]]
     }
 
     /// Whether restitution is asked for.

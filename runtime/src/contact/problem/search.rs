@@ -5,7 +5,7 @@ use super::linear::Equations;
 use super::trial::Trial;
 use super::{List, Problem};
 use crate::Real;
-use crate::private::{constant, epsilon};
+use crate::private::{constant, epsilon, positive_part};
 use core::ops::Range;
 
 /// Maximum number of rounds of gradient steps, each followed by Newton's method.
@@ -107,7 +107,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     fn in_cones(&self, mut impulses: List<T, NR>) -> List<T, NR> {
         for k in 0..self.count {
             let (n, tangents) = self.of(k);
-            impulses[n] = impulses[n].max(T::zero());
+            impulses[n] = positive_part(impulses[n]);
             let most = self.friction[k] * self.bearing(k, impulses[n]);
             let size = tangents.clone().fold(T::zero(), |sum, i| sum + impulses[i] * impulses[i]).sqrt();
             if size > most {
@@ -399,7 +399,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
                 let (n, _) = self.of(k);
                 if self.is_gap(k) {
-                    next[n] = (ahead[n] - steps[n] * (rates[n] - self.least[k])).max(T::zero());
+                    next[n] = positive_part(ahead[n] - steps[n] * (rates[n] - self.least[k]));
                 }
             }
             for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {

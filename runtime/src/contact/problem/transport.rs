@@ -20,13 +20,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// `½ M⁻¹(q₀) G(q₀)ᵀ Λ₀ + ½ M⁻¹(q₁) G(q₁)ᵀ Λ` (trapezoidal rule). It differs from `M⁻¹(q₁) G(q₁)ᵀ Λ` by
     /// half of the part of `given` that impulses at the end cannot give, which changes no rate of a contact,
     /// and by half of the impulse across the slip at the end. Changes of `Λ` itself are found by the contact
-    /// conditions.
+    /// conditions. If `Λ₀` is not unique, it is the impulses `recorded` in the previous step, with the
+    /// smallest change that gives `rates`.
     ///
     /// Returns impulses at the end of the step that change the rates as much as `Λ₀`, and the correction.
     pub(in super::super) fn transport<const NV: usize>(
         &mut self,
         given: &SVector<T, NV>,
-        rates: &SVector<T, NR>,
+        (rates, recorded): (&SVector<T, NR>, Option<&List<T, NR>>),
         responses: &Responses<T, NV, NR>,
         equations: &mut Equations<T, NR>,
     ) -> (List<T, NR>, SVector<T, NV>) {
@@ -40,7 +41,13 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 changes[i] = (entry(rates, self.places[i]) - changed[i]) * half;
             }
         }
-        if is_regular && let Some(turned) = self.slip_correction(&impulses, rates) {
+        let at_start = if is_regular {
+            Some(impulses)
+        } else {
+            let recorded = recorded.filter(|recorded| self.slip_correction(recorded, rates).is_some());
+            recorded.map(|recorded| self.nearest(recorded, rates, equations))
+        };
+        if let Some(turned) = at_start.and_then(|at_start| self.slip_correction(&at_start, rates)) {
             correction += responses.velocities * self.scatter(&turned);
             changes = self.added(changes, &turned);
         }
@@ -54,6 +61,19 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             correction = SVector::zeros();
         }
         (impulses, correction)
+    }
+
+    /// Returns impulses near others that change the rates of the mechanism by `rates`.
+    fn nearest(
+        &self,
+        others: &List<T, NR>,
+        rates: &SVector<T, NR>,
+        equations: &mut Equations<T, NR>,
+    ) -> List<T, NR> {
+        let missing = rates - self.scatter(&self.changes(others));
+        let (mut all, _) = self.impulses_for(&missing, equations);
+        all.iter_mut().zip(others.iter()).for_each(|(impulse, other)| *impulse += *other);
+        all
     }
 
     /// Returns values at the rows of the mechanism at the rows of closed contacts.

@@ -3,7 +3,7 @@
 use super::super::total::Total;
 use super::{List, Problem};
 use crate::Real;
-use crate::private::epsilon;
+use crate::private::{epsilon, positive_part};
 
 /// What the natural map makes of a contact.
 #[derive(Clone, Copy)]
@@ -47,7 +47,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             let left = if step == T::zero() {
                 // Nothing that impulses could do.
                 if self.is_gap(k) {
-                    (self.least[k] - rates[self.rows[k].first]).max(T::zero())
+                    positive_part(self.least[k] - rates[self.rows[k].first])
                 } else {
                     T::zero()
                 }
@@ -117,7 +117,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         rates: &List<T, NR>,
     ) -> [T; 3] {
         let (n, tangents) = self.of(k);
-        let pressed = if self.is_gap(k) { impulses[n] - normal.max(T::zero()) } else { T::zero() };
+        let pressed = if self.is_gap(k) { impulses[n] - positive_part(normal) } else { T::zero() };
         let mut map = [pressed, T::zero(), T::zero()];
         for ((c, entry), i) in map.iter_mut().skip(1).enumerate().zip(tangents) {
             *entry = match mode {

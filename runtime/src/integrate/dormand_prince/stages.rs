@@ -2,31 +2,31 @@
 
 use crate::Real;
 use crate::integrate::adaptive::{Attempt, Trial};
-use crate::integrate::stages::{Rates, stage, sum};
+use crate::integrate::stages::{Rates, rates_at_stage, weighted_sum_of_rates};
 use crate::integrate::{Dynamics, Step};
 use crate::private::constant;
 
 /// Returns one Dormand–Prince step of length `h` that ends at `t`, computed by seven stages (Hairer, Nørsett
 /// and Wanner, II, table 5.2 and (6.12)).
-pub(super) fn stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+pub(super) fn step_stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     attempt: &Attempt<'_, T, NQ, NV>,
 ) -> Trial<T, NQ, NV> {
     let Attempt { start, acceleration, scale, h, t } = *attempt;
     let time_at_fraction = |part: f64| start.t + h * constant(part);
     let k1 = &Rates { displacement: start.v, velocity: *acceleration };
-    let change = sum(h, [(1.0 / 5.0, k1)]);
-    let k2 = &stage(system, start, time_at_fraction(1.0 / 5.0), &change).0;
-    let change = sum(h, [(3.0 / 40.0, k1), (9.0 / 40.0, k2)]);
-    let k3 = &stage(system, start, time_at_fraction(3.0 / 10.0), &change).0;
-    let change = sum(h, [(44.0 / 45.0, k1), (-56.0 / 15.0, k2), (32.0 / 9.0, k3)]);
-    let k4 = &stage(system, start, time_at_fraction(4.0 / 5.0), &change).0;
-    let change = sum(
+    let change = weighted_sum_of_rates(h, [(1.0 / 5.0, k1)]);
+    let k2 = &rates_at_stage(system, start, time_at_fraction(1.0 / 5.0), &change).0;
+    let change = weighted_sum_of_rates(h, [(3.0 / 40.0, k1), (9.0 / 40.0, k2)]);
+    let k3 = &rates_at_stage(system, start, time_at_fraction(3.0 / 10.0), &change).0;
+    let change = weighted_sum_of_rates(h, [(44.0 / 45.0, k1), (-56.0 / 15.0, k2), (32.0 / 9.0, k3)]);
+    let k4 = &rates_at_stage(system, start, time_at_fraction(4.0 / 5.0), &change).0;
+    let change = weighted_sum_of_rates(
         h,
         [(19372.0 / 6561.0, k1), (-25360.0 / 2187.0, k2), (64448.0 / 6561.0, k3), (-212.0 / 729.0, k4)],
     );
-    let k5 = &stage(system, start, time_at_fraction(8.0 / 9.0), &change).0;
-    let change = sum(
+    let k5 = &rates_at_stage(system, start, time_at_fraction(8.0 / 9.0), &change).0;
+    let change = weighted_sum_of_rates(
         h,
         [
             (9017.0 / 3168.0, k1),
@@ -36,8 +36,8 @@ pub(super) fn stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
             (-5103.0 / 18656.0, k5),
         ],
     );
-    let k6 = &stage(system, start, t, &change).0;
-    let change = sum(
+    let k6 = &rates_at_stage(system, start, t, &change).0;
+    let change = weighted_sum_of_rates(
         h,
         [
             (35.0 / 384.0, k1),
@@ -47,8 +47,8 @@ pub(super) fn stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
             (11.0 / 84.0, k6),
         ],
     );
-    let (k7, end) = stage(system, start, t, &change);
-    let error = sum(
+    let (k7, end) = rates_at_stage(system, start, t, &change);
+    let error = weighted_sum_of_rates(
         h,
         [
             (71.0 / 57600.0, k1),
@@ -59,7 +59,7 @@ pub(super) fn stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV:
             (-1.0 / 40.0, &k7),
         ],
     );
-    let fourth = sum(
+    let fourth = weighted_sum_of_rates(
         h,
         [
             (-12715105075.0 / 11282082432.0, k1),

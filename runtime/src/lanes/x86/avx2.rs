@@ -5,7 +5,7 @@ use super::avx512::{self, Avx512};
 use crate::Real;
 use crate::arithmetic::Compiled;
 use crate::lanes::registers::{Registers, VectorLoop};
-use crate::trigonometry::{self, LARGEST, same};
+use crate::trigonometry::{self, LARGEST, same_type_reference};
 use core::any::TypeId;
 use core::arch::x86_64::*;
 use core::mem::transmute;
@@ -24,7 +24,7 @@ pub(crate) fn is_available() -> bool {
 
 /// Whether these instructions speed up numbers of type `T`: `f64` or `f32`.
 #[inline(always)]
-pub(crate) fn serves<T: Real>() -> bool {
+pub(crate) fn has_faster_instructions<T: Real>() -> bool {
     TypeId::of::<T>() == TypeId::of::<f64>() || TypeId::of::<T>() == TypeId::of::<f32>()
 }
 
@@ -32,7 +32,7 @@ pub(crate) fn serves<T: Real>() -> bool {
 macro_rules! registers {
     ([$number:ident; $lanes:literal] as [$register:ident; $count:literal]: ($($a:ident)+) => $f:expr) => {
         if N == $lanes
-            && let ($(Some($a),)+) = ($(same::<_, [$number; $lanes]>($a),)+)
+            && let ($(Some($a),)+) = ($(same_type_reference::<_, [$number; $lanes]>($a),)+)
         {
             // SAFETY: numbers and registers have the same bits; the processor has the instructions.
             let result: [$number; $lanes] = unsafe {
@@ -44,7 +44,7 @@ macro_rules! registers {
                 }
                 transmute(result)
             };
-            if let Some(result) = same(&result) {
+            if let Some(result) = same_type_reference(&result) {
                 return *result;
             }
         }
@@ -89,7 +89,7 @@ mod with_features {
 
     #[inline]
     #[target_feature(enable = "avx2,fma")]
-    pub(super) fn fused<T: Real, const N: usize>(a: &[T; N], b: &[T; N], c: &[T; N]) -> [T; N] {
+    pub(super) fn fused_multiply_add<T: Real, const N: usize>(a: &[T; N], b: &[T; N], c: &[T; N]) -> [T; N] {
         registers!([f64; 2] as [__m128d; 1]: (a b c) => _mm_fmadd_pd(a, b, c));
         registers!([f64; 4] as [__m256d; 1]: (a b c) => _mm256_fmadd_pd(a, b, c));
         registers!([f64; 8] as [__m256d; 2]: (a b c) => _mm256_fmadd_pd(a, b, c));
@@ -122,9 +122,9 @@ mod with_features {
             ($lanes:literal in $count:literal) => {
                 if L == $lanes
                     && let (Some(s), Some(c), Some(shifted)) = (
-                        same::<_, [f64; $lanes]>(s),
-                        same::<_, [f64; $lanes]>(c),
-                        same::<_, [f64; $lanes]>(shifted),
+                        same_type_reference::<_, [f64; $lanes]>(s),
+                        same_type_reference::<_, [f64; $lanes]>(c),
+                        same_type_reference::<_, [f64; $lanes]>(shifted),
                     )
                 {
                     // SAFETY: numbers and registers have the same bits; the processor has the instructions.
@@ -140,7 +140,7 @@ mod with_features {
                         let cosines: [f64; $lanes] = transmute(cosines);
                         [sines, cosines]
                     };
-                    if let Some(result) = same(&result) {
+                    if let Some(result) = same_type_reference(&result) {
                         return *result;
                     }
                 }
@@ -163,7 +163,7 @@ mod with_features {
         macro_rules! case {
             ($lanes:literal in $count:literal) => {
                 if L == $lanes
-                    && let Some(x) = same::<_, [[f64; $lanes]; N]>(x)
+                    && let Some(x) = same_type_reference::<_, [[f64; $lanes]; N]>(x)
                 {
                     // SAFETY: numbers and registers have the same bits; the processor has the instructions.
                     return unsafe {
@@ -189,7 +189,7 @@ mod with_features {
 }
 
 impl Registers for Avx2 {
-    const FUSED: bool = true;
+    const FUSED: bool = !cfg!(feature = "reproducible");
     const WIDE: bool = false;
 
     #[inline(always)]
@@ -203,7 +203,7 @@ impl Registers for Avx2 {
     #[inline(always)]
     fn fused<T: Real, const N: usize>(a: &[T; N], b: &[T; N], c: &[T; N]) -> [T; N] {
         // SAFETY: the processor has the instructions.
-        unsafe { with_features::fused(a, b, c) }
+        unsafe { with_features::fused_multiply_add(a, b, c) }
     }
 
     #[inline(always)]

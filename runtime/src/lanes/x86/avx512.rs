@@ -5,7 +5,7 @@
 use super::avx2::Avx2;
 use crate::Real;
 use crate::lanes::registers::{Registers, VectorLoop};
-use crate::trigonometry::same;
+use crate::trigonometry::same_type_reference;
 use core::arch::x86_64::*;
 use core::mem::transmute;
 
@@ -32,13 +32,13 @@ mod with_features {
             #[inline]
             #[target_feature(enable = "avx2,fma,avx512f,avx512vl")]
             pub(super) fn $name<T: Real, const N: usize>($($a: &[T; N]),+) -> [T; N] {
-                if let ($(Some($a),)+) = ($(same::<_, [f64; 8]>($a),)+) {
+                if let ($(Some($a),)+) = ($(same_type_reference::<_, [f64; 8]>($a),)+) {
                     // SAFETY: numbers and registers have the same bits.
                     let result: [f64; 8] = unsafe {
                         $(let $a: __m512d = transmute(*$a);)+
                         transmute($f)
                     };
-                    if let Some(result) = same(&result) {
+                    if let Some(result) = same_type_reference(&result) {
                         return *result;
                     }
                 }
@@ -62,7 +62,7 @@ mod with_features {
 }
 
 impl Registers for Avx512 {
-    const FUSED: bool = true;
+    const FUSED: bool = !cfg!(feature = "reproducible");
     const WIDE: bool = true;
 
     #[inline(always)]

@@ -60,7 +60,7 @@ fn a_sequence_is_a_product_of_elementary_rotations() {
     let mut random = Random(1);
     for sequence in EulerSequence::ALL {
         for _ in 0..50 {
-            let [a, b, c] = random.numbers().map(|x: f64| 4.0 * x);
+            let [a, b, c] = random.random_numbers().map(|x: f64| 4.0 * x);
             let [i, j, k] = sequence.axes();
             let (a_turn, b_turn, c_turn) = (i.rotation(a), j.rotation(b), k.rotation(c));
             let product = match sequence.fixed_in() {
@@ -85,7 +85,7 @@ fn angles_give_random_rotations_back() {
     let mut random = Random(2);
     for sequence in EulerSequence::ALL {
         for _ in 0..500 {
-            let rotation = random.rotation();
+            let rotation = random.random_rotation();
             let found = sequence.angles(&rotation);
             let [a, b, c] = found.angles;
             assert!(!found.singular && a.abs() <= PI && c.abs() <= PI);
@@ -105,7 +105,7 @@ fn angles_give_random_rotations_back() {
 }
 
 /// Returns middle angles close to a singularity of the sequence.
-fn middles(sequence: EulerSequence) -> impl Iterator<Item = f64> {
+fn nearly_singular_angles(sequence: EulerSequence) -> impl Iterator<Item = f64> {
     let ends = if sequence.is_symmetric() { [0.0, PI] } else { [-FRAC_PI_2, FRAC_PI_2] };
     let [low, high] = ends;
     OFFSETS.into_iter().flat_map(move |offset| [low + offset, high - offset])
@@ -115,9 +115,9 @@ fn middles(sequence: EulerSequence) -> impl Iterator<Item = f64> {
 fn angles_near_the_singularities_give_the_rotation_back() {
     let mut random = Random(3);
     for sequence in EulerSequence::ALL {
-        for middle in middles(sequence) {
+        for middle in nearly_singular_angles(sequence) {
             for _ in 0..20 {
-                let [a, c] = random.numbers().map(|x: f64| PI * x);
+                let [a, c] = random.random_numbers().map(|x: f64| PI * x);
                 let rotation = sequence.rotation([a, middle, c]);
                 let found = sequence.angles(&rotation);
                 let back = sequence.rotation(found.angles);
@@ -146,9 +146,9 @@ fn angles_near_the_singularities_give_the_rotation_back() {
 fn rotations_with_noise_at_the_singularity_give_themselves_back() {
     let mut random = Random(4);
     for sequence in EulerSequence::ALL {
-        for middle in middles(sequence) {
+        for middle in nearly_singular_angles(sequence) {
             let rotation = sequence.rotation([0.7, middle, -0.4]);
-            let turn = random.rotation();
+            let turn = random.random_rotation();
             let noisy = turn.inverse() * (turn * rotation);
             let found = sequence.angles(&noisy);
             assert_below(
@@ -180,8 +180,8 @@ fn single_precision_goes_there_and_back() {
     for sequence in EulerSequence::ALL {
         let singular = if sequence.is_symmetric() { 0.0 } else { FRAC_PI_2 };
         for offset in [0.0, 1e-8, 1e-6, 1e-3, 1.0] {
-            let [a, c] = random.numbers::<2>();
-            let angles = [a, singular - offset, c].map(narrow::<f32>);
+            let [a, c] = random.random_numbers::<2>();
+            let angles = [a, singular - offset, c].map(convert_number::<f32>);
             let rotation = sequence.rotation(angles);
             let back = sequence.rotation(sequence.angles(&rotation).angles);
             assert!((back.matrix() - rotation.matrix()).amax() < 1.2e-6, "{sequence} {offset}");

@@ -5,11 +5,11 @@ use crate::rotation::*;
 fn a_rotation_is_its_own_nearest() {
     let mut random = Random(31);
     for _ in 0..500 {
-        let rotation = random.rotation();
+        let rotation = random.random_rotation();
         for scale in [1e-300, 1e-3, 1.0, 7.0, 1e300] {
             let found = nearest_rotation(&(rotation.matrix() * scale)).unwrap();
             assert_below(difference(found.matrix(), rotation.matrix()), 2e-15, scale);
-            assert_below(skewed(&found), 2e-15, scale);
+            assert_below(orthogonality_error(&found), 2e-15, scale);
         }
     }
 }
@@ -19,10 +19,10 @@ fn the_nearest_to_a_noisy_matrix_is_stationary_and_the_best_of_its_neighbours() 
     let mut random = Random(32);
     for noise in [1e-12, 1e-6, 1e-2, 0.3, 2.0] {
         for _ in 0..100 {
-            let rotation = random.rotation();
-            let matrix = rotation.matrix() + Matrix3::from_fn(|_, _| noise * random.number());
+            let rotation = random.random_rotation();
+            let matrix = rotation.matrix() + Matrix3::from_fn(|_, _| noise * random.random_number());
             let found = nearest_rotation(&matrix).unwrap();
-            assert_below(skewed(&found), 2e-15, noise);
+            assert_below(orthogonality_error(&found), 2e-15, noise);
             assert_below((found.matrix().determinant() - 1.0).abs(), 2e-15, noise);
             // Rᵀ M is symmetric at every stationary point.
             assert_below(axial(&(found.inverse() * matrix)).norm(), 3e-15 * (1.0 + noise), noise);
@@ -30,8 +30,10 @@ fn the_nearest_to_a_noisy_matrix_is_stationary_and_the_best_of_its_neighbours() 
             let least = squared_distance(&found) * (1.0 - 1e-12);
             assert!(least <= squared_distance(&rotation));
             for _ in 0..20 {
-                let near = found * RotationVector(random.vector() * 0.3).rotation();
-                assert!(least <= squared_distance(&near) && least <= squared_distance(&random.rotation()));
+                let near = found * RotationVector(random.random_vector() * 0.3).rotation();
+                assert!(
+                    least <= squared_distance(&near) && least <= squared_distance(&random.random_rotation())
+                );
             }
         }
     }
@@ -40,8 +42,8 @@ fn the_nearest_to_a_noisy_matrix_is_stationary_and_the_best_of_its_neighbours() 
 #[test]
 fn small_noise_moves_by_its_skew_part() {
     let mut random = Random(33);
-    let rotation = random.rotation();
-    let noise = Matrix3::from_fn(|_, _| 1e-8 * random.number());
+    let rotation = random.random_rotation();
+    let noise = Matrix3::from_fn(|_, _| 1e-8 * random.random_number());
     let found = nearest_rotation(&(rotation.matrix() + rotation.matrix() * noise)).unwrap();
     let moved = RotationVector::from_rotation(&(rotation.inverse() * found));
     assert_below(difference(&moved.0, &axial(&noise)), 2e-15, noise);
@@ -50,7 +52,7 @@ fn small_noise_moves_by_its_skew_part() {
 #[test]
 fn matrices_of_rank_two_have_a_nearest_and_worse_ones_say_so() {
     let mut random = Random(34);
-    let (r, s) = (random.rotation(), random.rotation());
+    let (r, s) = (random.random_rotation(), random.random_rotation());
     let matrix_with_singular_values =
         |values: [f64; 3]| r.matrix() * Matrix3::from_diagonal(&values.into()) * s.matrix();
     let best = r * s;

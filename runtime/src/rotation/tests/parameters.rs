@@ -31,7 +31,7 @@ fn exponential_is_rodrigues_formula() {
     let mut random = Random(21);
     for angle in ANGLES.into_iter().chain([4.0, TAU, 7.0, 100.0]) {
         for _ in 0..20 {
-            let axis = Unit::new_normalize(random.axis());
+            let axis = Unit::new_normalize(random.random_axis());
             let rotation = rodrigues(&axis, angle);
             let vector = RotationVector(axis.into_inner() * angle);
             let bound = 1e-15 * (1.0 + angle / 8.0);
@@ -41,8 +41,8 @@ fn exponential_is_rodrigues_formula() {
                 bound,
                 angle,
             );
-            assert_below(skewed(&vector.rotation()), 1.5e-15, angle);
-            let v = random.vector();
+            assert_below(orthogonality_error(&vector.rotation()), 1.5e-15, angle);
+            let v = random.random_vector();
             assert_below(difference(&rotate_about(&axis, angle, &v), &(rotation * v)), 1e-15, angle);
             assert_below((vector.angle() - angle).abs(), 4e-16 * angle, angle);
         }
@@ -54,7 +54,7 @@ fn logarithm_inverts_the_exponential() {
     let mut random = Random(22);
     for angle in ANGLES {
         for _ in 0..50 {
-            let axis = random.axis();
+            let axis = random.random_axis();
             let vector = RotationVector(axis * angle);
             let bound = 4e-15 * angle.min(0.75);
             for found in [
@@ -77,7 +77,7 @@ fn axis_and_angle_are_found_everywhere() {
     let mut random = Random(23);
     for angle in ANGLES.into_iter().filter(|angle| *angle > 0.0) {
         for _ in 0..50 {
-            let axis = Unit::new_normalize(random.axis());
+            let axis = Unit::new_normalize(random.random_axis());
             let (found, turn) = eigenaxis(&rodrigues(&axis, angle)).unwrap();
             assert_below((turn - angle).abs(), 2e-15 * angle.min(1.0), angle);
             let sign = if PI - angle < 1e-14 { found.dot(&axis).signum() } else { 1.0 };
@@ -85,7 +85,7 @@ fn axis_and_angle_are_found_everywhere() {
         }
     }
     assert_eq!(eigenaxis(&Rotation3::<f64>::identity()), None);
-    let (from, turn) = (random.rotation(), RotationVector(random.axis() * 1e-9));
+    let (from, turn) = (random.random_rotation(), RotationVector(random.random_axis() * 1e-9));
     assert_below((angle_between(&from, &(from * turn.rotation())) - 1e-9).abs(), 1e-15, turn);
 }
 
@@ -120,7 +120,7 @@ fn all_parameters_give_the_same_rotation() {
     let mut random = Random(24);
     let turns = ANGLES.into_iter().flat_map(|angle| [(); 20].map(|()| angle));
     for angle in turns {
-        let vector = RotationVector(random.axis() * angle);
+        let vector = RotationVector(random.random_axis() * angle);
         let rotation = vector.rotation();
         let sigma = Mrp::from(vector);
         assert!(sigma.0.norm() <= 1.0 + 1e-15);
@@ -158,7 +158,7 @@ fn all_parameters_give_the_same_rotation() {
         }
         for other in found {
             assert_below(difference(other.matrix(), rotation.matrix()), 3e-15, angle);
-            assert_below(skewed(&other), 2e-15, angle);
+            assert_below(orthogonality_error(&other), 2e-15, angle);
         }
     }
 }
@@ -178,7 +178,7 @@ fn zero_has_no_shadow_and_huge_vectors_have_rotations() {
 fn cayley_transforms_are_quotients_of_matrices() {
     let mut random = Random(25);
     for _ in 0..100 {
-        let skew = random.vector().cross_matrix() * 2.0;
+        let skew = random.random_vector().cross_matrix() * 2.0;
         let quotient = (Matrix3::identity() + skew) * (Matrix3::identity() - skew).try_inverse().unwrap();
         let rotation = cayley(&skew);
         assert_below(difference(rotation.matrix(), &quotient), 3e-15, skew);
@@ -193,7 +193,7 @@ fn cayley_transforms_are_quotients_of_matrices() {
 fn vectors_compose_as_rotations_do() {
     let mut random = Random(26);
     for _ in 0..500 {
-        let (p, q) = (random.quaternion(), random.quaternion());
+        let (p, q) = (random.random_quaternion(), random.random_quaternion());
         let product = (p * q).to_rotation_matrix();
         let (a, b) = (Mrp::from_quaternion(&p), Mrp::from_quaternion(&q));
         for (a, b) in [(a, b), (a.shadow().unwrap(), b), (a.shadow().unwrap(), b.shadow().unwrap())] {

@@ -12,9 +12,9 @@ fn omega_of_euler_angles_is_that_of_the_turning_matrix() {
     let mut random = Random(11);
     for sequence in EulerSequence::ALL {
         for _ in 0..20 {
-            let (angles, rates) = (random.vector() * 3.0, random.vector());
+            let (angles, rates) = (random.random_vector() * 3.0, random.random_vector());
             let rotation = sequence.rotation(angles.into());
-            let rate = slope(|t| *sequence.rotation((angles + rates * t).into()).matrix());
+            let rate = derivative_at_zero(|t| *sequence.rotation((angles + rates * t).into()).matrix());
             let body = sequence.omega_body(angles.into(), rates.into());
             let space = sequence.omega_space(angles.into(), rates.into());
             assert_below(difference(&rotation_omega_body(&rotation, &rate), &body), 1e-12, sequence);
@@ -31,9 +31,9 @@ fn rates_of_euler_angles_invert_omega() {
         for offset in [1e-14, 1e-10, 1e-6, 1e-3, 0.3, 1.0] {
             for _ in 0..20 {
                 let singular = if sequence.is_symmetric() { PI } else { -FRAC_PI_2 };
-                let [a, c] = random.numbers().map(|x: f64| PI * x);
+                let [a, c] = random.random_numbers().map(|x: f64| PI * x);
                 let angles = [a, singular + offset, c];
-                let rates: [f64; 3] = random.numbers();
+                let rates: [f64; 3] = random.random_numbers();
                 let (body, space) = (sequence.omega_body(angles, rates), sequence.omega_space(angles, rates));
                 for found in
                     [sequence.rates_from_body(angles, &body), sequence.rates_from_space(angles, &space)]
@@ -44,7 +44,7 @@ fn rates_of_euler_angles_invert_omega() {
                         (sequence, offset),
                     );
                 }
-                let omega = random.vector();
+                let omega = random.random_vector();
                 let rates = sequence.rates_from_body(angles, &omega).unwrap();
                 assert_below(
                     difference(&sequence.omega_body(angles, rates), &omega) * offset,
@@ -85,13 +85,17 @@ fn euler_angles_report_their_singularity() {
 fn rates_of_matrix_and_quaternion_agree_with_the_motion() {
     let mut random = Random(13);
     for _ in 0..200 {
-        let (q, omega) = (random.quaternion(), random.vector());
+        let (q, omega) = (random.random_quaternion(), random.random_vector());
         let rotation = q.to_rotation_matrix();
         let space = rotation * omega;
         let attitude_at_time = |t: f64| q * RotationVector(omega * t).quaternion();
 
         let rate = quaternion_rate_from_body(&q, &omega);
-        assert_below(difference(&rate.coords, &slope(|t| attitude_at_time(t).coords)), 1e-12, omega);
+        assert_below(
+            difference(&rate.coords, &derivative_at_zero(|t| attitude_at_time(t).coords)),
+            1e-12,
+            omega,
+        );
         assert_below(difference(&rate.coords, &quaternion_rate_from_space(&q, &space).coords), 5e-16, omega);
         assert_below(difference(&quaternion_omega_body(&q, &rate), &omega), 1e-15, omega);
         assert_below(difference(&quaternion_omega_space(&q, &rate), &space), 1e-15, omega);
@@ -101,7 +105,7 @@ fn rates_of_matrix_and_quaternion_agree_with_the_motion() {
 
         let rate = rotation_rate_from_body(&rotation, &omega);
         assert_below(
-            difference(&rate, &slope(|t| *attitude_at_time(t).to_rotation_matrix().matrix())),
+            difference(&rate, &derivative_at_zero(|t| *attitude_at_time(t).to_rotation_matrix().matrix())),
             2e-12,
             omega,
         );
@@ -112,8 +116,8 @@ fn rates_of_matrix_and_quaternion_agree_with_the_motion() {
 }
 
 /// Returns the angular velocity, in body axes, of the motion with the quaternion `f`, by differences.
-fn turning(f: impl Fn(f64) -> UnitQuaternion<f64>) -> Vector3<f64> {
-    quaternion_omega_body(&f(0.0), &Quaternion::from(slope(|t| f(t).coords)))
+fn angular_velocity_of_motion(f: impl Fn(f64) -> UnitQuaternion<f64>) -> Vector3<f64> {
+    quaternion_omega_body(&f(0.0), &Quaternion::from(derivative_at_zero(|t| f(t).coords)))
 }
 
 #[test]
@@ -121,11 +125,14 @@ fn rates_of_rotation_vectors_agree_with_the_motion() {
     let mut random = Random(14);
     for length in LENGTHS {
         for _ in 0..20 {
-            let vector = RotationVector(random.axis() * length);
-            let (rate, rotation) = (random.vector(), vector.rotation());
+            let vector = RotationVector(random.random_axis() * length);
+            let (rate, rotation) = (random.random_vector(), vector.rotation());
             let body = vector.omega_body(&rate);
             assert_below(
-                difference(&body, &turning(|t| RotationVector(vector.0 + rate * t).quaternion())),
+                difference(
+                    &body,
+                    &angular_velocity_of_motion(|t| RotationVector(vector.0 + rate * t).quaternion()),
+                ),
                 2e-12,
                 length,
             );
@@ -141,7 +148,7 @@ fn rates_of_rotation_vectors_agree_with_the_motion() {
         }
     }
     for turns in [1.0, 2.0, 7.0] {
-        let vector = RotationVector(random.axis() * (turns * TAU));
+        let vector = RotationVector(random.random_axis() * (turns * TAU));
         assert_eq!(vector.rate_from_body(&Vector3::x()), Err(Singular::FullTurn));
         assert_eq!(vector.rate_from_space(&Vector3::x()), Err(Singular::FullTurn));
         assert!(vector.omega_body(&Vector3::x()).iter().all(|x| x.is_finite()));
@@ -153,8 +160,8 @@ fn rates_of_gibbs_vectors_agree_with_the_motion() {
     let mut random = Random(15);
     for size in [0.0, 1e-200, 1e-9, 0.1, 1.0, 3.0, 1e3, 1e8] {
         for _ in 0..20 {
-            let g = Gibbs(random.axis() * size);
-            let (omega, rotation) = (random.vector(), g.rotation());
+            let g = Gibbs(random.random_axis() * size);
+            let (omega, rotation) = (random.random_vector(), g.rotation());
             let rate = g.rate_from_body(&omega);
             let relative = 1.0 + size * size;
             assert_below(difference(&rate, &g.rate_from_space(&(rotation * omega))) / relative, 2e-15, size);
@@ -162,8 +169,8 @@ fn rates_of_gibbs_vectors_agree_with_the_motion() {
             assert_below(difference(&g.omega_body(&rate), &omega), 2e-15 * (1.0 + size), size);
             // Differences are accurate only where the vector is of order one.
             if size <= 1.0 {
-                let rate = random.vector();
-                let found = turning(|t| Gibbs(g.0 + rate * t).quaternion());
+                let rate = random.random_vector();
+                let found = angular_velocity_of_motion(|t| Gibbs(g.0 + rate * t).quaternion());
                 assert_below(difference(&g.omega_body(&rate), &found), 1e-11, size);
             }
         }
@@ -175,8 +182,8 @@ fn rates_of_modified_rodrigues_vectors_agree_with_the_motion() {
     let mut random = Random(16);
     for size in [0.0, 1e-200, 1e-9, 0.1, 0.9, 1.0, 1.1, 3.0, 1e3, 1e6] {
         for _ in 0..20 {
-            let sigma = Mrp(random.axis() * size);
-            let (omega, rotation) = (random.vector(), sigma.rotation());
+            let sigma = Mrp(random.random_axis() * size);
+            let (omega, rotation) = (random.random_vector(), sigma.rotation());
             let rate = sigma.rate_from_body(&omega);
             let relative = 1.0 + size * size;
             assert_below(
@@ -187,8 +194,8 @@ fn rates_of_modified_rodrigues_vectors_agree_with_the_motion() {
             assert_below(difference(&sigma.omega_body(&rate), &omega), 2e-15, size);
             assert_below(difference(&sigma.omega_space(&rate), &(rotation * omega)), 2e-15, size);
             if size <= 3.0 {
-                let rate = random.vector();
-                let found = turning(|t| Mrp(sigma.0 + rate * t).quaternion());
+                let rate = random.random_vector();
+                let found = angular_velocity_of_motion(|t| Mrp(sigma.0 + rate * t).quaternion());
                 assert_below(difference(&sigma.omega_body(&rate), &found), 1e-9, size);
             }
             // The shadow has the same angular velocity as the vector itself.

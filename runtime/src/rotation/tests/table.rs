@@ -22,7 +22,7 @@ pub(super) struct Row {
 
 /// Returns one row of the reference table: Euler-angle sequence, name, rotation matrix by rows, quaternion,
 /// rotation vector, and angular velocity in body and in space axes.
-const fn row(
+const fn sequence_row(
     sequence: EulerSequence,
     name: &'static str,
     matrix: [[f64; 3]; 3],
@@ -33,7 +33,7 @@ const fn row(
 }
 
 pub(super) const TABLE: [Row; 24] = [
-    row(
+    sequence_row(
         EulerSequence::BODY_XYX,
         "body-xyx",
         [
@@ -48,7 +48,7 @@ pub(super) const TABLE: [Row; 24] = [
             [1.1883579685560397, -0.3624087074857566, 0.49479615587017817],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::SPACE_XYX,
         "space-xyx",
         [
@@ -63,7 +63,7 @@ pub(super) const TABLE: [Row; 24] = [
             [1.2824210936422442, -0.3777849964591085, -0.0321341498699009],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::BODY_XYZ,
         "body-xyz",
         [
@@ -78,7 +78,7 @@ pub(super) const TABLE: [Row; 24] = [
             [-0.0797959185139219, -0.39449098694978196, 0.5985094436096933],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::SPACE_XYZ,
         "space-xyz",
         [
@@ -93,7 +93,7 @@ pub(super) const TABLE: [Row; 24] = [
             [0.35170619683973664, 0.2500972690115962, 1.2221088436188456],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::BODY_XZX,
         "body-xzx",
         [
@@ -108,7 +108,7 @@ pub(super) const TABLE: [Row; 24] = [
             [1.1883579685560397, -0.4947961558701781, -0.3624087074857566],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::SPACE_XZX,
         "space-xzx",
         [
@@ -123,7 +123,7 @@ pub(super) const TABLE: [Row; 24] = [
             [1.2824210936422444, 0.032134149869900895, -0.37778499645910846],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::BODY_XZY,
         "body-xzy",
         [
@@ -138,7 +138,7 @@ pub(super) const TABLE: [Row; 24] = [
             [1.0797959185139219, 0.716717526274229, 0.01235639129953947],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::SPACE_XZY,
         "space-xzy",
         [
@@ -153,7 +153,7 @@ pub(super) const TABLE: [Row; 24] = [
             [-0.004776747184837565, 0.5778911563811546, -0.4315357175818269],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::BODY_YXY,
         "body-yxy",
         [
@@ -168,7 +168,7 @@ pub(super) const TABLE: [Row; 24] = [
             [-0.3624087074857566, 1.1883579685560397, -0.4947961558701781],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::SPACE_YXY,
         "space-yxy",
         [
@@ -183,7 +183,7 @@ pub(super) const TABLE: [Row; 24] = [
             [-0.3777849964591085, 1.2824210936422444, 0.032134149869900916],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::BODY_YXZ,
         "body-yxz",
         [
@@ -198,7 +198,7 @@ pub(super) const TABLE: [Row; 24] = [
             [0.012356391299539466, 1.0797959185139219, 0.716717526274229],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::SPACE_YXZ,
         "space-yxz",
         [
@@ -213,7 +213,7 @@ pub(super) const TABLE: [Row; 24] = [
             [-0.4315357175818269, -0.004776747184837604, 0.5778911563811546],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::BODY_YZX,
         "body-yzx",
         [
@@ -228,7 +228,7 @@ pub(super) const TABLE: [Row; 24] = [
             [0.5985094436096933, -0.07979591851392184, -0.39449098694978196],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::SPACE_YZX,
         "space-yzx",
         [
@@ -243,7 +243,7 @@ pub(super) const TABLE: [Row; 24] = [
             [1.2221088436188456, 0.35170619683973664, 0.2500972690115961],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::BODY_YZY,
         "body-yzy",
         [
@@ -258,7 +258,7 @@ pub(super) const TABLE: [Row; 24] = [
             [0.4947961558701781, 1.1883579685560397, -0.3624087074857566],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::SPACE_YZY,
         "space-yzy",
         [
@@ -273,7 +273,7 @@ pub(super) const TABLE: [Row; 24] = [
             [-0.032134149869900895, 1.2824210936422444, -0.37778499645910846],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::BODY_ZXY,
         "body-zxy",
         [
@@ -288,7 +288,7 @@ pub(super) const TABLE: [Row; 24] = [
             [-0.39449098694978196, 0.5985094436096934, -0.07979591851392184],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::SPACE_ZXY,
         "space-zxy",
         [
@@ -303,7 +303,7 @@ pub(super) const TABLE: [Row; 24] = [
             [0.2500972690115962, 1.2221088436188456, 0.3517061968397366],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::BODY_ZXZ,
         "body-zxz",
         [
@@ -318,7 +318,7 @@ pub(super) const TABLE: [Row; 24] = [
             [-0.3624087074857566, 0.49479615587017817, 1.1883579685560397],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::SPACE_ZXZ,
         "space-zxz",
         [
@@ -333,7 +333,7 @@ pub(super) const TABLE: [Row; 24] = [
             [-0.37778499645910857, -0.03213414986990094, 1.2824210936422442],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::BODY_ZYX,
         "body-zyx",
         [
@@ -348,7 +348,7 @@ pub(super) const TABLE: [Row; 24] = [
             [0.716717526274229, 0.012356391299539445, 1.0797959185139219],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::SPACE_ZYX,
         "space-zyx",
         [
@@ -363,7 +363,7 @@ pub(super) const TABLE: [Row; 24] = [
             [0.5778911563811546, -0.4315357175818269, -0.004776747184837564],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::BODY_ZYZ,
         "body-zyz",
         [
@@ -378,7 +378,7 @@ pub(super) const TABLE: [Row; 24] = [
             [-0.49479615587017817, -0.36240870748575654, 1.1883579685560397],
         ],
     ),
-    row(
+    sequence_row(
         EulerSequence::SPACE_ZYZ,
         "space-zyz",
         [

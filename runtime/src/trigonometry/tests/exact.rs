@@ -25,8 +25,8 @@ pub fn sin_cos(x: f64) -> [Double; 2] {
     let (mut odd, mut even) = (sine, versine);
     for k in (2..28).step_by(2) {
         let k = f64::from(k);
-        odd = divide(multiply(odd, (-square.0, -square.1)), k * (k + 1.0));
-        even = divide(multiply(even, (-square.0, -square.1)), (k + 1.0) * (k + 2.0));
+        odd = divide_double(multiply(odd, (-square.0, -square.1)), k * (k + 1.0));
+        even = divide_double(multiply(even, (-square.0, -square.1)), (k + 1.0) * (k + 2.0));
         sine = add(sine, odd);
         versine = add(versine, even);
     }
@@ -59,20 +59,20 @@ fn add(a: Double, b: Double) -> Double {
     let sum = a.0 + b.0;
     let of_b = sum - a.0;
     let lost = (a.0 - (sum - of_b)) + (b.0 - of_b);
-    normalized(sum, lost + (a.1 + b.1))
+    normalized_double(sum, lost + (a.1 + b.1))
 }
 
 fn multiply(a: Double, b: Double) -> Double {
     let product = a.0 * b.0;
-    normalized(product, a.0.mul_add(b.0, -product) + (a.0 * b.1 + a.1 * b.0))
+    normalized_double(product, a.0.mul_add(b.0, -product) + (a.0 * b.1 + a.1 * b.0))
 }
 
-fn divide(a: Double, by: f64) -> Double {
+fn divide_double(a: Double, by: f64) -> Double {
     let quotient = a.0 / by;
-    normalized(quotient, ((-quotient).mul_add(by, a.0) + a.1) / by)
+    normalized_double(quotient, ((-quotient).mul_add(by, a.0) + a.1) / by)
 }
 
-fn normalized(large: f64, small: f64) -> Double {
+fn normalized_double(large: f64, small: f64) -> Double {
     let sum = large + small;
     (sum, small - (sum - large))
 }

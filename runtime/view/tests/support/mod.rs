@@ -13,7 +13,7 @@ pub fn motions(page: &str) -> Vec<Value> {
 /// Returns the channels of a motion: times, then for each frame three positions and four entries of a
 /// quaternion, then curves.
 pub fn channels(motion: &Value) -> Vec<Vec<i64>> {
-    let bytes = base64(motion["data"].as_str().unwrap());
+    let bytes = decode_base64(motion["data"].as_str().unwrap());
     let count = motion["count"].as_u64().unwrap() as usize;
     let mut at = 0;
     let mut channels = Vec::new();
@@ -41,7 +41,7 @@ pub fn channels(motion: &Value) -> Vec<Vec<i64>> {
     channels
 }
 
-fn base64(text: &str) -> Vec<u8> {
+fn decode_base64(text: &str) -> Vec<u8> {
     let base64_digit = |c: u8| match c {
         b'A'..=b'Z' => c - b'A',
         b'a'..=b'z' => c - b'a' + 26,

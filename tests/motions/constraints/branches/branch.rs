@@ -24,24 +24,24 @@ impl Jet {
         self.map([c, -s, -c])
     }
 
-    fn times(self, o: Jet) -> Jet {
+    fn times_jet(self, o: Jet) -> Jet {
         let ([a, b, c], [d, e, f]) = (self.0, o.0);
         Jet([a * d, b * d + a * e, c * d + 2.0 * b * e + a * f])
     }
 
-    fn plus(self, o: Jet) -> Jet {
+    fn plus_jet(self, o: Jet) -> Jet {
         Jet(core::array::from_fn(|k| self.0[k] + o.0[k]))
     }
 
-    fn scaled(self, by: f64) -> Jet {
+    fn scaled_jet(self, by: f64) -> Jet {
         Jet(self.0.map(|x| x * by))
     }
 
     fn add(self, x: f64) -> Jet {
-        self.plus(Jet([x, 0.0, 0.0]))
+        self.plus_jet(Jet([x, 0.0, 0.0]))
     }
 
-    fn root(self) -> Jet {
+    fn square_root(self) -> Jet {
         let x = self.0[0].sqrt();
         self.map([x, 0.5 / x, -0.25 / (x * x * x)])
     }
@@ -71,27 +71,31 @@ impl Jet {
 /// root of this square changes sign.
 pub fn flat_branch([base, l1, l2, l3]: [f64; 4], at_pi: bool, theta: f64, side: f64) -> [Jet; 3] {
     let theta = Jet([theta, 1.0, 0.0]);
-    let half = theta.scaled(0.5);
+    let half = theta.scaled_jet(0.5);
     // Nearly equal lengths are subtracted first: the difference of their squares would lose digits.
-    let (apart, versine) = (base - l1, half.sin().times(half.sin()).scaled(2.0));
+    let (apart, versine) = (base - l1, half.sin().times_jet(half.sin()).scaled_jet(2.0));
     let difference = if at_pi { l2 - l3 } else { apart.abs() };
     // Vector from the crank's tip to the rocker's foot.
-    let (dx, dy) = (versine.scaled(l1).add(apart), theta.sin().scaled(-l1));
-    let square = versine.scaled(2.0 * base * l1).add(apart * apart);
+    let (dx, dy) = (versine.scaled_jet(l1).add(apart), theta.sin().scaled_jet(-l1));
+    let square = versine.scaled_jet(2.0 * base * l1).add(apart * apart);
     let width = 2.0 * (base * l1).sqrt();
     let height = match at_pi {
-        true => half.cos().scaled(width).times(square.add(-difference * difference).root()),
-        false => half.sin().scaled(width).times(square.scaled(-1.0).add((l2 + l3) * (l2 + l3)).root()),
+        true => half.cos().scaled_jet(width).times_jet(square.add(-difference * difference).square_root()),
+        false => half
+            .sin()
+            .scaled_jet(width)
+            .times_jet(square.scaled_jet(-1.0).add((l2 + l3) * (l2 + l3)).square_root()),
     };
     // Twice D times the foot point and the height of the triangle.
-    let (along, across) = (square.add(difference * (l2 + l3)), height.scaled(side));
-    let over = square.scaled(2.0).inverse();
-    let tip_coordinate = |a: Jet, b: Jet, c: Jet, d: Jet| a.times(b).plus(c.times(d)).times(over);
+    let (along, across) = (square.add(difference * (l2 + l3)), height.scaled_jet(side));
+    let over = square.scaled_jet(2.0).inverse();
+    let tip_coordinate =
+        |a: Jet, b: Jet, c: Jet, d: Jet| a.times_jet(b).plus_jet(c.times_jet(d)).times_jet(over);
     let (px, py) =
-        (tip_coordinate(along, dx, across.scaled(-1.0), dy), tip_coordinate(along, dy, across, dx));
+        (tip_coordinate(along, dx, across.scaled_jet(-1.0), dy), tip_coordinate(along, dy, across, dx));
     let coupler = Jet::atan2(py, px);
-    let rocker = Jet::atan2(py.plus(dy.scaled(-1.0)), px.plus(dx.scaled(-1.0)));
-    [theta, coupler.plus(theta.scaled(-1.0)), rocker]
+    let rocker = Jet::atan2(py.plus_jet(dy.scaled_jet(-1.0)), px.plus_jet(dx.scaled_jet(-1.0)));
+    [theta, coupler.plus_jet(theta.scaled_jet(-1.0)), rocker]
 }
 
 /// Branch of a linkage's motion: a configuration, the derivatives of all coordinates with respect to the `N`
@@ -104,17 +108,17 @@ pub struct Branch<const NV: usize, const N: usize> {
 }
 
 impl<const NV: usize, const N: usize> Branch<NV, N> {
-    pub fn velocity(&self) -> SVector<f64, NV> {
+    pub fn branch_velocity(&self) -> SVector<f64, NV> {
         self.by * self.rate
     }
 
     /// Returns the acceleration on the assembly mode by Lagrange's equations for the independent coordinates,
     /// and a bound for the rounding error.
-    pub fn acceleration<M>(&self, m: &M) -> (SVector<f64, NV>, f64)
+    pub fn branch_acceleration<M>(&self, m: &M) -> (SVector<f64, NV>, f64)
     where
         M: Mechanism<NV, NV, 0, Scalar = f64>,
     {
-        let (v, mass) = (self.velocity(), m.mass_matrix(0.0, &self.q));
+        let (v, mass) = (self.branch_velocity(), m.mass_matrix(0.0, &self.q));
         let bias = m.bias_forces(0.0, &self.q, &v);
         let own = self.by.transpose() * mass * self.by;
         let force = bias + mass * self.bend;

@@ -48,15 +48,15 @@ macro_rules! four_bar {
 
         impl $name {
             /// Returns an instance with these lengths and random masses, springs and gravity.
-            pub fn random(random: &mut Random, style: &Style, lengths: [f64; 4]) -> Self {
+            pub fn random_instance(random: &mut Random, style: &Style, lengths: [f64; 4]) -> Self {
                 let [base, l1, l2, l3] = lengths;
-                let (mut mass, angle) = (|| style.mass(random), 2.0);
+                let (mut mass, angle) = (|| style.random_mass(random), 2.0);
                 let [m1, m2, m3] = [mass(), mass(), mass()];
-                let mut stiffness = || style.stiffness(random);
+                let mut stiffness = || style.random_stiffness(random);
                 let [k1, k2, k3] = [stiffness(), stiffness(), stiffness()];
-                let turn = random.uniform(PI);
+                let turn = random.uniform_number(PI);
                 let (aside, down) = (9.81 * turn.sin(), 9.81 * turn.cos());
-                let free = random.uniform(angle);
+                let free = random.uniform_number(angle);
                 Self { down, aside, base, l1, l2, l3, m1, m2, m3, k1, k2, k3, free }
             }
         }
@@ -190,12 +190,16 @@ pub struct Style {
 }
 
 impl Style {
-    pub fn mass(&self, random: &mut Random) -> f64 {
-        10_f64.powf(random.uniform(self.masses))
+    pub fn random_mass(&self, random: &mut Random) -> f64 {
+        10_f64.powf(random.uniform_number(self.masses))
     }
 
     /// Returns a random spring stiffness, which is zero for one spring in three.
-    pub fn stiffness(&self, random: &mut Random) -> f64 {
-        if random.uniform(1.0) < -0.33 { 0.0 } else { 10_f64.powf(random.uniform(self.springs)) }
+    pub fn random_stiffness(&self, random: &mut Random) -> f64 {
+        if random.uniform_number(1.0) < -0.33 {
+            0.0
+        } else {
+            10_f64.powf(random.uniform_number(self.springs))
+        }
     }
 }

@@ -20,7 +20,7 @@ impl Monomial {
     /// Monomial one: the empty product.
     pub const ONE: Monomial = Monomial { high: 0, low: 0 };
 
-    fn bits(atom: usize, bits: u128) -> Monomial {
+    fn power_bits(atom: usize, bits: u128) -> Monomial {
         match atom {
             0..HALF => Monomial { high: 0, low: bits << (4 * atom) },
             HALF..ATOMS => Monomial { high: bits << (4 * (atom - HALF)), low: 0 },
@@ -29,22 +29,22 @@ impl Monomial {
     }
 
     /// Returns the monomial that is the first power of an atom.
-    pub fn atom(atom: usize) -> Monomial {
-        Monomial::bits(atom, 1)
+    pub fn first_power_of_atom(atom: usize) -> Monomial {
+        Monomial::power_bits(atom, 1)
     }
 
     /// Returns a mask of all bits of the power of an atom.
     pub fn all_of(atom: usize) -> Monomial {
-        Monomial::bits(atom, 15)
+        Monomial::power_bits(atom, 15)
     }
 
     /// Returns a mask of the bits that are set only in powers of the atom above one.
     pub fn above_one(atom: usize) -> Monomial {
-        Monomial::bits(atom, 14)
+        Monomial::power_bits(atom, 14)
     }
 
     /// Returns the power of an atom.
-    pub fn power(self, atom: usize) -> u8 {
+    pub fn power_of_atom(self, atom: usize) -> u8 {
         let shifted = match atom {
             0..HALF => self.low >> (4 * atom),
             _ => self.high >> (4 * (atom - HALF)),
@@ -53,7 +53,7 @@ impl Monomial {
     }
 
     /// Returns the atoms with their powers.
-    pub fn factors(self) -> impl Iterator<Item = (usize, u8)> {
+    pub fn atoms_with_powers(self) -> impl Iterator<Item = (usize, u8)> {
         let mut rest = self;
         std::iter::from_fn(move || {
             let atom = match (rest.low, rest.high) {
@@ -61,14 +61,14 @@ impl Monomial {
                 (0, high) => HALF + high.trailing_zeros() as usize / 4,
                 (low, _) => low.trailing_zeros() as usize / 4,
             };
-            let power = rest.power(atom);
-            rest = rest.cleared(Monomial::all_of(atom));
+            let power = rest.power_of_atom(atom);
+            rest = rest.clear_mask(Monomial::all_of(atom));
             Some((atom, power))
         })
     }
 
     /// Multiplies two monomials. `None` if a power exceeds seven.
-    pub fn times(self, other: Monomial) -> Option<Monomial> {
+    pub fn checked_product(self, other: Monomial) -> Option<Monomial> {
         // No carries into the next power: both powers are below eight.
         let product =
             Monomial { high: self.high.wrapping_add(other.high), low: self.low.wrapping_add(other.low) };
@@ -81,41 +81,42 @@ impl Monomial {
     }
 
     /// Returns true if this monomial divides the other one.
-    pub fn divides(self, other: Monomial) -> bool {
+    pub fn is_divisor_of(self, other: Monomial) -> bool {
         // Compares power by power: the overflow bit stays set unless the subtraction borrows from it.
         let has_no_larger_power = |a: u128, b: u128| (b | OVERFLOW).wrapping_sub(a) & OVERFLOW == OVERFLOW;
         has_no_larger_power(self.high, other.high) && has_no_larger_power(self.low, other.low)
     }
 
     /// Returns the greatest common divisor of two monomials.
-    pub fn common(self, other: Monomial) -> Monomial {
-        let common_power_of_atom =
-            |(atom, power): (usize, u8)| Monomial::bits(atom, power.min(other.power(atom)).into());
-        self.factors().map(common_power_of_atom).fold(Monomial::ONE, Monomial::or)
+    pub fn greatest_common_divisor(self, other: Monomial) -> Monomial {
+        let common_power_of_atom = |(atom, power): (usize, u8)| {
+            Monomial::power_bits(atom, power.min(other.power_of_atom(atom)).into())
+        };
+        self.atoms_with_powers().map(common_power_of_atom).fold(Monomial::ONE, Monomial::union_of_bits)
     }
 
     /// Returns the degree of the monomial: the sum of its powers.
     pub fn degree(self) -> u32 {
-        self.factors().map(|(_, power)| u32::from(power)).sum()
+        self.atoms_with_powers().map(|(_, power)| u32::from(power)).sum()
     }
 
     /// Returns the union of the bits of two masks.
-    pub fn or(self, other: Monomial) -> Monomial {
+    pub fn union_of_bits(self, other: Monomial) -> Monomial {
         Monomial { high: self.high | other.high, low: self.low | other.low }
     }
 
     /// Returns the bits that are in a mask.
-    pub fn only(self, mask: Monomial) -> Monomial {
+    pub fn restrict_to_mask(self, mask: Monomial) -> Monomial {
         Monomial { high: self.high & mask.high, low: self.low & mask.low }
     }
 
     /// Returns the bits that are not in a mask.
-    pub fn cleared(self, mask: Monomial) -> Monomial {
+    pub fn clear_mask(self, mask: Monomial) -> Monomial {
         Monomial { high: self.high & !mask.high, low: self.low & !mask.low }
     }
 
     /// Returns true if the mask shares a bit with this monomial.
-    pub fn meets(self, mask: Monomial) -> bool {
-        self.only(mask) != Monomial::ONE
+    pub fn intersects_mask(self, mask: Monomial) -> bool {
+        self.restrict_to_mask(mask) != Monomial::ONE
     }
 }

@@ -2,12 +2,12 @@
 
 use super::*;
 use crate::algebra::normal::Normal;
-use crate::algebra::trigonometry::simplified;
+use crate::algebra::trigonometry::simplify_trigonometry;
 use crate::expr::eval::eval_one;
 use crate::expr::{Expr, Graph};
 
 /// Returns the rank of a symbol: the first three are parameters, all others positions.
-pub fn rank(symbol: Symbol) -> Rank {
+pub fn rank_of_symbol(symbol: Symbol) -> Rank {
     if symbol.0 < 3 { Rank::Parameter } else { Rank::Position }
 }
 
@@ -27,9 +27,9 @@ impl Random {
     }
 }
 
-fn random<'g>(graph: &'g Graph, r: &mut Random, depth: u32, functions: bool) -> Expr<'g> {
+fn random_expression<'g>(graph: &'g Graph, r: &mut Random, depth: u32, functions: bool) -> Expr<'g> {
     let pick = if depth == 0 { 0 } else { r.number_below(if functions { 12 } else { 9 }) };
-    let random_subexpression = |r: &mut Random| random(graph, r, depth - 1, functions);
+    let random_subexpression = |r: &mut Random| random_expression(graph, r, depth - 1, functions);
     match pick {
         0 if r.number_below(4) == 0 => graph.num(r.number_below(9) as f64 - 4.0),
         0 => graph.symbol(Symbol(r.number_below(6) as u32)),
@@ -43,7 +43,7 @@ fn random<'g>(graph: &'g Graph, r: &mut Random, depth: u32, functions: bool) -> 
         }
         9 => random_subexpression(r) / (random_subexpression(r).square() + graph.one()),
         10 => (random_subexpression(r).square() + graph.one()).sqrt(),
-        _ => random_subexpression(r).call(Function::Tanh),
+        _ => random_subexpression(r).apply_function(Function::Tanh),
     }
 }
 
@@ -57,14 +57,14 @@ fn random_expressions_keep_their_values() {
     let mut found = 0;
     for _ in 0..400 {
         let graph = Graph::new();
-        let e = random(&graph, &mut r, 5, true);
+        let e = random_expression(&graph, &mut r, 5, true);
         let expected = eval_one(e, &value_of);
-        let mut normal = Normal::new(&graph, rank);
+        let mut normal = Normal::new(&graph, rank_of_symbol);
         let Some(p) = normal.normal_form(e) else { continue };
-        assert_near(normal.ring.evaluate(&p, &value_of), expected, &format!("{e:?}"));
-        let Some(short) = simplified(&mut normal.ring, &p) else { continue };
+        assert_near(normal.ring.evaluate_polynomial(&p, &value_of), expected, &format!("{e:?}"));
+        let Some(short) = simplify_trigonometry(&mut normal.ring, &p) else { continue };
         assert!(short.terms.len() <= p.terms.len());
-        assert_near(normal.ring.evaluate(&short, &value_of), expected, &format!("{e:?}"));
+        assert_near(normal.ring.evaluate_polynomial(&short, &value_of), expected, &format!("{e:?}"));
         found += 1;
     }
     assert!(found > 300, "only {found} of 400 are within the limits");
@@ -76,18 +76,18 @@ fn normal_forms_of_normal_forms_are_the_same() {
     let mut r = Random(77);
     for _ in 0..200 {
         let graph = Graph::new();
-        let e = random(&graph, &mut r, 5, false);
-        let mut normal = Normal::new(&graph, rank);
+        let e = random_expression(&graph, &mut r, 5, false);
+        let mut normal = Normal::new(&graph, rank_of_symbol);
         let Some(p) = normal.normal_form(e) else { continue };
-        let Some(short) = simplified(&mut normal.ring, &p) else { continue };
-        let again = normal.normal_form(expression(&graph, &normal.ring, &short)).unwrap();
-        same(&p, &again);
-        let shorter = simplified(&mut normal.ring, &again).unwrap();
-        same(&short, &shorter);
+        let Some(short) = simplify_trigonometry(&mut normal.ring, &p) else { continue };
+        let again = normal.normal_form(polynomial_to_expression(&graph, &normal.ring, &short)).unwrap();
+        assert_same_polynomial(&p, &again);
+        let shorter = simplify_trigonometry(&mut normal.ring, &again).unwrap();
+        assert_same_polynomial(&short, &shorter);
     }
 }
 
-fn same(a: &Polynomial, b: &Polynomial) {
+fn assert_same_polynomial(a: &Polynomial, b: &Polynomial) {
     assert_eq!(a.terms.len(), b.terms.len(), "{a:?} {b:?}");
     for (s, t) in a.terms.iter().zip(&b.terms) {
         assert_eq!(s.monomial, t.monomial);
@@ -116,33 +116,40 @@ fn identities_are_zero() {
             (x.square() + y).sqrt().square() - x.square() - y,
             graph.num(0.1) * x + graph.num(0.2) * x - graph.num(0.3) * x,
         ];
-        let mut normal = Normal::new(graph, rank);
+        let mut normal = Normal::new(graph, rank_of_symbol);
         zeros.iter().map(|e| normal.normal_form(*e).unwrap().terms.len()).collect()
     });
 }
 
 #[test]
 fn monomials_multiply_and_divide() {
-    let (x, y) = (Monomial::atom(2), Monomial::atom(40));
-    let product = x.times(x).and_then(|m| m.times(y)).unwrap();
-    assert_eq!(product.factors().collect::<Vec<_>>(), [(2, 2), (40, 1)]);
-    assert_eq!(product.quotient(x), x.times(y).unwrap());
-    assert!(x.divides(product) && !product.divides(x) && !Monomial::atom(3).divides(product));
-    assert_eq!(product.common(x.times(Monomial::atom(3)).unwrap()), x);
+    let (x, y) = (Monomial::first_power_of_atom(2), Monomial::first_power_of_atom(40));
+    let product = x.checked_product(x).and_then(|m| m.checked_product(y)).unwrap();
+    assert_eq!(product.atoms_with_powers().collect::<Vec<_>>(), [(2, 2), (40, 1)]);
+    assert_eq!(product.quotient(x), x.checked_product(y).unwrap());
+    assert!(
+        x.is_divisor_of(product)
+            && !product.is_divisor_of(x)
+            && !Monomial::first_power_of_atom(3).is_divisor_of(product)
+    );
+    assert_eq!(
+        product.greatest_common_divisor(x.checked_product(Monomial::first_power_of_atom(3)).unwrap()),
+        x
+    );
     assert_eq!(product.degree(), 3);
-    assert_eq!((0..8).try_fold(Monomial::ONE, |m, _| m.times(x)), None);
+    assert_eq!((0..8).try_fold(Monomial::ONE, |m, _| m.checked_product(x)), None);
 }
 
 #[test]
 fn what_grows_too_large_is_given_up() {
     let graph = Graph::new();
     let sum = (0..6).fold(graph.one(), |s, k| s + graph.symbol(Symbol(k)));
-    let mut normal = Normal::new(&graph, rank);
+    let mut normal = Normal::new(&graph, rank_of_symbol);
     assert_eq!(normal.normal_form(sum).unwrap().terms.len(), 7);
     assert!(normal.normal_form(sum.pow(graph.num(7.0))).is_none());
     let atoms = (0..70).fold(graph.one(), |s, k| s + graph.symbol(Symbol(k)));
-    assert!(Normal::new(&graph, rank).normal_form(atoms).is_none());
+    assert!(Normal::new(&graph, rank_of_symbol).normal_form(atoms).is_none());
     let angles = (0..9).fold(graph.one(), |s, k| s + graph.symbol(Symbol(k)).sin());
-    assert!(Normal::new(&graph, rank).normal_form(angles).is_none());
-    assert!(Normal::new(&graph, rank).normal_form(graph.one() / graph.zero()).is_none());
+    assert!(Normal::new(&graph, rank_of_symbol).normal_form(angles).is_none());
+    assert!(Normal::new(&graph, rank_of_symbol).normal_form(graph.one() / graph.zero()).is_none());
 }

@@ -24,15 +24,15 @@ pub struct FrameChoice<'g> {
 
 impl<'g> FrameChoice<'g> {
     /// Returns all frame choices that may be the cheapest.
-    pub fn all(
+    pub fn all_frame_choices(
         model: &Model<'g>,
         passes: Passes,
         specialisation: Specialisation,
         speeds: Option<&Rc<InSpeeds<'g>>>,
     ) -> Vec<FrameChoice<'g>> {
-        let mut choices = vec![passes::variants(model, passes)];
+        let mut choices = vec![passes::model_variants(model, passes)];
         if passes.frames && model.nv() <= COMPARED_VELOCITIES {
-            choices.push(passes::variants(model, Passes { frames: false, ..passes }));
+            choices.push(passes::model_variants(model, Passes { frames: false, ..passes }));
         }
         if passes.parallel {
             let common: Vec<Vec<Variant<'g>>> =
@@ -62,7 +62,7 @@ impl<'g> FrameChoice<'g> {
         own.is_none_or(|own| {
             let [masses, recursions] = [
                 variants.mass_matrices().take(1).collect(),
-                variants.recursions(true).take(1).collect::<Vec<_>>(),
+                variants.inverse_dynamics_candidates(true).take(1).collect::<Vec<_>>(),
             ];
             size_of_first_candidates(&masses, &recursions)
                 .is_none_or(|other| other <= own + own / SIMILAR_AT_FIRST)
@@ -71,13 +71,14 @@ impl<'g> FrameChoice<'g> {
 
     fn new(variants: Variants<'g>) -> FrameChoice<'g> {
         let masses: Vec<Candidate<'g>> = variants.mass_matrices().collect();
-        let recursions: Vec<Candidate<'g>> = variants.recursions(true).collect();
-        let size = smallest(&masses).unwrap_or_default() + smallest(&recursions).unwrap_or_default();
+        let recursions: Vec<Candidate<'g>> = variants.inverse_dynamics_candidates(true).collect();
+        let size =
+            smallest_size(&masses).unwrap_or_default() + smallest_size(&recursions).unwrap_or_default();
         FrameChoice { variants, masses, recursions, size }
     }
 }
 
 /// Returns the size of the candidate with the smallest outputs.
-pub fn smallest(all: &[Candidate<'_>]) -> Option<usize> {
+pub fn smallest_size(all: &[Candidate<'_>]) -> Option<usize> {
     all.iter().map(|list| list.size).min()
 }

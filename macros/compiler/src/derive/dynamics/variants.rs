@@ -51,7 +51,7 @@ impl<'g> Variants<'g> {
         };
         let groups = match all.as_slice() {
             [any, ..] if passes.lanes && specialisation == Specialisation::None && speeds.is_none() => {
-                vectorise::find(&any.model, &joints)
+                vectorise::find_limb_groups(&any.model, &joints)
             }
             _ => Vec::new(),
         };
@@ -67,14 +67,18 @@ impl<'g> Variants<'g> {
     }
 
     pub fn find_bias(&mut self) {
-        let (variant, program) = self.specialisation.cheapest_of(self.recursions(false));
-        let simd = self.recursions_in_lanes(false).map(|list| self.specialisation.sized(list));
-        let simd = self.specialisation.programs(simd).into_iter().min_by_key(|(_, program)| program.cost());
+        let (variant, program) = self.specialisation.cheapest_of(self.inverse_dynamics_candidates(false));
+        let simd = self.recursions_in_lanes(false).map(|list| self.specialisation.candidate_with_size(list));
+        let simd = self
+            .specialisation
+            .candidate_programs(simd)
+            .into_iter()
+            .min_by_key(|(_, program)| program.estimated_cost());
         self.bias = Bias { program, variant, simd };
     }
 
     /// Returns the variants of the model that serve all functions.
-    pub fn plain(&self) -> impl Iterator<Item = &Model<'g>> {
+    pub fn general_variants(&self) -> impl Iterator<Item = &Model<'g>> {
         self.all.iter().filter(|variant| !variant.for_inverse_dynamics).map(|variant| &variant.model)
     }
 
@@ -85,45 +89,48 @@ impl<'g> Variants<'g> {
     }
 
     /// Returns the outputs of a function for each variant of the model.
-    pub fn candidates(
+    pub fn candidate_outputs(
         &self,
         role: Role,
         outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>,
     ) -> impl Iterator<Item = Candidate<'g>> {
-        self.plain().map(outputs).map(move |list| self.candidate(role, list))
+        self.general_variants().map(outputs).map(move |list| self.candidate_in_speeds(role, list))
     }
 
     /// Returns outputs as a candidate, transformed to generalized speeds if there are any.
-    fn candidate(&self, role: Role, list: Vec<Expr<'g>>) -> Candidate<'g> {
+    fn candidate_in_speeds(&self, role: Role, list: Vec<Expr<'g>>) -> Candidate<'g> {
         match &self.speeds {
-            None => self.specialisation.sized(list),
-            Some(speeds) => self.specialisation.sized(speeds.results(role, &list)),
+            None => self.specialisation.candidate_with_size(list),
+            Some(speeds) => self.specialisation.candidate_with_size(speeds.transform_results(role, &list)),
         }
     }
 
     /// Returns the program of the variant in which the function takes the fewest operations.
-    pub fn cheapest(&self, role: Role, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
-        self.specialisation.cheapest(self.candidates(role, outputs))
+    pub fn cheapest_program(&self, role: Role, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
+        self.specialisation.cheapest_program(self.candidate_outputs(role, outputs))
     }
 
     /// Returns the program of the variant with the smallest outputs. This is faster than
-    /// [`cheapest`](Self::cheapest), since only one program is lowered.
-    pub fn smallest(&self, role: Role, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
-        let smallest = self.candidates(role, outputs).min_by_key(|list| list.size);
-        smallest.map_or_else(Program::default, |list| self.specialisation.program(&list.outputs))
+    /// [`cheapest_program`](Self::cheapest_program), since only one program is lowered.
+    pub fn smallest_program(&self, role: Role, outputs: impl FnMut(&Model<'g>) -> Vec<Expr<'g>>) -> Program {
+        let smallest = self.candidate_outputs(role, outputs).min_by_key(|list| list.size);
+        smallest.map_or_else(Program::default, |list| self.specialisation.lower_to_program(&list.outputs))
     }
 
     pub fn mass_matrices(&self) -> impl Iterator<Item = Candidate<'g>> {
-        self.candidates(Role::Metric, |model| crba::mass_matrix(model, &self.joints).concat())
+        self.candidate_outputs(Role::Metric, |model| crba::mass_matrix(model, &self.joints).concat())
     }
 
     /// Returns inverse dynamics, or the bias if `accelerations` is false.
-    pub fn recursions(&self, accelerations: bool) -> impl Iterator<Item = Candidate<'g>> {
+    pub fn inverse_dynamics_candidates(&self, accelerations: bool) -> impl Iterator<Item = Candidate<'g>> {
         self.all.iter().map(move |variant| {
-            let (v, a) = (mechanics::velocities(&variant.model), mechanics::accelerations(&variant.model));
+            let (v, a) = (
+                mechanics::velocity_symbols(&variant.model),
+                mechanics::acceleration_symbols(&variant.model),
+            );
             let Some(speeds) = &self.speeds else {
                 let a = accelerations.then_some(a.as_slice());
-                return self.specialisation.sized(rnea::inverse_dynamics(
+                return self.specialisation.candidate_with_size(rnea::inverse_dynamics(
                     &variant.model,
                     &self.joints,
                     &v,
@@ -132,8 +139,12 @@ impl<'g> Variants<'g> {
             };
             // At zero rates of the speeds, joint accelerations may be different from zero.
             let all = rnea::inverse_dynamics(&variant.model, &self.joints, &v, Some(&a));
-            let all = speeds.results(Role::Forces, &all);
-            self.specialisation.sized(if accelerations { all } else { speeds.without_accelerations(&all) })
+            let all = speeds.transform_results(Role::Forces, &all);
+            self.specialisation.candidate_with_size(if accelerations {
+                all
+            } else {
+                speeds.without_accelerations(&all)
+            })
         })
     }
 
@@ -142,16 +153,16 @@ impl<'g> Variants<'g> {
     }
 
     /// Returns the outputs of forward dynamics by the articulated-body algorithm.
-    pub fn articulated(&self) -> Vec<Candidate<'g>> {
+    pub fn articulated_body_candidates(&self) -> Vec<Candidate<'g>> {
         let Some(bias) = self.all.get(self.bias.variant).map(|variant| &variant.model) else {
             return Vec::new();
         };
-        let v = mechanics::velocities(bias);
+        let v = mechanics::velocity_symbols(bias);
         let wrenches = rnea::wrenches(bias, &self.joints, &v, None);
-        let tau = mechanics::efforts(bias);
-        let all = self.plain().filter_map(|model| {
+        let tau = mechanics::generalized_force_symbols(bias);
+        let all = self.general_variants().filter_map(|model| {
             let list = aba::forward_dynamics(model, &self.joints, wrenches.clone(), &tau)?;
-            Some(self.candidate(Role::Accelerations(0), list))
+            Some(self.candidate_in_speeds(Role::Accelerations(0), list))
         });
         all.collect()
     }
@@ -164,30 +175,31 @@ impl<'g> Variants<'g> {
     }
 
     /// Returns forward dynamics by factorisation of the mass matrix.
-    pub fn factorised(&self) -> Vec<Candidate<'g>> {
-        let r = self.unbalanced();
+    pub fn factorisation_candidates(&self) -> Vec<Candidate<'g>> {
+        let r = self.unbalanced_forces();
         let solve_for_accelerations = |model: &Model<'g>| {
             let mass = crba::mass_matrix(model, &self.joints);
             match model.acceleration_forces.is_empty() {
-                true => ldl::solve(mass, r.clone(), &self.joints),
-                false => Factor::new(&added_mass::effective(model, &mass), &self.joints).solve(r.clone()),
+                true => ldl::solve_symmetric(mass, r.clone(), &self.joints),
+                false => Factor::new(&added_mass::effective_mass_matrix(model, &mass), &self.joints)
+                    .solve_factored(r.clone()),
             }
         };
-        self.candidates(Role::Accelerations(0), solve_for_accelerations).collect()
+        self.candidate_outputs(Role::Accelerations(0), solve_for_accelerations).collect()
     }
 
     /// Returns the forces that accelerate the mechanism, `τ − h`.
-    fn unbalanced(&self) -> Vec<Expr<'g>> {
+    fn unbalanced_forces(&self) -> Vec<Expr<'g>> {
         let Some(bias) = self.all.get(self.bias.variant).map(|variant| &variant.model) else {
             return Vec::new();
         };
-        let h = rnea::inverse_dynamics(bias, &self.joints, &mechanics::velocities(bias), None);
-        mechanics::efforts(bias).iter().zip(h).map(|(tau, h)| *tau - h).collect()
+        let h = rnea::inverse_dynamics(bias, &self.joints, &mechanics::velocity_symbols(bias), None);
+        mechanics::generalized_force_symbols(bias).iter().zip(h).map(|(tau, h)| *tau - h).collect()
     }
 }
 
 /// Returns the number of multipliers whose individual accelerations are outputs.
-fn answers(model: &Model<'_>) -> usize {
+fn responding_multiplier_count(model: &Model<'_>) -> usize {
     if model.is_overdetermined() { model.constraints.len() } else { 0 }
 }
 
@@ -195,15 +207,15 @@ impl<'g> Variants<'g> {
     /// Returns accelerations and multipliers under the forces `tau`.
     pub fn constrained_dynamics(&self) -> Program {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
-        let (force, biases) = (self.unbalanced(), constraints::biases(&variant.model));
-        if !friction::slipping(&variant.model).is_empty() {
-            return self.slipping(Role::Accelerations(0), &force, &biases);
+        let (force, biases) = (self.unbalanced_forces(), constraints::constraint_biases(&variant.model));
+        if !friction::sliding_contact_constraints(&variant.model).is_empty() {
+            return self.slipping_contacts_program(Role::Accelerations(0), &force, &biases);
         }
         let Some(pivots) = &variant.model.dependent else {
-            let answers = answers(&variant.model);
-            return self.multipliers(Role::Accelerations(answers), &force, &biases);
+            let answers = responding_multiplier_count(&variant.model);
+            return self.multipliers_program(Role::Accelerations(answers), &force, &biases);
         };
-        self.cheapest(Role::Accelerations(0), |model| {
+        self.cheapest_program(Role::Accelerations(0), |model| {
             let mass = crba::mass_matrix(model, &self.joints);
             constraints::solve_by_speeds(model, &mass, &force, biases.clone(), pivots)
         })
@@ -213,37 +225,37 @@ impl<'g> Variants<'g> {
     pub fn constraint_response(&self) -> Program {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
         let (force, bias) = constraints::argument_symbols(&variant.model);
-        self.multipliers(Role::Answers(answers(&variant.model)), &force, &bias)
+        self.multipliers_program(Role::Answers(responding_multiplier_count(&variant.model)), &force, &bias)
     }
 
     /// Returns the response of sliding contacts with friction to forces and biases that are arguments.
     pub fn slipping_response(&self) -> Program {
         let [variant, ..] = self.all.as_slice() else { return Program::default() };
         let (force, bias) = constraints::argument_symbols(&variant.model);
-        self.slipping(Role::Answers(0), &force, &bias)
+        self.slipping_contacts_program(Role::Answers(0), &force, &bias)
     }
 
-    fn multipliers(&self, role: Role, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
-        self.cheapest(role, |model| {
+    fn multipliers_program(&self, role: Role, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
+        self.cheapest_program(role, |model| {
             let rows = constraints::jacobian(model);
             if model.is_overdetermined() {
                 let mass = crba::mass_matrix(model, &self.joints);
-                return constraints::responses(&mass, &rows, force.to_vec(), bias, &self.joints);
+                return constraints::minimum_norm_terms(&mass, &rows, force.to_vec(), bias, &self.joints);
             }
-            let (mass, force) = self.loaded(model, force, bias);
-            constraints::solve(&mass, &rows, force, bias.to_vec())
+            let (mass, force) = self.compensated_mass_and_forces(model, force, bias);
+            constraints::solve_constrained(&mass, &rows, force, bias.to_vec())
         })
     }
 
-    fn slipping(&self, role: Role, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
-        self.cheapest(role, |model| {
-            let (mass, force) = self.loaded(model, force, bias);
-            friction::solve(model, &mass, force, bias.to_vec())
+    fn slipping_contacts_program(&self, role: Role, force: &[Expr<'g>], bias: &[Expr<'g>]) -> Program {
+        self.cheapest_program(role, |model| {
+            let (mass, force) = self.compensated_mass_and_forces(model, force, bias);
+            friction::solve_with_friction(model, &mass, force, bias.to_vec())
         })
     }
 
     /// Returns mass matrix and forces with the terms that compensate for coordinates without inertia.
-    fn loaded(
+    fn compensated_mass_and_forces(
         &self,
         model: &Model<'g>,
         force: &[Expr<'g>],

@@ -1,12 +1,12 @@
 //! Characteristic polynomial of linear equations: the determinant of `M s² + C s + K`, bordered by the
 //! constraints, expanded by minors.
 
-use super::parts::{Coefficients, rank};
-use super::rest::vanishes;
+use super::parts::{Coefficients, rank_of_symbol};
+use super::rest::vanishes_identically;
 use crate::algebra::factor::without_noise;
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
-use crate::algebra::trigonometry::simplified;
+use crate::algebra::trigonometry::simplify_trigonometry;
 use crate::expr::{Expr, Node, Symbol};
 use crate::mechanism::{Model, Rule};
 use std::collections::BTreeMap;
@@ -43,7 +43,7 @@ pub fn characteristic_polynomial<'g>(model: &Model<'g>, all: &Coefficients<'g>) 
     if nv > VELOCITIES || rows > ROWS {
         return None;
     }
-    let mut normal = Normal::new(model.graph, rank);
+    let mut normal = Normal::new(model.graph, rank_of_symbol);
     normal.ring.allow_more();
     let mut matrix: Vec<Vec<OfRoot>> = Vec::new();
     for k in 0..rows {
@@ -59,18 +59,18 @@ pub fn characteristic_polynomial<'g>(model: &Model<'g>, all: &Coefficients<'g>) 
         matrix.push(row);
     }
     let conservative = is_conservative(model, all, &mut normal)?;
-    let determinant = determinant(&matrix, &mut normal.ring)?;
+    let determinant = determinant_of_polynomials(&matrix, &mut normal.ring)?;
     let mut coefficients = Vec::new();
     for p in determinant {
         let p = without_noise(&normal.ring, &p);
-        let p = simplified(&mut normal.ring, &p)?;
-        coefficients.push(if vanishes(&normal.ring, &p) { Polynomial::default() } else { p });
+        let p = simplify_trigonometry(&mut normal.ring, &p)?;
+        coefficients.push(if vanishes_identically(&normal.ring, &p) { Polynomial::default() } else { p });
     }
     while coefficients.last().is_some_and(|p| p.terms.is_empty()) {
         coefficients.pop();
     }
     let terms: usize = coefficients.iter().map(|p| p.terms.len()).sum();
-    let positive = positive(model);
+    let positive = positive_parameters(model);
     let degree = coefficients.len().checked_sub(1)?;
     (terms <= TERMS && (1..=DEGREE).contains(&degree)).then_some(Characteristic {
         ring: normal.ring,
@@ -81,7 +81,7 @@ pub fn characteristic_polynomial<'g>(model: &Model<'g>, all: &Coefficients<'g>) 
 }
 
 /// Returns the parameters that are masses or otherwise required to be positive.
-fn positive(model: &Model<'_>) -> Vec<Symbol> {
+fn positive_parameters(model: &Model<'_>) -> Vec<Symbol> {
     let mut found = Vec::new();
     for requirement in &model.requirements {
         if let (Rule::Mass | Rule::Positive, [value]) = (requirement.rule, requirement.values.as_slice())
@@ -104,7 +104,7 @@ fn is_conservative<'g>(model: &Model<'g>, all: &Coefficients<'g>, normal: &mut N
     }
     let mut zero = |e: Expr<'g>| -> Option<bool> {
         let p = normal.normal_form(e)?;
-        Some(vanishes(&normal.ring, &p))
+        Some(vanishes_identically(&normal.ring, &p))
     };
     for i in 0..nv {
         for j in 0..nv {
@@ -117,9 +117,9 @@ fn is_conservative<'g>(model: &Model<'g>, all: &Coefficients<'g>, normal: &mut N
 }
 
 /// Returns the determinant of a matrix of polynomials, built up from minors of its last rows.
-fn determinant(matrix: &[Vec<OfRoot>], ring: &mut Ring) -> Option<OfRoot> {
+fn determinant_of_polynomials(matrix: &[Vec<OfRoot>], ring: &mut Ring) -> Option<OfRoot> {
     let n = matrix.len();
-    let mut minors: BTreeMap<u32, OfRoot> = BTreeMap::from([(0, vec![Polynomial::number(1.0)])]);
+    let mut minors: BTreeMap<u32, OfRoot> = BTreeMap::from([(0, vec![Polynomial::from_number(1.0)])]);
     for row in matrix.iter().rev() {
         let mut next: BTreeMap<u32, OfRoot> = BTreeMap::new();
         for (columns, minor) in &minors {
@@ -143,11 +143,11 @@ fn determinant(matrix: &[Vec<OfRoot>], ring: &mut Ring) -> Option<OfRoot> {
 fn add_product(sum: &mut OfRoot, a: &OfRoot, b: &OfRoot, sign: f64, ring: &mut Ring) -> Option<()> {
     for (i, a) in a.iter().enumerate().filter(|(_, a)| !a.terms.is_empty()) {
         for (j, b) in b.iter().enumerate().filter(|(_, b)| !b.terms.is_empty()) {
-            let product = ring.times(a, b)?.scaled(sign);
+            let product = ring.multiply_and_reduce(a, b)?.multiplied_by_number(sign);
             if sum.len() <= i + j {
                 sum.resize(i + j + 1, Polynomial::default());
             }
-            sum[i + j] = ring.plus(&sum[i + j], &product)?;
+            sum[i + j] = ring.add_within_limits(&sum[i + j], &product)?;
         }
     }
     Some(())

@@ -7,12 +7,12 @@ use crate::mechanism::{Equilibrium, Model, Quantity};
 
 /// Returns the symbol of a deviation: of the coordinate whose rate is velocity `k`; after these, of the
 /// states.
-pub fn deviation(k: usize) -> Quantity {
+pub fn deviation_symbol(k: usize) -> Quantity {
     Quantity::Deviation(k)
 }
 
 /// Returns the symbol of the multiplier of a constraint, at rest or as a deviation.
-pub fn multiplier(k: usize) -> Quantity {
+pub fn multiplier_symbol(k: usize) -> Quantity {
     Quantity::Force(k)
 }
 
@@ -31,13 +31,17 @@ pub struct Coefficients<'g> {
 
 /// Returns the expression behind each row of the linear equations: force balances, residuals or rates of the
 /// constraints, and negative rates of the states.
-pub fn rows<'g>(model: &Model<'g>, balance: &[Expr<'g>], at: &Equilibrium<'g>) -> Vec<Expr<'g>> {
+pub fn linear_equation_rows<'g>(
+    model: &Model<'g>,
+    balance: &[Expr<'g>],
+    at: &Equilibrium<'g>,
+) -> Vec<Expr<'g>> {
     let kept = model.constraints.iter().map(|c| c.residual.unwrap_or(c.rate));
     balance.iter().copied().chain(kept).chain(at.states.iter().map(|state| -state.rate)).collect()
 }
 
 /// Returns the rank of a symbol of the linear equations, which determines its position in a printed product.
-pub fn rank(symbol: Symbol) -> Rank {
+pub fn rank_of_symbol(symbol: Symbol) -> Rank {
     match Quantity::from_symbol(symbol) {
         Quantity::Deviation(_) => Rank::Position,
         Quantity::Velocity(_) | Quantity::Laplace => Rank::Rate,

@@ -2,17 +2,17 @@
 //! suitable multipliers the forces balance. Residuals are proven to be zero as polynomials, or tested
 //! numerically at random parameters.
 
-use super::parts::{Coefficients, deviation, multiplier, rows as linear_rows};
+use super::parts::{Coefficients, deviation_symbol, linear_equation_rows as linear_rows, multiplier_symbol};
 use crate::algebra::factor::without_noise;
 use crate::algebra::normal::Normal;
 use crate::algebra::polynomial::{Polynomial, Ring};
-use crate::algebra::trigonometry::simplified;
+use crate::algebra::trigonometry::simplify_trigonometry;
 use crate::diag::Diagnostics;
 use crate::equations::print::Writer;
 use crate::expr::diff::TINY;
-use crate::expr::eval::{Tape, needed};
+use crate::expr::eval::{Tape, nodes_in_order};
 use crate::expr::exact::replace_exactly;
-use crate::expr::sample::sample;
+use crate::expr::sample::sample_of_symbol;
 use crate::expr::{Expr, Extreme, Function, Node, Symbol};
 use crate::mechanism::{Chart, DRY_FRICTION, Equilibrium, Model, Quantity, Supplied};
 
@@ -45,7 +45,7 @@ impl<'g> Rest<'g> {
     }
 
     /// Evaluates expressions at the equilibrium.
-    pub fn evaluate(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn evaluate_at_rest(&self, e: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let zero_like_expression = |e: &Expr<'g>| Some(e.zero());
         let first = e.first();
         let moved = replace_exactly(e, &|s| match Quantity::from_symbol(s) {
@@ -63,20 +63,20 @@ impl<'g> Rest<'g> {
 
     /// Returns the coordinates, inputs, states and multipliers that may differ from zero, with their values
     /// at rest.
-    pub fn values(&self, model: &Model<'g>, at: &Equilibrium<'g>) -> Vec<(Quantity, Expr<'g>)> {
+    pub fn nonzero_rest_values(&self, model: &Model<'g>, at: &Equilibrium<'g>) -> Vec<(Quantity, Expr<'g>)> {
         let nv = model.nv();
         // Identity orientations are not printed.
-        let lasts: Vec<usize> = quaternions(model).map(|first| first + 3).collect();
-        let is_plain = |k: &usize| !lasts.contains(k) || self.configuration[*k].value() != Some(1.0);
+        let lasts: Vec<usize> = quaternion_indices(model).map(|first| first + 3).collect();
+        let is_plain = |k: &usize| !lasts.contains(k) || self.configuration[*k].constant_value() != Some(1.0);
         let all = (0..self.configuration.len()).filter(is_plain);
         let configuration = all.map(|k| (Quantity::Configuration(k), self.configuration[k]));
         let inputs = (0..).map(Quantity::Input).zip(self.inputs.iter().copied());
-        let states = at.states.iter().enumerate().map(|(k, state)| (deviation(nv + k), state.value));
-        let multipliers = (0..).map(multiplier).zip(self.multipliers.iter().copied());
+        let states = at.states.iter().enumerate().map(|(k, state)| (deviation_symbol(nv + k), state.value));
+        let multipliers = (0..).map(multiplier_symbol).zip(self.multipliers.iter().copied());
         let all: Vec<(Quantity, Expr<'g>)> =
             configuration.chain(inputs).chain(states).chain(multipliers).collect();
         let (what, values): (Vec<Quantity>, Vec<Expr<'g>>) = all.into_iter().unzip();
-        what.into_iter().zip(self.evaluate(&values)).collect()
+        what.into_iter().zip(self.evaluate_at_rest(&values)).collect()
     }
 }
 
@@ -85,23 +85,23 @@ type Refusal = (String, &'static str);
 
 /// Checks an equilibrium and determines its multipliers. Returns `None` with an error in `cx` if forces do
 /// not balance.
-pub fn check<'g>(
+pub fn check_equilibrium<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
     balance: &[Expr<'g>],
     normal: &mut Normal<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Rest<'g>> {
-    match checked(model, at, balance, normal) {
+    match find_rest_state(model, at, balance, normal) {
         Ok(rest) => Some(rest),
         Err((what, help)) => {
-            cx.error(at.place.clone(), what).help(help);
+            cx.report_error(at.place.clone(), what).add_help(help);
             None
         }
     }
 }
 
-fn checked<'g>(
+fn find_rest_state<'g>(
     model: &Model<'g>,
     at: &Equilibrium<'g>,
     balance: &[Expr<'g>],
@@ -121,16 +121,16 @@ fn checked<'g>(
     }
     let kept = linear_rows(model, balance, at).split_off(balance.len());
     let all: Vec<Expr<'g>> = balance.iter().chain(&kept).copied().collect();
-    if let Some(what) = corner(&all, &rest) {
+    if let Some(what) = singular_function_at_rest(&all, &rest) {
         return Err((
             format!("a force has no derivative in `{name}`: `{what}` has a corner there"),
             "declare the equilibrium away from it, or round the corner off",
         ));
     }
     check_kept(model, at, &rest, &kept, normal)?;
-    let mut left = rest.evaluate(balance);
+    let mut left = rest.evaluate_at_rest(balance);
     if !model.constraints.is_empty() {
-        (rest.multipliers, left) = solved(model, &rest, balance).ok_or_else(|| {
+        (rest.multipliers, left) = solve_for_multipliers(model, &rest, balance).ok_or_else(|| {
             (
                 format!("the constraints depend on each other in `{name}`"),
                 "their forces are not determined there: leave out those that follow from others",
@@ -159,7 +159,7 @@ fn check_kept<'g>(
     normal: &mut Normal<'g>,
 ) -> Result<(), Refusal> {
     let name = &at.name;
-    for (c, row) in model.constraints.iter().zip(rest.evaluate(kept)) {
+    for (c, row) in model.constraints.iter().zip(rest.evaluate_at_rest(kept)) {
         is_zero(row, normal, model).map_err(|left| {
             (
                 format!("`{name}` does not satisfy the constraint `{}`: the residual is {left}", c.name),
@@ -169,14 +169,14 @@ fn check_kept<'g>(
         })?;
     }
     let rates: Vec<Expr<'g>> = model.constraints.iter().flat_map(|c| [c.rate, c.bias]).collect();
-    if rest.evaluate(&rates).into_iter().any(|rate| is_zero(rate, normal, model).is_err()) {
+    if rest.evaluate_at_rest(&rates).into_iter().any(|rate| is_zero(rate, normal, model).is_err()) {
         return Err((
             format!("constraints that are driven in time leave `{name}` no rest"),
             "linear equations with constant coefficients need constraints that stay the same",
         ));
     }
     let states: Vec<Expr<'g>> = at.states.iter().map(|state| state.rate).collect();
-    for (state, rate) in at.states.iter().zip(rest.evaluate(&states)) {
+    for (state, rate) in at.states.iter().zip(rest.evaluate_at_rest(&states)) {
         is_zero(rate, normal, model).map_err(|left| {
             let state = &model.parameters[state.parameter];
             (
@@ -190,7 +190,7 @@ fn check_kept<'g>(
 
 /// Returns the index of the first component of a quaternion whose length is not one, if any.
 fn not_unit<'g>(model: &Model<'g>, rest: &Rest<'g>, normal: &mut Normal<'g>) -> Option<usize> {
-    quaternions(model).find(|q| {
+    quaternion_indices(model).find(|q| {
         let components = &rest.configuration[*q..q + 4];
         let length = components.iter().fold(model.graph.zero(), |sum, c| sum + c.square());
         is_zero(length - model.graph.one(), normal, model).is_err()
@@ -198,24 +198,25 @@ fn not_unit<'g>(model: &Model<'g>, rest: &Rest<'g>, normal: &mut Normal<'g>) -> 
 }
 
 /// Returns the indices of the first components of all quaternions.
-fn quaternions(model: &Model<'_>) -> impl Iterator<Item = usize> {
-    model.charts.iter().filter_map(Chart::quaternion).map(|first| first.0)
+fn quaternion_indices(model: &Model<'_>) -> impl Iterator<Item = usize> {
+    model.charts.iter().filter_map(Chart::first_quaternion_index).map(|first| first.0)
 }
 
 /// Checks that an expression of the parameters is always zero. The error is the nonzero remainder as text.
 fn is_zero<'g>(e: Expr<'g>, normal: &mut Normal<'g>, model: &Model<'g>) -> Result<(), String> {
     let p = normal.normal_form(e).map(|p| without_noise(&normal.ring, &p));
-    let Some(p) = p.and_then(|p| simplified(&mut normal.ring, &p)) else {
+    let Some(p) = p.and_then(|p| simplify_trigonometry(&mut normal.ring, &p)) else {
         let tape = Tape::new(&[e]);
-        let zero = trials(|seed| Some(tape.values(&|s| parameter(s, seed))[0]));
+        let zero =
+            values_at_random_parameters(|seed| Some(tape.evaluate_at(&|s| random_parameter(s, seed))[0]));
         let zero = zero.len() >= ENOUGH && zero.iter().all(|value| value.abs() < ROUNDING);
         return if zero { Ok(()) } else { Err("that".to_string()) };
     };
-    if vanishes(&normal.ring, &p) {
+    if vanishes_identically(&normal.ring, &p) {
         return Ok(());
     }
-    let symbol_name = |symbol| super::super::written::name(model, &[], symbol).0;
-    let text = Writer::new(&normal.ring, &symbol_name).polynomial(&p);
+    let symbol_name = |symbol| super::super::written::name_and_derivative_order(model, &[], symbol).0;
+    let text = Writer::new(&normal.ring, &symbol_name).format_polynomial(&p);
     Err(match text.chars().count() > MAX_FORCE_CHARACTERS {
         true => format!("`{} …`", text.chars().take(MAX_FORCE_CHARACTERS).collect::<String>().trim_end()),
         false => format!("`{text}`"),
@@ -223,41 +224,41 @@ fn is_zero<'g>(e: Expr<'g>, normal: &mut Normal<'g>, model: &Model<'g>) -> Resul
 }
 
 /// Whether a polynomial is zero for all parameters: it has no terms, or its terms cancel numerically.
-pub fn vanishes(ring: &Ring, p: &Polynomial) -> bool {
+pub fn vanishes_identically(ring: &Ring, p: &Polynomial) -> bool {
     let parts: Vec<Polynomial> = p.terms.iter().map(|t| Polynomial { terms: vec![*t] }).collect();
     let relative_residual = |seed: u64| {
         let values: Vec<f64> =
-            parts.iter().map(|part| ring.evaluate(part, &|s| parameter(s, seed))).collect();
+            parts.iter().map(|part| ring.evaluate_polynomial(part, &|s| random_parameter(s, seed))).collect();
         let size: f64 = values.iter().map(|value| value.abs()).sum();
         Some(values.iter().sum::<f64>() / size)
     };
     if parts.is_empty() {
         return true;
     }
-    let found = trials(relative_residual);
+    let found = values_at_random_parameters(relative_residual);
     found.len() >= ENOUGH && found.iter().all(|part| part.abs() < ROUNDING)
 }
 
 /// Returns the first [`ENOUGH`] finite values at random parameters, or fewer if not enough are finite.
-pub fn trials(value: impl Fn(u64) -> Option<f64>) -> Vec<f64> {
+pub fn values_at_random_parameters(value: impl Fn(u64) -> Option<f64>) -> Vec<f64> {
     (0..TRIALS).filter_map(value).filter(|value| value.is_finite()).take(ENOUGH).collect()
 }
 
 /// Returns a random positive value for a parameter. Values of later seeds deviate further from one.
-pub fn parameter(s: Symbol, seed: u64) -> f64 {
-    sample(s, seed).powi(1 + (seed / 20).min(6) as i32)
+pub fn random_parameter(s: Symbol, seed: u64) -> f64 {
+    libm::pow(sample_of_symbol(s, seed), (1 + (seed / 20).min(6)) as f64)
 }
 
 /// Returns the name of a function whose argument at rest is at a kink, a jump, or a point with an infinite
 /// derivative.
-fn corner<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'static str> {
+fn singular_function_at_rest<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'static str> {
     let graph = e.first()?.graph();
     let mut suspects: Vec<(&'static str, Expr<'g>)> = Vec::new();
-    for id in needed(graph, e) {
+    for id in nodes_in_order(graph, e) {
         let expression_of_id = |id| graph.expr(id);
         match graph.node(id) {
             Node::Call(f @ (Function::Abs | Function::Signum | Function::Sqrt), a) => {
-                suspects.push((f.name(), expression_of_id(a)));
+                suspects.push((f.function_name(), expression_of_id(a)));
             }
             Node::Extreme(f, a, b) => {
                 let name = if f == Extreme::Max { "max" } else { "min" };
@@ -277,10 +278,11 @@ fn corner<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'static str> {
     };
     suspects.retain(|(_, argument)| depends_on_motion(argument));
     let arguments: Vec<Expr<'g>> = suspects.iter().map(|(_, argument)| *argument).collect();
-    let values = rest.evaluate(&arguments);
+    let values = rest.evaluate_at_rest(&arguments);
     let vanishes_numerically = |value: &Expr<'g>| {
         let tape = Tape::new(&[*value]);
-        let found = trials(|seed| Some(tape.values(&|s| parameter(s, seed))[0]));
+        let found =
+            values_at_random_parameters(|seed| Some(tape.evaluate_at(&|s| random_parameter(s, seed))[0]));
         found.len() >= ENOUGH && found.iter().all(|value| value.abs() < ROUNDING)
     };
     suspects.iter().zip(&values).find(|(_, value)| vanishes_numerically(value)).map(|((name, _), _)| *name)
@@ -288,7 +290,7 @@ fn corner<'g>(e: &[Expr<'g>], rest: &Rest<'g>) -> Option<&'static str> {
 
 /// Returns the multipliers, and the residuals of the force balance with them. `None` if constraints are
 /// linearly dependent.
-fn solved<'g>(
+fn solve_for_multipliers<'g>(
     model: &Model<'g>,
     rest: &Rest<'g>,
     balance: &[Expr<'g>],
@@ -301,16 +303,16 @@ fn solved<'g>(
         inputs: rest.inputs.clone(),
         states: rest.states.clone(),
     };
-    let right = without.evaluate(balance);
+    let right = without.evaluate_at_rest(balance);
     let jacobian: Vec<Vec<Expr<'g>>> =
-        crate::mechanics::constraints::jacobian(model).iter().map(|row| rest.evaluate(row)).collect();
+        crate::mechanics::constraints::jacobian(model).iter().map(|row| rest.evaluate_at_rest(row)).collect();
     // Each row is an equation of Jᵀ λ = force to be balanced.
     let mut rows: Vec<Vec<Expr<'g>>> =
         (0..model.nv()).map(|k| jacobian.iter().map(|row| row[k]).chain([right[k]]).collect()).collect();
     let mut left: Vec<usize> = (0..rows.len()).collect();
     let mut pivots = Vec::new();
     for column in 0..count {
-        let pivot_magnitude = |row: usize| size(rows[row][column]);
+        let pivot_magnitude = |row: usize| minimum_magnitude(rows[row][column]);
         let best = left.iter().copied().max_by(|a, b| pivot_magnitude(*a).total_cmp(&pivot_magnitude(*b)))?;
         if pivot_magnitude(best) < ROUNDING {
             return None;
@@ -332,27 +334,27 @@ fn solved<'g>(
 }
 
 /// Returns the minimum magnitude of an expression over several random values of the parameters.
-fn size(e: Expr<'_>) -> f64 {
+fn minimum_magnitude(e: Expr<'_>) -> f64 {
     let tape = Tape::new(&[e]);
-    trials(|seed| Some(tape.values(&|s| parameter(s, seed))[0]))
+    values_at_random_parameters(|seed| Some(tape.evaluate_at(&|s| random_parameter(s, seed))[0]))
         .into_iter()
         .map(f64::abs)
         .fold(f64::MAX, f64::min)
 }
 
 /// Returns the reason why coefficients are not finite; `None` if they are finite.
-pub fn unbounded(all: &Coefficients<'_>) -> Option<&'static str> {
+pub fn reason_for_unbounded(all: &Coefficients<'_>) -> Option<&'static str> {
     /// Larger values result from a division by [`TINY`] alone.
     const HUGE: f64 = 1e-6 / TINY;
     let entries: Vec<Expr<'_>> =
         all.orders.iter().chain([&all.inputs, &all.multipliers]).flatten().flatten().copied().collect();
     let tape = Tape::new(&entries);
     let largest_magnitude = |seed: u64| {
-        let values = tape.values(&|s| parameter(s, seed));
+        let values = tape.evaluate_at(&|s| random_parameter(s, seed));
         let largest = values.iter().map(|value| value.abs()).fold(0.0, f64::max);
         (values.iter().all(|value| value.is_finite()) && largest < HUGE).then_some(largest)
     };
-    let finite = trials(largest_magnitude).len() >= ENOUGH;
+    let finite = values_at_random_parameters(largest_magnitude).len() >= ENOUGH;
     (!finite).then_some(
         "a distance or an angle from which they are computed is singular there: declare the equilibrium \
          elsewhere, or write the force differently",

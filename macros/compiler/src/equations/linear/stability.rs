@@ -7,7 +7,7 @@
 
 use super::characteristic::Characteristic;
 use super::parts::ROOT;
-use super::rest::{parameter, trials, vanishes};
+use super::rest::{random_parameter, values_at_random_parameters, vanishes_identically};
 use crate::algebra::normal::inverse;
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Ring, Term};
 use crate::expr::{Function, Symbol};
@@ -49,17 +49,19 @@ pub enum Verdict {
 const TERMS: usize = 120;
 
 /// Analyses the stability. `None` if the sign of the leading coefficient depends on the parameters.
-pub fn analyse(c: Characteristic) -> Option<Stability> {
+pub fn analyse_stability(c: Characteristic) -> Option<Stability> {
     let Characteristic { mut ring, mut coefficients, conservative, positive: known } = c;
     let mut positive = known.clone();
     coefficients = without_even_divisors(&coefficients, &mut ring)?;
     let leading = coefficients.last()?;
-    let signs = trials(|seed| Some(ring.evaluate(leading, &|s| parameter(s, seed)).signum()));
+    let signs = values_at_random_parameters(|seed| {
+        Some(ring.evaluate_polynomial(leading, &|s| random_parameter(s, seed)).signum())
+    });
     let sign = *signs.first()?;
     if signs.iter().any(|other| *other != sign) {
         return None;
     }
-    let divided = divide(&ring, &mut coefficients, sign);
+    let divided = divide_by_common_monomial(&ring, &mut coefficients, sign);
     positive.extend(&divided);
     let divided: Vec<Symbol> = divided.into_iter().filter(|s| !known.contains(s)).collect();
     let zeros = coefficients.iter().take_while(|p| p.terms.is_empty()).count();
@@ -67,13 +69,15 @@ pub fn analyse(c: Characteristic) -> Option<Stability> {
     let even = rest.iter().skip(1).step_by(2).all(|p| p.terms.is_empty());
     let verdict = match (rest.len() - 1, even) {
         (0, _) => Verdict::Nothing,
-        (_, false) => asymptotic(&rest, &mut ring, &positive),
-        (_, true) => oscillation(&rest, conservative, &mut ring, &positive),
+        (_, false) => lienard_chipart_conditions(&rest, &mut ring, &positive),
+        (_, true) => oscillation_conditions(&rest, conservative, &mut ring, &positive),
     };
-    ring.atom(Atom::Symbol(ROOT.symbol()))?;
+    ring.monomial_of_atom(Atom::Symbol(ROOT.symbol()))?;
     let oscillates = matches!(verdict, Verdict::Oscillation(_));
     let frequency = match rest.as_slice() {
-        [last, middle, first] if middle.terms.is_empty() && oscillates => frequency(last, first, &mut ring),
+        [last, middle, first] if middle.terms.is_empty() && oscillates => {
+            natural_frequency(last, first, &mut ring)
+        }
         _ => None,
     };
     Some(Stability { ring, coefficients, divided, zeros, frequency, verdict })
@@ -81,13 +85,13 @@ pub fn analyse(c: Characteristic) -> Option<Stability> {
 
 /// Divides all coefficients by their common monomial and by a sign. Returns the parameters that the common
 /// monomial contains to an odd power, which are assumed to be positive.
-fn divide(ring: &Ring, coefficients: &mut [Polynomial], sign: f64) -> Vec<Symbol> {
-    let sign = sign / whole(coefficients.iter());
+fn divide_by_common_monomial(ring: &Ring, coefficients: &mut [Polynomial], sign: f64) -> Vec<Symbol> {
+    let sign = sign / integer_multiple_unit(coefficients.iter());
     let mut terms = coefficients.iter().flat_map(|p| &p.terms).map(|t| t.monomial);
     let Some(first) = terms.next() else { return Vec::new() };
-    let common = terms.fold(first, Monomial::common);
+    let common = terms.fold(first, Monomial::greatest_common_divisor);
     let (mut divisor, mut odd) = (Monomial::ONE, Vec::new());
-    for (atom, power) in common.factors() {
+    for (atom, power) in common.atoms_with_powers() {
         let symbol = match ring.atoms[atom] {
             Atom::Symbol(symbol) => symbol,
             _ => continue,
@@ -95,27 +99,28 @@ fn divide(ring: &Ring, coefficients: &mut [Polynomial], sign: f64) -> Vec<Symbol
         if power % 2 == 1 {
             odd.push(symbol);
         }
-        divisor = (0..power).fold(divisor, |m, _| m.times(Monomial::atom(atom)).unwrap_or(m));
+        divisor = (0..power)
+            .fold(divisor, |m, _| m.checked_product(Monomial::first_power_of_atom(atom)).unwrap_or(m));
     }
     for p in coefficients {
-        *p = scaled_to_whole(&quotient(p, divisor), sign);
+        *p = scaled_to_whole(&divide_by_monomial(p, divisor), sign);
     }
     odd
 }
 
 /// Returns the frequency of an undamped oscillation, `sqrt(last / first)`.
-fn frequency(last: &Polynomial, first: &Polynomial, ring: &mut Ring) -> Option<Polynomial> {
+fn natural_frequency(last: &Polynomial, first: &Polynomial, ring: &mut Ring) -> Option<Polynomial> {
     let inverse = inverse(ring, first)?;
-    let square = ring.times(last, &inverse)?;
+    let square = ring.multiply_and_reduce(last, &inverse)?;
     if let [Term { monomial: Monomial::ONE, coefficient }] = square.terms.as_slice() {
-        return Some(Polynomial::number(coefficient.sqrt()));
+        return Some(Polynomial::from_number(coefficient.sqrt()));
     }
-    Some(Polynomial::single(ring.atom(Atom::Call(Function::Sqrt, square))?, 1.0))
+    Some(Polynomial::single_term(ring.monomial_of_atom(Atom::Call(Function::Sqrt, square))?, 1.0))
 }
 
 /// Returns the conditions of Liénard and Chipart: every other coefficient and every other Hurwitz determinant
 /// is positive.
-fn asymptotic(rest: &[Polynomial], ring: &mut Ring, positive: &[Symbol]) -> Verdict {
+fn lienard_chipart_conditions(rest: &[Polynomial], ring: &mut Ring, positive: &[Symbol]) -> Verdict {
     let n = rest.len() - 1;
     let mut conditions: Vec<Polynomial> = rest.iter().step_by(2).take(n.div_ceil(2)).cloned().collect();
     // Determinants of orders n − 1, n − 3, …
@@ -125,7 +130,7 @@ fn asymptotic(rest: &[Polynomial], ring: &mut Ring, positive: &[Symbol]) -> Verd
         conditions.truncate(1);
     }
     for order in orders {
-        match hurwitz(rest, order, ring) {
+        match hurwitz_determinant(rest, order, ring) {
             Some(determinant) => conditions.push(determinant),
             None => return Verdict::Long,
         }
@@ -134,7 +139,7 @@ fn asymptotic(rest: &[Polynomial], ring: &mut Ring, positive: &[Symbol]) -> Verd
 }
 
 /// Returns the Hurwitz determinant of an order. `None` beyond the limits of the ring.
-fn hurwitz(rest: &[Polynomial], order: usize, ring: &mut Ring) -> Option<Polynomial> {
+fn hurwitz_determinant(rest: &[Polynomial], order: usize, ring: &mut Ring) -> Option<Polynomial> {
     let n = rest.len() - 1;
     // Row i, column j, counted from one: the coefficient of s^(n − (2 i − j)).
     let coefficient_index = |i: usize, j: usize| (2 * i).checked_sub(j).and_then(|k| n.checked_sub(k));
@@ -145,27 +150,33 @@ fn hurwitz(rest: &[Polynomial], order: usize, ring: &mut Ring) -> Option<Polynom
                 .collect()
         })
         .collect();
-    minor(&rows, ring)
+    expand_minor(&rows, ring)
 }
 
 /// Returns a determinant, expanded along its first row.
-fn minor(rows: &[Vec<Polynomial>], ring: &mut Ring) -> Option<Polynomial> {
-    let Some((first, others)) = rows.split_first() else { return Some(Polynomial::number(1.0)) };
+fn expand_minor(rows: &[Vec<Polynomial>], ring: &mut Ring) -> Option<Polynomial> {
+    let Some((first, others)) = rows.split_first() else { return Some(Polynomial::from_number(1.0)) };
     let mut sum = Polynomial::default();
     for (c, entry) in first.iter().enumerate().filter(|(_, p)| !p.terms.is_empty()) {
         let remaining_row = |row: &Vec<Polynomial>| {
             let kept = row.iter().enumerate().filter(|(k, _)| *k != c);
             kept.map(|(_, p)| p.clone()).collect()
         };
-        let own = minor(&others.iter().map(remaining_row).collect::<Vec<_>>(), ring)?;
-        let product = ring.times(entry, &own)?.scaled(if c % 2 == 0 { 1.0 } else { -1.0 });
-        sum = ring.plus(&sum, &product)?;
+        let own = expand_minor(&others.iter().map(remaining_row).collect::<Vec<_>>(), ring)?;
+        let product =
+            ring.multiply_and_reduce(entry, &own)?.multiplied_by_number(if c % 2 == 0 { 1.0 } else { -1.0 });
+        sum = ring.add_within_limits(&sum, &product)?;
     }
     Some(sum)
 }
 
 /// Returns the conditions that the squares of the roots are real, negative and distinct.
-fn oscillation(rest: &[Polynomial], conservative: bool, ring: &mut Ring, positive: &[Symbol]) -> Verdict {
+fn oscillation_conditions(
+    rest: &[Polynomial],
+    conservative: bool,
+    ring: &mut Ring,
+    positive: &[Symbol],
+) -> Verdict {
     let squares: Vec<Polynomial> = rest.iter().step_by(2).cloned().collect();
     let mut conditions = squares[..squares.len() - 1].to_vec();
     if !conservative && squares.len() > 2 {
@@ -180,8 +191,8 @@ fn oscillation(rest: &[Polynomial], conservative: bool, ring: &mut Ring, positiv
 /// Returns the discriminant of a quadratic or cubic polynomial, `None` for other degrees.
 fn discriminant(c: &[Polynomial], ring: &mut Ring) -> Option<Polynomial> {
     let mut product = |factor: f64, parts: &[usize]| {
-        let one = Polynomial::number(factor);
-        parts.iter().try_fold(one, |product, k| ring.times(&product, &c[*k]))
+        let one = Polynomial::from_number(factor);
+        parts.iter().try_fold(one, |product, k| ring.multiply_and_reduce(&product, &c[*k]))
     };
     let terms = match c.len() {
         3 => vec![product(1.0, &[1, 1])?, product(-4.0, &[0, 2])?],
@@ -196,7 +207,7 @@ fn discriminant(c: &[Polynomial], ring: &mut Ring) -> Option<Polynomial> {
     };
     let mut sum = Polynomial::default();
     for term in &terms {
-        sum = ring.plus(&sum, term)?;
+        sum = ring.add_within_limits(&sum, term)?;
     }
     Some(sum)
 }
@@ -211,16 +222,18 @@ fn simplify_conditions(
     let mut kept: Vec<Polynomial> = Vec::new();
     let (mut unstable, mut zero) = (false, false);
     for condition in conditions {
-        let Some(condition) = reduced(&condition, ring, positive) else { return Verdict::Long };
-        if condition.terms.is_empty() || vanishes(ring, &condition) {
+        let Some(condition) = remove_positive_factors(&condition, ring, positive) else {
+            return Verdict::Long;
+        };
+        if condition.terms.is_empty() || vanishes_identically(ring, &condition) {
             zero = true;
-        } else if is_positive(&condition.scaled(-1.0), ring, positive) {
+        } else if is_positive(&condition.multiplied_by_number(-1.0), ring, positive) {
             unstable = true;
         } else if !is_positive(&condition, ring, positive) && !kept.contains(&condition) {
             kept.push(condition);
         }
     }
-    let has_opposite_condition = |p: &Polynomial| kept.contains(&p.scaled(-1.0));
+    let has_opposite_condition = |p: &Polynomial| kept.contains(&p.multiplied_by_number(-1.0));
     zero |= kept.iter().any(has_opposite_condition);
     match (unstable, zero) {
         (true, _) => Verdict::Unstable,
@@ -235,7 +248,9 @@ fn is_positive(p: &Polynomial, ring: &Ring, positive: &[Symbol]) -> bool {
     let is_positive_power =
         |(atom, power): (usize, u8)| power % 2 == 0 || is_positive_atom(ring, atom, positive);
     !p.terms.is_empty()
-        && p.terms.iter().all(|t| t.coefficient > 0.0 && t.monomial.factors().all(is_positive_power))
+        && p.terms
+            .iter()
+            .all(|t| t.coefficient > 0.0 && t.monomial.atoms_with_powers().all(is_positive_power))
 }
 
 fn is_positive_atom(ring: &Ring, atom: usize, positive: &[Symbol]) -> bool {
@@ -249,38 +264,40 @@ fn is_positive_atom(ring: &Ring, atom: usize, positive: &[Symbol]) -> bool {
 
 /// Removes positive factors from a condition. If the remaining sum has a definite sign and other factors
 /// remain, only the sign is retained.
-fn reduced(p: &Polynomial, ring: &mut Ring, positive: &[Symbol]) -> Option<Polynomial> {
+fn remove_positive_factors(p: &Polynomial, ring: &mut Ring, positive: &[Symbol]) -> Option<Polynomial> {
     let p = without_even_divisors(std::slice::from_ref(p), ring)?.pop()?;
-    let Some(common) = common(&p) else { return Some(p) };
+    let Some(common) = common_monomial(&p) else { return Some(p) };
     let mut divisor = Monomial::ONE;
-    for (atom, power) in common.factors() {
+    for (atom, power) in common.atoms_with_powers() {
         let times = if is_positive_atom(ring, atom, positive) { power } else { power - power % 2 };
-        divisor = (0..times).fold(divisor, |m, _| m.times(Monomial::atom(atom)).unwrap_or(m));
+        divisor = (0..times)
+            .fold(divisor, |m, _| m.checked_product(Monomial::first_power_of_atom(atom)).unwrap_or(m));
     }
     let factor = common.quotient(divisor);
-    let left = quotient(&p, common);
-    let sign = [1.0, -1.0].into_iter().find(|sign| is_positive(&left.scaled(*sign), ring, positive));
+    let left = divide_by_monomial(&p, common);
+    let sign =
+        [1.0, -1.0].into_iter().find(|sign| is_positive(&left.multiplied_by_number(*sign), ring, positive));
     if let (Some(sign), true) = (sign, factor != Monomial::ONE) {
-        return Some(Polynomial::single(factor, sign));
+        return Some(Polynomial::single_term(factor, sign));
     }
-    Some(scaled_to_whole(&quotient(&p, divisor), 1.0 / whole([&p])))
+    Some(scaled_to_whole(&divide_by_monomial(&p, divisor), 1.0 / integer_multiple_unit([&p])))
 }
 
 /// Returns the common monomial of all terms, `None` for zero.
-fn common(p: &Polynomial) -> Option<Monomial> {
+fn common_monomial(p: &Polynomial) -> Option<Monomial> {
     let first = p.terms.first()?;
-    Some(p.terms.iter().fold(first.monomial, |m, t| m.common(t.monomial)))
+    Some(p.terms.iter().fold(first.monomial, |m, t| m.greatest_common_divisor(t.monomial)))
 }
 
 /// Divides a polynomial by a monomial.
-fn quotient(p: &Polynomial, divisor: Monomial) -> Polynomial {
+fn divide_by_monomial(p: &Polynomial, divisor: Monomial) -> Polynomial {
     let divide_term = |t: &Term| Term { monomial: t.monomial.quotient(divisor), ..*t };
-    Polynomial::sum(p.terms.iter().map(divide_term).collect())
+    Polynomial::sum_of_terms(p.terms.iter().map(divide_term).collect())
 }
 
 /// Returns the smallest magnitude of the coefficients if all coefficients are integer multiples of it,
 /// otherwise one.
-fn whole<'a>(all: impl IntoIterator<Item = &'a Polynomial>) -> f64 {
+fn integer_multiple_unit<'a>(all: impl IntoIterator<Item = &'a Polynomial>) -> f64 {
     let sizes: Vec<f64> = all.into_iter().flat_map(|p| &p.terms).map(|t| t.coefficient.abs()).collect();
     let least = sizes.iter().copied().fold(f64::MAX, f64::min);
     let is_whole = |size: &f64| (size / least - (size / least).round()).abs() < 1e-9;
@@ -305,10 +322,10 @@ fn without_even_divisors(all: &[Polynomial], ring: &mut Ring) -> Option<Vec<Poly
         let Atom::Inverse(p) = &ring.atoms[k] else { continue };
         let [Term { monomial, .. }] = p.terms.as_slice() else { continue };
         let monomial = *monomial;
-        let power = out.iter().flat_map(|p| &p.terms).map(|t| t.monomial.power(k)).max().unwrap_or(0);
-        let factor = Polynomial::single(monomial, 1.0);
+        let power = out.iter().flat_map(|p| &p.terms).map(|t| t.monomial.power_of_atom(k)).max().unwrap_or(0);
+        let factor = Polynomial::single_term(monomial, 1.0);
         for _ in 0..power.saturating_sub(power % 2) {
-            out = out.iter().map(|p| ring.times(p, &factor)).collect::<Option<_>>()?;
+            out = out.iter().map(|p| ring.multiply_and_reduce(p, &factor)).collect::<Option<_>>()?;
         }
     }
     Some(out)

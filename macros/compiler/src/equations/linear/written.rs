@@ -1,15 +1,17 @@
 //! Formats linear equations as plain text, LaTeX and MathML, with the user's names.
 
-use super::super::written::{filled, name as name_of, names_with, rates};
+use super::super::written::{
+    marks_of_coordinate_rates, name_and_derivative_order as name_of, names_with, wrap_sentences,
+};
 use super::Linear;
-use super::parts::{ROOT, multiplier};
+use super::parts::{ROOT, multiplier_symbol};
 use super::stability::{Stability, Verdict};
 use crate::algebra::polynomial::{Atom, Monomial, Polynomial, Term};
 use crate::diag::all_of;
-use crate::equations::print::aligned::aligned;
-use crate::equations::print::mathml::page;
-use crate::equations::print::names::primed;
-use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrapped};
+use crate::equations::print::aligned::format_aligned;
+use crate::equations::print::mathml::format_equations_as_html;
+use crate::equations::print::names::name_with_primes;
+use crate::equations::print::{Latex, MathMl, Plain, Style, Writer, Written, wrap_text};
 use crate::expr::Symbol;
 use crate::mechanism::{Chart, Equilibrium, Model, Quantity};
 
@@ -46,14 +48,14 @@ impl<'a, 'g> Words<'a, 'g> {
         Words {
             model,
             at,
-            deviations: deviations(model),
+            deviations: deviation_names(model),
             root: first_unused_word(&ROOTS),
             frequency: first_unused_word(&FREQUENCIES),
         }
     }
 
     /// Returns the name of a symbol, and how often the quantity of this name is differentiated.
-    fn name(&self, symbol: Symbol) -> (String, u8) {
+    fn name_and_derivative_order(&self, symbol: Symbol) -> (String, u8) {
         let nv = self.deviations.len();
         let state_name = |k: usize| {
             let state =
@@ -74,7 +76,7 @@ impl<'a, 'g> Words<'a, 'g> {
 
 /// Returns for each velocity the name of the deviation whose rate it is: the name of the coordinate, or names
 /// for a small displacement and a small rotation in body axes.
-fn deviations(model: &Model<'_>) -> Vec<String> {
+fn deviation_names(model: &Model<'_>) -> Vec<String> {
     let mut names: Vec<String> = model.velocities.iter().map(|(name, _)| name.clone()).collect();
     let joint_prefix =
         |name: &str| name.rsplit_once('.').map_or(String::new(), |(joint, _)| format!("{joint}."));
@@ -108,26 +110,31 @@ struct Lines {
 
 impl Lines {
     fn new<S: Style + Copy>(linear: &Linear, style: S) -> Lines {
-        let writer = Writer::styled(&linear.ring, style);
+        let writer = Writer::with_style(&linear.ring, style);
         let sides = linear.motion.iter().zip(&linear.forces);
         let values = linear.values.iter();
         let stability = linear.stability.as_ref();
-        let of =
-            |stability: &Stability| Some(Writer::styled(&stability.ring, style).linear(&in_one(stability)?));
+        let of = |stability: &Stability| {
+            Some(Writer::with_style(&stability.ring, style).format_linear_form(&in_one(stability)?))
+        };
         let format_conditions = |stability: &Stability| match &stability.verdict {
             Verdict::Asymptotic(all) | Verdict::Oscillation(all) => {
-                let writer = Writer::styled(&stability.ring, style);
-                all.iter().map(|condition| writer.polynomial(condition)).collect()
+                let writer = Writer::with_style(&stability.ring, style);
+                all.iter().map(|condition| writer.format_polynomial(condition)).collect()
             }
             _ => Vec::new(),
         };
         let frequency = stability.and_then(|stability| {
             let frequency = stability.frequency.as_ref()?;
-            Some(Writer::styled(&stability.ring, style).polynomial(frequency))
+            Some(Writer::with_style(&stability.ring, style).format_polynomial(frequency))
         });
         Lines {
-            equations: sides.map(|(a, b)| (writer.linear(a), writer.linear(b))).collect(),
-            values: values.map(|(what, p)| (style.symbol(what.symbol(), 1), writer.polynomial(p))).collect(),
+            equations: sides
+                .map(|(a, b)| (writer.format_linear_form(a), writer.format_linear_form(b)))
+                .collect(),
+            values: values
+                .map(|(what, p)| (style.symbol(what.symbol(), 1), writer.format_polynomial(p)))
+                .collect(),
             polynomial: stability.and_then(of),
             frequency,
             conditions: stability.map(format_conditions).unwrap_or_default(),
@@ -138,70 +145,74 @@ impl Lines {
 /// Returns the characteristic polynomial as one polynomial in its root; `None` if a power of it is too high.
 fn in_one(stability: &Stability) -> Option<Polynomial> {
     let root = stability.ring.atoms.iter().position(|atom| *atom == Atom::Symbol(ROOT.symbol()));
-    let root = root.map_or(Monomial::ONE, Monomial::atom);
+    let root = root.map_or(Monomial::ONE, Monomial::first_power_of_atom);
     let mut terms: Vec<Term> = Vec::new();
     let mut power = Monomial::ONE;
     for (k, coefficient) in stability.coefficients.iter().enumerate() {
         if k > 0 {
-            power = power.times(root)?;
+            power = power.checked_product(root)?;
         }
         for t in &coefficient.terms {
-            terms.push(Term { monomial: t.monomial.times(power)?, ..*t });
+            terms.push(Term { monomial: t.monomial.checked_product(power)?, ..*t });
         }
     }
-    Some(Polynomial::sum(terms))
+    Some(Polynomial::sum_of_terms(terms))
 }
 
 /// Formats linear equations as plain text, LaTeX and MathML.
 pub fn written_linear(model: &Model<'_>, at: &Equilibrium<'_>, linear: &Linear) -> Written {
     let words = Words::new(model, at);
-    let primed_name = |symbol| primed(words.name(symbol));
-    let plain = plain(&words, linear, &Lines::new(linear, Plain { name: &primed_name }));
+    let primed_name = |symbol| name_with_primes(words.name_and_derivative_order(symbol));
+    let plain = plain_text(&words, linear, &Lines::new(linear, Plain { name: &primed_name }));
     let mut others = words.deviations.clone();
     others.extend([words.root.clone(), words.frequency.clone()]);
     let names = names_with(model, &others);
     let name_with_dots = |symbol| {
-        let (name, dots) = words.name(symbol);
+        let (name, dots) = words.name_and_derivative_order(symbol);
         (names.get(&name), dots)
     };
     let lines = Lines::new(linear, Latex { name: &name_with_dots });
-    let spell_in_latex = |word: &str| crate::equations::print::latex::spelled(&names.get(word), 0);
-    let latex = aligned(&equations(&lines, &spell_in_latex(&words.frequency)));
-    let frequency = crate::equations::print::mathml::spelled(&names.get(&words.frequency), 0, 1);
-    let mathml = page(&equations(&Lines::new(linear, MathMl { name: &name_with_dots }), &frequency));
+    let spell_in_latex = |word: &str| crate::equations::print::latex::format_name(&names.get(word), 0);
+    let latex = format_aligned(&printed_equations(&lines, &spell_in_latex(&words.frequency)));
+    let frequency = crate::equations::print::mathml::format_name(&names.get(&words.frequency), 0, 1);
+    let mathml = format_equations_as_html(&printed_equations(
+        &Lines::new(linear, MathMl { name: &name_with_dots }),
+        &frequency,
+    ));
     Written { plain, latex, mathml }
 }
 
-fn plain(words: &Words<'_, '_>, linear: &Linear, lines: &Lines) -> String {
-    let wrapped_line = |text: &str| wrapped(text, WIDTH, "    ") + "\n";
+fn plain_text(words: &Words<'_, '_>, linear: &Linear, lines: &Lines) -> String {
+    let wrapped_line = |text: &str| wrap_text(text, WIDTH, "    ") + "\n";
     let values: Vec<String> = lines.values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let header = match values.as_slice() {
         [] => format!("{}: all coordinates and inputs at zero.", words.at.name),
         all => format!("{}: {}; other values are zero.", words.at.name, all.join(", ")),
     };
-    let mut out = filled(&header) + "\n\n";
+    let mut out = wrap_sentences(&header) + "\n\n";
     out.extend(lines.equations.iter().map(|(motion, force)| wrapped_line(&format!("{motion} = {force}"))));
     out.push('\n');
     if let (Some(stability), Some(polynomial)) = (&linear.stability, &lines.polynomial) {
-        out += &(filled(&about_roots(words, stability)) + "\n");
+        out += &(wrap_sentences(&about_roots(words, stability)) + "\n");
         out += &wrapped_line(&format!("    {polynomial} = 0"));
         if let Some(frequency) = &lines.frequency {
             out += &format!("Natural frequency, rad/s:\n    {} = {frequency}\n", words.frequency);
         }
-        out += &(filled(verdict(stability)) + "\n");
+        out += &(wrap_sentences(verdict_sentence(stability)) + "\n");
         out.extend(lines.conditions.iter().map(|condition| wrapped_line(&format!("    {condition} > 0"))));
         if stability.zeros > 0 {
-            out += &(filled(&about_zeros(words, stability)) + "\n");
+            out += &(wrap_sentences(&about_zeros(words, stability)) + "\n");
         }
         out.push('\n');
     }
-    out + &legend(words) + "\n"
+    out + &legend_sentences(words) + "\n"
 }
 
 /// Returns the sentence before the characteristic equation.
 fn about_roots(words: &Words<'_, '_>, stability: &Stability) -> String {
     let root = &words.root;
-    let divided: Vec<String> = stability.divided.iter().map(|s| words.name(*s).0).collect();
+    let divided: Vec<String> =
+        stability.divided.iter().map(|s| words.name_and_derivative_order(*s).0).collect();
     match divided.is_empty() {
         true => format!("Motions like exp({root} t), with the roots {root} of"),
         false => {
@@ -215,7 +226,7 @@ fn about_roots(words: &Words<'_, '_>, stability: &Stability) -> String {
 }
 
 /// Returns the sentence that introduces the stability conditions, or states the result.
-fn verdict(stability: &Stability) -> &'static str {
+fn verdict_sentence(stability: &Stability) -> &'static str {
     match &stability.verdict {
         Verdict::Asymptotic(all) if all.is_empty() => "Asymptotically stable: all deviations die away.",
         Verdict::Asymptotic(_) => "Asymptotically stable where",
@@ -241,9 +252,9 @@ fn about_zeros(words: &Words<'_, '_>, stability: &Stability) -> String {
 }
 
 /// Returns sentences that explain the notation.
-fn legend(words: &Words<'_, '_>) -> String {
+fn legend_sentences(words: &Words<'_, '_>) -> String {
     let model = words.model;
-    let primes = rates(model).iter().any(|plain| *plain);
+    let primes = marks_of_coordinate_rates(model).iter().any(|plain| *plain);
     let mut sentences = Vec::new();
     if primes || !words.at.states.is_empty() {
         sentences.push(
@@ -266,8 +277,9 @@ fn legend(words: &Words<'_, '_>) -> String {
             sentences.push(format!("{all} are a small displacement along body axes."));
         }
     }
-    let multipliers: Vec<String> =
-        (0..model.constraints.len()).map(|k| words.name(multiplier(k).symbol()).0).collect();
+    let multipliers: Vec<String> = (0..model.constraints.len())
+        .map(|k| words.name_and_derivative_order(multiplier_symbol(k).symbol()).0)
+        .collect();
     if !multipliers.is_empty() {
         let constraints: Vec<String> = model.constraints.iter().map(|c| c.name.clone()).collect();
         let (is, of) = if multipliers.len() == 1 {
@@ -280,11 +292,11 @@ fn legend(words: &Words<'_, '_>) -> String {
     if !model.contacts.is_empty() {
         sentences.push("Contacts are open.".to_string());
     }
-    filled(&sentences.join(" "))
+    wrap_sentences(&sentences.join(" "))
 }
 
 /// Returns all printed equations and conditions, one per string.
-fn equations(lines: &Lines, frequency: &str) -> Vec<String> {
+fn printed_equations(lines: &Lines, frequency: &str) -> Vec<String> {
     let mut all: Vec<String> =
         lines.equations.iter().map(|(motion, force)| format!("{motion} = {force}")).collect();
     all.extend(lines.polynomial.iter().map(|p| format!("{p} = 0")));

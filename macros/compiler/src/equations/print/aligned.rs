@@ -16,12 +16,12 @@ const INDENTED: usize = 30;
 /// Formats equations as an `aligned` environment of `amsmath`, one or several lines each. The lines are
 /// aligned at the left: with alignment at the equals signs, the long side of one equation would begin where
 /// that of another ends.
-pub fn aligned(lines: &[String]) -> String {
+pub fn format_aligned(lines: &[String]) -> String {
     // At the start of a column a minus sign would be typeset as a binary operator.
     let protect_leading_minus =
         |text: &str| text.strip_prefix('-').map_or(text.to_string(), |rest| format!("{{-}}{rest}"));
     let break_line = |line: &String| {
-        let parts = broken(line);
+        let parts = break_equation(line);
         let parts = parts.iter().enumerate();
         let parts = parts
             .map(|(k, part)| if k == 0 { protect_leading_minus(part) } else { format!("{INDENT}{part}") });
@@ -41,8 +41,8 @@ struct Part {
 }
 
 /// Breaks an equation into lines that fit the page.
-fn broken(line: &str) -> Vec<&str> {
-    let parts = parts(line);
+fn break_equation(line: &str) -> Vec<&str> {
+    let parts = split_at_outer_signs(line);
     let total: usize = parts.iter().map(|part| part.width).sum();
     let (mut lines, mut from, mut start) = (Vec::new(), 0, 0);
     let mut left = total;
@@ -80,11 +80,11 @@ fn break_before(parts: &[Part], from: usize, room: usize, left: usize) -> Option
 }
 
 /// Splits a line before signs that are outside of braces and of `\left` … `\right`.
-fn parts(line: &str) -> Vec<Part> {
+fn split_at_outer_signs(line: &str) -> Vec<Part> {
     let mut parts = Vec::new();
     let (mut braces, mut grown, mut depth, mut start, mut at_depth) = (0_usize, 0_usize, 0_usize, 0, 0);
     let mut push = |start: usize, end: usize, depth: usize| {
-        let width = width(&line[start..end]);
+        let width = estimate_width(&line[start..end]);
         parts.push(Part { end, depth, width });
     };
     for (at, c) in line.char_indices() {
@@ -110,25 +110,25 @@ fn parts(line: &str) -> Vec<Part> {
 }
 
 /// Estimates the width of a formula, in tenths of a character.
-fn width(text: &str) -> usize {
+fn estimate_width(text: &str) -> usize {
     let mut chars = text.chars().peekable();
     let mut sum = 0;
     while chars.peek().is_some() {
-        sum += group(&mut chars);
+        sum += width_of_group(&mut chars);
     }
     sum
 }
 
 /// Returns the width of the characters up to the closing brace.
-fn group(chars: &mut Peekable<Chars<'_>>) -> usize {
+fn width_of_group(chars: &mut Peekable<Chars<'_>>) -> usize {
     let mut sum = 0;
     while let Some(c) = chars.next() {
         sum += match c {
             '}' => return sum,
-            '{' => group(chars),
+            '{' => width_of_group(chars),
             ' ' | '&' => 0,
-            '^' | '_' => script(chars) * 6 / 10,
-            '\\' => command(chars),
+            '^' | '_' => width_of_script(chars) * 6 / 10,
+            '\\' => width_of_command(chars),
             '+' | '-' | '=' | '>' => 20,
             _ => 10,
         };
@@ -137,24 +137,24 @@ fn group(chars: &mut Peekable<Chars<'_>>) -> usize {
 }
 
 /// Returns the width of a group in braces or of a single character.
-fn script(chars: &mut Peekable<Chars<'_>>) -> usize {
+fn width_of_script(chars: &mut Peekable<Chars<'_>>) -> usize {
     match chars.next() {
-        Some('{') => group(chars),
+        Some('{') => width_of_group(chars),
         Some(_) => 10,
         None => 0,
     }
 }
 
-fn command(chars: &mut Peekable<Chars<'_>>) -> usize {
+fn width_of_command(chars: &mut Peekable<Chars<'_>>) -> usize {
     let mut word = String::new();
     while let Some(c) = chars.next_if(char::is_ascii_alphabetic) {
         word.push(c);
     }
     match word.as_str() {
         "" => chars.next().map_or(0, |_| 2),
-        "frac" => script(chars).max(script(chars)),
-        "tfrac" => script(chars).max(script(chars)) * 7 / 10,
-        "sqrt" => 10 + script(chars),
+        "frac" => width_of_script(chars).max(width_of_script(chars)),
+        "tfrac" => width_of_script(chars).max(width_of_script(chars)) * 7 / 10,
+        "sqrt" => 10 + width_of_script(chars),
         "left" | "right" | "bigl" | "bigr" | "mathrm" | "operatorname" | "mathcal" | "dot" | "ddot" => 0,
         "sin" | "cos" | "tan" | "exp" | "ln" | "sinh" | "cosh" | "tanh" | "arcsin" | "arccos" | "arctan" => {
             10 * word.len()
@@ -166,33 +166,36 @@ fn command(chars: &mut Peekable<Chars<'_>>) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{aligned, broken, parts, width};
+    use super::{break_equation, estimate_width, format_aligned, split_at_outer_signs};
 
     #[test]
     fn widths_are_those_of_what_is_seen() {
-        assert_eq!(width("a"), 10);
-        assert_eq!(width("\\theta"), 10);
-        assert_eq!(width("\\frac{a\\,b}{c}"), 22);
-        assert_eq!(width("m\\,l^{2}\\,\\ddot{\\theta} = 0"), 10 + 2 + 10 + 6 + 2 + 10 + 20 + 10);
+        assert_eq!(estimate_width("a"), 10);
+        assert_eq!(estimate_width("\\theta"), 10);
+        assert_eq!(estimate_width("\\frac{a\\,b}{c}"), 22);
+        assert_eq!(estimate_width("m\\,l^{2}\\,\\ddot{\\theta} = 0"), 10 + 2 + 10 + 6 + 2 + 10 + 20 + 10);
     }
 
     #[test]
     fn long_lines_are_broken_before_outer_signs() {
         let term = "a_{1}\\,b\\,\\cos\\theta\\,\\left(c + d\\right)";
         let long = [term; 12].join(" + ") + " = \\tau";
-        let lines = broken(&long);
+        let lines = break_equation(&long);
         assert!(lines.len() > 1 && lines.concat().replace(' ', "") == long.replace(' ', ""), "{lines:?}");
-        assert!(lines.iter().all(|line| width(line) <= 1000), "{lines:?}");
+        assert!(lines.iter().all(|line| estimate_width(line) <= 1000), "{lines:?}");
         assert!(lines[1..].iter().all(|line| line.starts_with("+ a") || line.starts_with("= ")), "{lines:?}");
         // Breaks within parentheses of fixed size occur only if there are no outer signs.
         let inner = format!("m\\,({}) = 0", ["x\\,y\\,z"; 40].join(" - "));
-        assert!(broken(&inner).len() > 1);
-        assert_eq!(parts("a + (b - c) = d").iter().map(|p| p.depth).collect::<Vec<_>>(), [0, 0, 1, 0]);
+        assert!(break_equation(&inner).len() > 1);
+        assert_eq!(
+            split_at_outer_signs("a + (b - c) = d").iter().map(|p| p.depth).collect::<Vec<_>>(),
+            [0, 0, 1, 0]
+        );
     }
 
     #[test]
     fn lines_begin_with_terms() {
-        let text = aligned(&["-a = 0".to_string(), "b = 1".to_string()]);
+        let text = format_aligned(&["-a = 0".to_string(), "b = 1".to_string()]);
         assert_eq!(text, "\\begin{aligned}\n& {-}a = 0 \\\\\n& b = 1\n\\end{aligned}\n");
     }
 }

@@ -17,7 +17,7 @@ const SPACE: &str = "\\,";
 impl Style for Latex<'_> {
     fn symbol(&self, symbol: Symbol, power: u8) -> String {
         let (name, dots) = (self.name)(symbol);
-        format!("{}{}", spelled(&name, dots), exponent(power))
+        format!("{}{}", format_name(&name, dots), format_exponent(power))
     }
 
     fn number(&self, number: &Number) -> String {
@@ -45,19 +45,19 @@ impl Style for Latex<'_> {
     }
 
     fn power(&self, sum: &str, power: u8) -> String {
-        format!("{}{}", fenced(sum), exponent(power))
+        format!("{}{}", put_in_parentheses(sum), format_exponent(power))
     }
 
     fn call(&self, function: &str, power: u8, arguments: &[Argument]) -> String {
-        let power = exponent(power);
+        let power = format_exponent(power);
         let head = match (function, arguments) {
             ("sqrt", [x]) if power.is_empty() => return format!("\\sqrt{{{}}}", x.text),
             ("sqrt", [x]) => return format!("\\left(\\sqrt{{{}}}\\right){power}", x.text),
             ("abs", [x]) => return format!("\\left|{}\\right|{power}", x.text),
             ("pow", [base, exponent]) => {
-                let base = if base.lone { base.text.clone() } else { fenced(&base.text) };
+                let base = if base.lone { base.text.clone() } else { put_in_parentheses(&base.text) };
                 let text = format!("{base}^{{{}}}", exponent.text);
-                return if power.is_empty() { text } else { format!("{}{power}", fenced(&text)) };
+                return if power.is_empty() { text } else { format!("{}{power}", put_in_parentheses(&text)) };
             }
             ("asin" | "acos" | "atan", _) => format!("\\arc{}", &function[1..]),
             ("signum", _) => "\\operatorname{sgn}".to_string(),
@@ -73,7 +73,7 @@ impl Style for Latex<'_> {
             return format!("{head}{power}{gap}{text}");
         }
         let arguments: Vec<&str> = arguments.iter().map(|a| a.text.as_str()).collect();
-        let arguments = fenced(&arguments.join(", "));
+        let arguments = put_in_parentheses(&arguments.join(", "));
         // Without the negative space, `\left` would be spaced like a factor.
         let gap = if arguments.starts_with("\\left") { "\\!" } else { "" };
         format!("{head}{power}{gap}{arguments}")
@@ -82,7 +82,11 @@ impl Style for Latex<'_> {
     fn product(&self, number: Option<Number>, factors: &[Factor], divisors: &[Factor]) -> String {
         if divisors.is_empty() {
             let number = number.map(|n| self.number(&n));
-            return number.into_iter().chain(factors.iter().map(factor)).collect::<Vec<_>>().join(SPACE);
+            return number
+                .into_iter()
+                .chain(factors.iter().map(format_factor))
+                .collect::<Vec<_>>()
+                .join(SPACE);
         }
         // A fraction is not placed in the numerator of another one.
         let small = matches!(&number, Some(Number::Fraction(_, q) | Number::Root(_, q, _)) if *q != 1)
@@ -101,20 +105,20 @@ fn fraction_side(first: impl Iterator<Item = String>, factors: &[Factor]) -> Str
     match (first.as_slice(), factors) {
         ([], []) => "1".to_string(),
         ([], [Factor::Sum(text)]) => text.clone(),
-        _ => first.into_iter().chain(factors.iter().map(factor)).collect::<Vec<_>>().join(SPACE),
+        _ => first.into_iter().chain(factors.iter().map(format_factor)).collect::<Vec<_>>().join(SPACE),
     }
 }
 
-fn factor(factor: &Factor) -> String {
+fn format_factor(factor: &Factor) -> String {
     match factor {
         Factor::Single(text) => text.clone(),
-        Factor::Sum(text) => fenced(text),
+        Factor::Sum(text) => put_in_parentheses(text),
     }
 }
 
 /// Puts a text in parentheses of matching height. `\left` is only used for the tallest texts, since it adds
 /// space around the parentheses.
-fn fenced(text: &str) -> String {
+fn put_in_parentheses(text: &str) -> String {
     let contains_any = |parts: &[&str]| parts.iter().any(|part| text.contains(part));
     if contains_any(&["\\frac", "\\left", "\\sqrt", "\\bigl"]) {
         format!("\\left({text}\\right)")
@@ -125,23 +129,23 @@ fn fenced(text: &str) -> String {
     }
 }
 
-fn exponent(power: u8) -> String {
+fn format_exponent(power: u8) -> String {
     if power == 1 { String::new() } else { format!("^{{{power}}}") }
 }
 
 /// Formats a name with dots above it, one for each time derivative.
-pub fn spelled(name: &Name, dots: u8) -> String {
-    let base = glyph(&name.base);
+pub fn format_name(name: &Name, dots: u8) -> String {
+    let base = format_glyph(&name.base);
     let base = match dots {
         0 => base,
         1 => format!("\\dot{{{base}}}"),
         _ => format!("\\ddot{{{base}}}"),
     };
-    let indices: Vec<String> = name.indices.iter().map(glyph).collect();
+    let indices: Vec<String> = name.indices.iter().map(format_glyph).collect();
     if indices.is_empty() { base } else { format!("{base}_{{{}}}", indices.join(",")) }
 }
 
-fn glyph(glyph: &Glyph) -> String {
+fn format_glyph(glyph: &Glyph) -> String {
     match glyph {
         Glyph::Letter(letter) => letter.to_string(),
         Glyph::Greek(name, _) => format!("\\{name}"),

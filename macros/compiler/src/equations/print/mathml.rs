@@ -24,14 +24,15 @@ const OF: &str = "<mo rspace=\".17em\">\u{2061}</mo>";
 
 /// Formats equations and inequalities as HTML in one line of source, a paragraph each with indented
 /// continuation lines. Their sides are separated by ` = ` or ` > `.
-pub fn page(lines: &[String]) -> String {
+pub fn format_equations_as_html(lines: &[String]) -> String {
     let mut out = String::from("<div>");
     for line in lines {
         let line = line
             .replace(" = ", "\u{1}<mo form=\"infix\">=</mo>")
             .replace(" > ", "\u{1}<mo form=\"infix\">&gt;</mo>");
         out += "<div style=\"margin:.5em 0;padding-left:2em;text-indent:-2em;overflow:auto hidden\">";
-        let parts: Vec<String> = pieces(&line, &BREAKS).iter().map(|p| format!("<math>{p}</math>")).collect();
+        let parts: Vec<String> =
+            split_at_breaks(&line, &BREAKS).iter().map(|p| format!("<math>{p}</math>")).collect();
         out += &parts.join(" ");
         out += "</div>";
     }
@@ -40,21 +41,21 @@ pub fn page(lines: &[String]) -> String {
 
 /// Splits a line into pieces between which it may be broken: at outer signs, and at inner signs if a piece is
 /// still too wide.
-fn pieces(line: &str, breaks: &[char]) -> Vec<String> {
-    let Some((outer, inner)) = breaks.split_first() else { return vec![whole(line)] };
-    if width(line) <= WIDE {
-        return line.split(BREAKS[0]).map(whole).collect();
+fn split_at_breaks(line: &str, breaks: &[char]) -> Vec<String> {
+    let Some((outer, inner)) = breaks.split_first() else { return vec![remove_break_marks(line)] };
+    if estimate_width(line) <= WIDE {
+        return line.split(BREAKS[0]).map(remove_break_marks).collect();
     }
-    line.split(*outer).flat_map(|piece| pieces(piece, inner)).collect()
+    line.split(*outer).flat_map(|piece| split_at_breaks(piece, inner)).collect()
 }
 
 /// Removes the marks of possible line breaks from a text.
-fn whole(text: &str) -> String {
+fn remove_break_marks(text: &str) -> String {
     text.replace(BREAKS, "")
 }
 
 /// Estimates the number of visible characters of a formula.
-fn width(text: &str) -> usize {
+fn estimate_width(text: &str) -> usize {
     let (mut inside, mut count) = (false, 0);
     for c in text.chars() {
         match c {
@@ -68,8 +69,8 @@ fn width(text: &str) -> usize {
 }
 
 /// Wraps a formula in a single MathML element.
-fn row(text: &str) -> String {
-    format!("<mrow>{}</mrow>", whole(text))
+fn wrap_in_row(text: &str) -> String {
+    format!("<mrow>{}</mrow>", remove_break_marks(text))
 }
 
 fn to_power(base: &str, power: u8) -> String {
@@ -78,23 +79,23 @@ fn to_power(base: &str, power: u8) -> String {
 
 /// Puts a text in parentheses: stretched if it is short, otherwise of fixed size with marks of possible line
 /// breaks.
-fn fenced(text: &str) -> String {
-    if width(text) <= WIDE {
-        return format!("<mrow><mo>(</mo>{}<mo>)</mo></mrow>", whole(text));
+fn put_in_parentheses(text: &str) -> String {
+    if estimate_width(text) <= WIDE {
+        return format!("<mrow><mo>(</mo>{}<mo>)</mo></mrow>", remove_break_marks(text));
     }
     let mut inner: String = text.replace(BREAKS[2], "");
     inner = inner.replace(BREAKS[1], "\u{3}").replace(BREAKS[0], "\u{2}");
     format!("<mo stretchy=\"false\">(</mo>{inner}<mo stretchy=\"false\">)</mo>")
 }
 
-fn fraction(above: &str, below: &str) -> String {
-    format!("<mfrac>{}{}</mfrac>", row(above), row(below))
+fn format_fraction(above: &str, below: &str) -> String {
+    format!("<mfrac>{}{}</mfrac>", wrap_in_row(above), wrap_in_row(below))
 }
 
 impl Style for MathMl<'_> {
     fn symbol(&self, symbol: Symbol, power: u8) -> String {
         let (name, dots) = (self.name)(symbol);
-        spelled(&name, dots, power)
+        format_name(&name, dots, power)
     }
 
     fn number(&self, number: &Number) -> String {
@@ -138,29 +139,32 @@ impl Style for MathMl<'_> {
     }
 
     fn power(&self, sum: &str, power: u8) -> String {
-        to_power(&row(&fenced(sum)), power)
+        to_power(&wrap_in_row(&put_in_parentheses(sum)), power)
     }
 
     fn call(&self, function: &str, power: u8, arguments: &[Argument]) -> String {
         let head = match (function, arguments) {
-            ("sqrt", [x]) => return to_power(&format!("<msqrt>{}</msqrt>", row(&x.text)), power),
+            ("sqrt", [x]) => return to_power(&format!("<msqrt>{}</msqrt>", wrap_in_row(&x.text)), power),
             ("abs", [x]) => {
-                return to_power(&format!("<mrow><mo>|</mo>{}<mo>|</mo></mrow>", whole(&x.text)), power);
+                return to_power(
+                    &format!("<mrow><mo>|</mo>{}<mo>|</mo></mrow>", remove_break_marks(&x.text)),
+                    power,
+                );
             }
             ("pow", [base, exponent]) => {
-                let base = if base.lone { base.text.clone() } else { fenced(&base.text) };
-                let text = format!("<msup>{}{}</msup>", row(&base), row(&exponent.text));
+                let base = if base.lone { base.text.clone() } else { put_in_parentheses(&base.text) };
+                let text = format!("<msup>{}{}</msup>", wrap_in_row(&base), wrap_in_row(&exponent.text));
                 return if power == 1 { text } else { self.power(&text, power) };
             }
             ("asin" | "acos" | "atan", _) => format!("arc{}", &function[1..]),
             ("signum", _) => "sgn".to_string(),
             _ => function.to_string(),
         };
-        let head = to_power(&format!("<mi>{}</mi>", escaped(&head)), power);
+        let head = to_power(&format!("<mi>{}</mi>", escape_xml(&head)), power);
         if let [Argument { text, lone: true }] = arguments {
-            return format!("{head}{OF}{}", whole(text));
+            return format!("{head}{OF}{}", remove_break_marks(text));
         }
-        let arguments: Vec<String> = arguments.iter().map(|a| whole(&a.text)).collect();
+        let arguments: Vec<String> = arguments.iter().map(|a| remove_break_marks(&a.text)).collect();
         format!("{head}<mo>\u{2061}</mo><mrow><mo>(</mo>{}<mo>)</mo></mrow>", arguments.join("<mo>,</mo>"))
     }
 
@@ -169,41 +173,48 @@ impl Style for MathMl<'_> {
             || matches!(&number, Some(Number::Pi(_, q, power)) if *q != 1 || *power < 0);
         let number = number.map(|n| self.number(&n));
         if divisors.is_empty() {
-            return number.into_iter().chain(factors.iter().map(factor)).collect::<Vec<_>>().join(TIMES);
+            return number
+                .into_iter()
+                .chain(factors.iter().map(format_factor))
+                .collect::<Vec<_>>()
+                .join(TIMES);
         }
         // A fraction is not placed in the numerator of another one.
         let (before, above) = if small { (number, None) } else { (None, number) };
-        let fraction = fraction(&side(above.into_iter(), factors), &side(std::iter::empty(), divisors));
+        let fraction = format_fraction(
+            &format_fraction_side(above.into_iter(), factors),
+            &format_fraction_side(std::iter::empty(), divisors),
+        );
         before.map_or(fraction.clone(), |number| format!("{number}{TIMES}{fraction}"))
     }
 }
 
 /// Formats the numerator or denominator of a fraction.
-fn side(first: impl Iterator<Item = String>, factors: &[Factor]) -> String {
+fn format_fraction_side(first: impl Iterator<Item = String>, factors: &[Factor]) -> String {
     let first: Vec<String> = first.collect();
     match (first.as_slice(), factors) {
         ([], []) => "<mn>1</mn>".to_string(),
         ([], [Factor::Sum(text)]) => text.clone(),
-        _ => first.into_iter().chain(factors.iter().map(factor)).collect::<Vec<_>>().join(TIMES),
+        _ => first.into_iter().chain(factors.iter().map(format_factor)).collect::<Vec<_>>().join(TIMES),
     }
 }
 
-fn factor(factor: &Factor) -> String {
+fn format_factor(factor: &Factor) -> String {
     match factor {
         Factor::Single(text) => text.clone(),
-        Factor::Sum(text) => fenced(text),
+        Factor::Sum(text) => put_in_parentheses(text),
     }
 }
 
 /// Formats a name with dots above it, raised to a power.
-pub fn spelled(name: &Name, dots: u8, power: u8) -> String {
-    let base = glyph(&name.base);
+pub fn format_name(name: &Name, dots: u8, power: u8) -> String {
+    let base = format_glyph(&name.base);
     let base = match dots {
         0 => base,
         1 => format!("<mover accent=\"true\">{base}<mo>˙</mo></mover>"),
         _ => format!("<mover accent=\"true\">{base}<mo>¨</mo></mover>"),
     };
-    let indices: Vec<String> = name.indices.iter().map(glyph).collect();
+    let indices: Vec<String> = name.indices.iter().map(format_glyph).collect();
     let indices = match indices.as_slice() {
         [] => return to_power(&base, power),
         [one] => one.clone(),
@@ -215,16 +226,16 @@ pub fn spelled(name: &Name, dots: u8, power: u8) -> String {
     }
 }
 
-fn glyph(glyph: &Glyph) -> String {
+fn format_glyph(glyph: &Glyph) -> String {
     match glyph {
         Glyph::Letter(letter) | Glyph::Greek(_, letter) => format!("<mi>{letter}</mi>"),
         Glyph::Digits(digits) => format!("<mn>{digits}</mn>"),
-        Glyph::Word(word) => format!("<mi>{}</mi>", escaped(word)),
+        Glyph::Word(word) => format!("<mi>{}</mi>", escape_xml(word)),
     }
 }
 
 /// Escapes text for XML.
-fn escaped(text: &str) -> String {
+fn escape_xml(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
@@ -237,14 +248,18 @@ mod tests {
         let term = "<mi>alpha</mi><mi>beta</mi>";
         let style = MathMl { name: &|_| (Name::parse("x"), 0) };
         let sum = [term; 8].join(style.sign(false, false));
-        let break_into_pieces = |text: &str| pieces(text, &BREAKS);
+        let break_into_pieces = |text: &str| split_at_breaks(text, &BREAKS);
         assert_eq!(break_into_pieces(&sum).len(), 8);
-        let product = format!("<mi>m</mi>{}", fenced(&sum));
+        let product = format!("<mi>m</mi>{}", put_in_parentheses(&sum));
         assert_eq!(break_into_pieces(&product).len(), 8);
         assert!(break_into_pieces(&product)[0].starts_with("<mi>m</mi><mo stretchy=\"false\">(</mo>"));
         // Short parentheses remain in one piece, and so do fractions.
         let short = [term; 2].join(style.sign(false, true));
-        assert_eq!(break_into_pieces(&format!("{}{}", fenced(&short), fraction(&sum, &sum))).len(), 1);
-        assert!(!page(&[sum]).contains(BREAKS));
+        assert_eq!(
+            break_into_pieces(&format!("{}{}", put_in_parentheses(&short), format_fraction(&sum, &sum)))
+                .len(),
+            1
+        );
+        assert!(!format_equations_as_html(&[sum]).contains(BREAKS));
     }
 }

@@ -75,7 +75,7 @@ impl Glyph {
 
 impl Name {
     /// Returns a name as a single word.
-    pub fn verbatim(text: &str) -> Name {
+    pub fn single_word_name(text: &str) -> Name {
         Name { base: Glyph::Word(text.to_string()), indices: Vec::new() }
     }
 
@@ -85,17 +85,17 @@ impl Name {
             return Name::of_member(joint, member);
         }
         if text.split('_').any(str::is_empty) {
-            return Name::verbatim(text);
+            return Name::single_word_name(text);
         }
         let (head, tail) = text.split_once('_').map_or((text, None), |(head, tail)| (head, Some(tail)));
-        let (stem, digits) = numbered(head);
+        let (stem, digits) = split_trailing_digits(head);
         let base = Glyph::from_word(stem);
         let digits_of_index = |digits: &str| (!digits.is_empty()).then(|| Glyph::Digits(digits.to_string()));
         if let Glyph::Letter(_) | Glyph::Greek(..) = base {
             let indices = digits_of_index(digits).into_iter().chain(tail.map(Glyph::from_word)).collect();
             return Name { base, indices };
         }
-        let (stem, digits) = numbered(text);
+        let (stem, digits) = split_trailing_digits(text);
         let stem = stem.trim_end_matches('_');
         Name { base: Glyph::Word(stem.to_string()), indices: digits_of_index(digits).into_iter().collect() }
     }
@@ -116,12 +116,12 @@ impl Name {
 }
 
 /// Splits a name before its trailing digits.
-fn numbered(text: &str) -> (&str, &str) {
+fn split_trailing_digits(text: &str) -> (&str, &str) {
     text.split_at(text.trim_end_matches(|c: char| c.is_ascii_digit()).len())
 }
 
 /// Returns a name in plain text, with a prime for each differentiation.
-pub fn primed((name, dots): (String, u8)) -> String {
+pub fn name_with_primes((name, dots): (String, u8)) -> String {
     name + &"'".repeat(usize::from(dots))
 }
 
@@ -140,7 +140,7 @@ impl Names {
         let is_ambiguous = |name: &Name| names.iter().filter(|(_, other)| other == name).count() > 1;
         let ambiguous: Vec<bool> = names.iter().map(|(_, name)| is_ambiguous(name)).collect();
         for ((text, name), _) in names.iter_mut().zip(ambiguous).filter(|(_, ambiguous)| *ambiguous) {
-            *name = Name::verbatim(text);
+            *name = Name::single_word_name(text);
         }
         Names(names)
     }

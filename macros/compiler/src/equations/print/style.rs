@@ -1,6 +1,6 @@
 //! Styles that format the components of a polynomial, and the plain text style.
 
-use crate::algebra::item::{fraction, gcd};
+use crate::algebra::item::{fraction_of_number, gcd};
 use crate::expr::node::Symbol;
 use std::f64::consts::PI;
 use std::fmt;
@@ -88,8 +88,8 @@ impl Number {
 
     /// Classifies a positive number: a fraction, multiple of π or multiple of a root if the integers involved
     /// are small, otherwise up to six significant digits.
-    pub fn classify(value: f64) -> Number {
-        if let Some((p, q)) = fraction(value) {
+    pub fn classify_number(value: f64) -> Number {
+        if let Some((p, q)) = fraction_of_number(value) {
             return Number::Fraction(p, q);
         }
         if let Some((p, q, power)) = multiple_of_pi(value) {
@@ -98,14 +98,14 @@ impl Number {
         if let Some((p, q, root)) = multiple_of_root(value) {
             return Number::Root(p, q, root);
         }
-        let exponent = value.log10().floor() as i32;
+        let exponent = libm::log10(value).floor() as i32;
         if !(-4..9).contains(&exponent) {
             let text = format!("{value:.5e}");
             let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
-            return Number::Scientific(trimmed(digits).to_string(), power.to_string());
+            return Number::Scientific(trim_trailing_zeros(digits).to_string(), power.to_string());
         }
         let decimals = usize::try_from(5 - exponent).unwrap_or(0);
-        Number::Decimal(trimmed(&format!("{value:.decimals$}")).to_string())
+        Number::Decimal(trim_trailing_zeros(&format!("{value:.decimals$}")).to_string())
     }
 }
 
@@ -116,7 +116,7 @@ const SIMPLE: u32 = 48;
 /// 45° and 60°.
 fn multiple_of_root(value: f64) -> Option<(u32, u32, u32)> {
     [2_u32, 3].into_iter().find_map(|root| {
-        let found = fraction(value / f64::from(root).sqrt());
+        let found = fraction_of_number(value / f64::from(root).sqrt());
         found.filter(|(p, _)| *p <= SIMPLE).map(|(p, q)| (p, q, root))
     })
 }
@@ -125,8 +125,8 @@ fn multiple_of_root(value: f64) -> Option<(u32, u32, u32)> {
 /// for π itself also whole degrees up to two revolutions.
 fn multiple_of_pi(value: f64) -> Option<(u32, u32, i8)> {
     for power in [1, 2, -1, -2] {
-        let factor = value / PI.powi(power.into());
-        if let Some((p, q)) = fraction(factor).filter(|(p, _)| *p <= SIMPLE) {
+        let factor = value / libm::pow(PI, power.into());
+        if let Some((p, q)) = fraction_of_number(factor).filter(|(p, _)| *p <= SIMPLE) {
             return Some((p, q, power));
         }
     }
@@ -140,7 +140,7 @@ fn multiple_of_pi(value: f64) -> Option<(u32, u32, i8)> {
     Some((whole / common, 180 / common, 1)).filter(|(p, ..)| *p <= SIMPLE)
 }
 
-fn trimmed(digits: &str) -> &str {
+fn trim_trailing_zeros(digits: &str) -> &str {
     if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
 }
 
@@ -179,16 +179,16 @@ pub struct Plain<'a> {
 
 impl Style for Plain<'_> {
     fn symbol(&self, symbol: Symbol, power: u8) -> String {
-        format!("{}{}", (self.name)(symbol), exponent(power))
+        format!("{}{}", (self.name)(symbol), format_exponent(power))
     }
 
     fn power(&self, sum: &str, power: u8) -> String {
-        format!("({sum}){}", exponent(power))
+        format!("({sum}){}", format_exponent(power))
     }
 
     fn call(&self, function: &str, power: u8, arguments: &[Argument]) -> String {
         let arguments: Vec<&str> = arguments.iter().map(|a| a.text.as_str()).collect();
-        format!("{function}{}({})", exponent(power), arguments.join(", "))
+        format!("{function}{}({})", format_exponent(power), arguments.join(", "))
     }
 
     fn product(&self, number: Option<Number>, factors: &[Factor], divisors: &[Factor]) -> String {
@@ -207,7 +207,7 @@ impl Style for Plain<'_> {
     }
 }
 
-fn exponent(power: u8) -> &'static str {
+fn format_exponent(power: u8) -> &'static str {
     match power {
         2 => "²",
         3 => "³",

@@ -7,7 +7,7 @@ use crate::expr::{Function, Graph};
 /// Names of parameters, coordinates, rates and an input: `m k l`, `x y`, `x' y'`, `u`.
 const NAMES: [&str; 8] = ["m", "k", "l", "x", "y", "x'", "y'", "u"];
 
-fn rank(symbol: Symbol) -> crate::algebra::polynomial::Rank {
+fn rank_of_symbol(symbol: Symbol) -> crate::algebra::polynomial::Rank {
     use crate::algebra::polynomial::Rank;
     match symbol.0 {
         0..3 => Rank::Parameter,
@@ -17,12 +17,12 @@ fn rank(symbol: Symbol) -> crate::algebra::polynomial::Rank {
     }
 }
 
-fn text(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>) -> String {
+fn formatted_text(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>) -> String {
     let graph = Graph::new();
     let symbols = std::array::from_fn(|k| graph.symbol(Symbol(k as u32)));
-    let mut normal = Normal::new(&graph, rank);
+    let mut normal = Normal::new(&graph, rank_of_symbol);
     let p = normal.normal_form(build(&graph, symbols)).unwrap();
-    Writer::new(&normal.ring, &|s| NAMES[s.0 as usize].to_string()).polynomial(&p)
+    Writer::new(&normal.ring, &|s| NAMES[s.0 as usize].to_string()).format_polynomial(&p)
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn numbers() {
         (1.5e-6, "1.5e-6"),
         (2.5e12, "2.5e12"),
     ] {
-        assert_eq!(Number::classify(value).to_string(), expected);
+        assert_eq!(Number::classify_number(value).to_string(), expected);
     }
 }
 
@@ -58,10 +58,10 @@ fn multiples_of_roots() {
         (0.7072, "0.7072"),
         (1.7322, "1.7322"),
     ] {
-        assert_eq!(Number::classify(value).to_string(), expected);
+        assert_eq!(Number::classify_number(value).to_string(), expected);
     }
-    assert_eq!(latex(|g, [m, ..]| m * g.num(0.5 * two)), r"\tfrac{\sqrt{2}}{2}\,m");
-    assert_eq!(latex(|g, [m, ..]| m * g.num(3.0 * three)), r"3\sqrt{3}\,m");
+    assert_eq!(formatted_latex(|g, [m, ..]| m * g.num(0.5 * two)), r"\tfrac{\sqrt{2}}{2}\,m");
+    assert_eq!(formatted_latex(|g, [m, ..]| m * g.num(3.0 * three)), r"3\sqrt{3}\,m");
 }
 
 /// Multiples of powers of π are printed without decimals. Numbers close to them are printed as decimals.
@@ -85,92 +85,113 @@ fn multiples_of_pi() {
         (PI / 2.0 - 1e-5, "1.57079"),
         (1.0001 * PI, "3.14191"),
     ] {
-        assert_eq!(Number::classify(value).to_string(), expected);
+        assert_eq!(Number::classify_number(value).to_string(), expected);
     }
-    assert_eq!(text(|g, [_, k, _, x, ..]| k * (x - g.num(PI / 2.0))), "k (x - pi/2)");
-    assert_eq!(text(|g, [m, k, ..]| m * k * g.num(0.5 / PI)), "1/(2 pi) m k");
+    assert_eq!(formatted_text(|g, [_, k, _, x, ..]| k * (x - g.num(PI / 2.0))), "k (x - pi/2)");
+    assert_eq!(formatted_text(|g, [m, k, ..]| m * k * g.num(0.5 / PI)), "1/(2 pi) m k");
     assert_eq!(
-        text(|g, [_, _, _, x, ..]| (x - g.num(PI / 3.0)).sin()),
+        formatted_text(|g, [_, _, _, x, ..]| (x - g.num(PI / 3.0)).sin()),
         "cos(pi/3) sin(x) - sin(pi/3) cos(x)"
     );
-    assert_eq!(latex(|g, [m, ..]| m * g.num(PI)), r"\pi\,m");
-    assert_eq!(latex(|g, [m, ..]| m * g.num(1.5 * PI)), r"\tfrac{3\pi}{2}\,m");
-    assert_eq!(latex(|g, [m, k, ..]| m / k * g.num(0.5 / PI)), r"\tfrac{1}{2\pi}\,\frac{m}{k}");
+    assert_eq!(formatted_latex(|g, [m, ..]| m * g.num(PI)), r"\pi\,m");
+    assert_eq!(formatted_latex(|g, [m, ..]| m * g.num(1.5 * PI)), r"\tfrac{3\pi}{2}\,m");
+    assert_eq!(formatted_latex(|g, [m, k, ..]| m / k * g.num(0.5 / PI)), r"\tfrac{1}{2\pi}\,\frac{m}{k}");
 }
 
 #[test]
 fn products() {
-    assert_eq!(text(|g, _| g.zero()), "0");
-    assert_eq!(text(|g, [m, _, l, x, ..]| m * l * l * x.cos() * g.num(-1.0 / 3.0)), "-1/3 m l² cos(x)");
-    assert_eq!(text(|_, [m, k, ..]| m / k), "m/k");
-    assert_eq!(text(|g, [m, k, l, ..]| g.one() / (m * k * l * l)), "1/(m k l²)");
-    assert_eq!(text(|_, [m, k, l, x, ..]| m * x / (k + l)), "m x/(k + l)");
-    assert_eq!(text(|_, [m, k, _, _, _, v, ..]| k * (v / m).call(Function::Tanh)), "k tanh(x'/m)");
-    assert_eq!(text(|_, [m, .., u]| m * u), "m u");
+    assert_eq!(formatted_text(|g, _| g.zero()), "0");
+    assert_eq!(
+        formatted_text(|g, [m, _, l, x, ..]| m * l * l * x.cos() * g.num(-1.0 / 3.0)),
+        "-1/3 m l² cos(x)"
+    );
+    assert_eq!(formatted_text(|_, [m, k, ..]| m / k), "m/k");
+    assert_eq!(formatted_text(|g, [m, k, l, ..]| g.one() / (m * k * l * l)), "1/(m k l²)");
+    assert_eq!(formatted_text(|_, [m, k, l, x, ..]| m * x / (k + l)), "m x/(k + l)");
+    assert_eq!(
+        formatted_text(|_, [m, k, _, _, _, v, ..]| k * (v / m).apply_function(Function::Tanh)),
+        "k tanh(x'/m)"
+    );
+    assert_eq!(formatted_text(|_, [m, .., u]| m * u), "m u");
 }
 
 #[test]
 fn groups() {
-    assert_eq!(text(|_, [m, k, _, _, _, v, w, _]| (m + k) * v + m * w), "(m + k) x' + m y'");
-    assert_eq!(text(|_, [m, _, l, x, _, v, ..]| m * v * v * (l + x).square()), "m (l² + 2 l x + x²) x'²");
-    assert_eq!(text(|_, [_, k, l, x, ..]| k * (x - l).square() * 0.5), "1/2 k (x - l)²");
-    assert_eq!(text(|_, [_, k, _, x, y, ..]| -k * (x - y).square()), "-k (x - y)²");
-    assert_eq!(text(|_, [_, k, l, x, ..]| k * x - k * l), "k (x - l)");
-    assert_eq!(text(|_, [m, k, _, x, ..]| m * x.sin() - k * x.sin()), "(m - k) sin(x)");
-    assert_eq!(text(|_, [m, k, _, _, _, v, ..]| -m * v - k * v), "-(m + k) x'");
-    assert_eq!(text(|_, [m, k, l, _, _, v, ..]| k * v / m - l * v / m), "(k - l) x'/m");
+    assert_eq!(formatted_text(|_, [m, k, _, _, _, v, w, _]| (m + k) * v + m * w), "(m + k) x' + m y'");
+    assert_eq!(
+        formatted_text(|_, [m, _, l, x, _, v, ..]| m * v * v * (l + x).square()),
+        "m (l² + 2 l x + x²) x'²"
+    );
+    assert_eq!(formatted_text(|_, [_, k, l, x, ..]| k * (x - l).square() * 0.5), "1/2 k (x - l)²");
+    assert_eq!(formatted_text(|_, [_, k, _, x, y, ..]| -k * (x - y).square()), "-k (x - y)²");
+    assert_eq!(formatted_text(|_, [_, k, l, x, ..]| k * x - k * l), "k (x - l)");
+    assert_eq!(formatted_text(|_, [m, k, _, x, ..]| m * x.sin() - k * x.sin()), "(m - k) sin(x)");
+    assert_eq!(formatted_text(|_, [m, k, _, _, _, v, ..]| -m * v - k * v), "-(m + k) x'");
+    assert_eq!(formatted_text(|_, [m, k, l, _, _, v, ..]| k * v / m - l * v / m), "(k - l) x'/m");
 }
 
 #[test]
 fn lines() {
-    let line = wrapped("alpha + beta (gamma + delta) - epsilon = zeta", 20, "  ");
+    let line = wrap_text("alpha + beta (gamma + delta) - epsilon = zeta", 20, "  ");
     assert_eq!(line, "alpha\n  + beta (gamma\n  + delta)\n  - epsilon = zeta");
-    assert_eq!(wrapped("a + b", 20, "  "), "a + b");
-    assert_eq!(wrapped("indivisible", 5, "  "), "indivisible");
-    let wide = wrapped(&["theta²"; 60].join(" + "), 40, "    ");
+    assert_eq!(wrap_text("a + b", 20, "  "), "a + b");
+    assert_eq!(wrap_text("indivisible", 5, "  "), "indivisible");
+    let wide = wrap_text(&["theta²"; 60].join(" + "), 40, "    ");
     assert!(wide.lines().all(|line| line.chars().count() <= 40), "{wide}");
 }
 
-fn latex(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>) -> String {
+fn formatted_latex(build: impl for<'g> Fn(&'g Graph, [Expr<'g>; 8]) -> Expr<'g>) -> String {
     let graph = Graph::new();
     let symbols = std::array::from_fn(|k| graph.symbol(Symbol(k as u32)));
-    let mut normal = Normal::new(&graph, rank);
+    let mut normal = Normal::new(&graph, rank_of_symbol);
     let p = normal.normal_form(build(&graph, symbols)).unwrap();
     let name_with_primes = |s: Symbol| {
         let name = NAMES[s.0 as usize].trim_end_matches('\'');
         (Name::parse(name), u8::from(NAMES[s.0 as usize].ends_with('\'')))
     };
-    Writer::styled(&normal.ring, Latex { name: &name_with_primes }).polynomial(&p)
+    Writer::with_style(&normal.ring, Latex { name: &name_with_primes }).format_polynomial(&p)
 }
 
 #[test]
 fn latex_products() {
-    assert_eq!(latex(|g, _| g.zero()), "0");
+    assert_eq!(formatted_latex(|g, _| g.zero()), "0");
     assert_eq!(
-        latex(|g, [m, _, l, x, ..]| m * l * l * x.cos() * g.num(-1.0 / 3.0)),
+        formatted_latex(|g, [m, _, l, x, ..]| m * l * l * x.cos() * g.num(-1.0 / 3.0)),
         r"-\tfrac{1}{3}\,m\,l^{2}\,\cos x"
     );
-    assert_eq!(latex(|_, [m, k, ..]| m / k), r"\frac{m}{k}");
-    assert_eq!(latex(|g, [m, k, ..]| g.num(0.5) * m / k), r"\tfrac{1}{2}\,\frac{m}{k}");
-    assert_eq!(latex(|g, [m, k, ..]| g.num(3.0) * m / k), r"\frac{3\,m}{k}");
-    assert_eq!(latex(|g, [m, k, l, ..]| g.one() / (m * k * l * l)), r"\frac{1}{m\,k\,l^{2}}");
-    assert_eq!(latex(|_, [m, k, l, x, ..]| m * x / (k + l)), r"\frac{m\,x}{k + l}");
-    assert_eq!(latex(|_, [m, k, l, _, _, v, ..]| k * v / m - l * v / m), r"\frac{(k - l)\,\dot{x}}{m}");
-    assert_eq!(latex(|_, [_, k, l, x, ..]| k * (x - l).square() * 0.5), r"\tfrac{1}{2}\,k\,(x - l)^{2}");
-    assert_eq!(latex(|g, [m, ..]| m * g.num(1.5e-6)), r"1.5\times 10^{-6}\,m");
+    assert_eq!(formatted_latex(|_, [m, k, ..]| m / k), r"\frac{m}{k}");
+    assert_eq!(formatted_latex(|g, [m, k, ..]| g.num(0.5) * m / k), r"\tfrac{1}{2}\,\frac{m}{k}");
+    assert_eq!(formatted_latex(|g, [m, k, ..]| g.num(3.0) * m / k), r"\frac{3\,m}{k}");
+    assert_eq!(formatted_latex(|g, [m, k, l, ..]| g.one() / (m * k * l * l)), r"\frac{1}{m\,k\,l^{2}}");
+    assert_eq!(formatted_latex(|_, [m, k, l, x, ..]| m * x / (k + l)), r"\frac{m\,x}{k + l}");
+    assert_eq!(
+        formatted_latex(|_, [m, k, l, _, _, v, ..]| k * v / m - l * v / m),
+        r"\frac{(k - l)\,\dot{x}}{m}"
+    );
+    assert_eq!(
+        formatted_latex(|_, [_, k, l, x, ..]| k * (x - l).square() * 0.5),
+        r"\tfrac{1}{2}\,k\,(x - l)^{2}"
+    );
+    assert_eq!(formatted_latex(|g, [m, ..]| m * g.num(1.5e-6)), r"1.5\times 10^{-6}\,m");
 }
 
 #[test]
 fn latex_functions() {
-    assert_eq!(latex(|_, [_, _, _, x, ..]| x.cos() * x.cos()), r"\cos^{2}x");
+    assert_eq!(formatted_latex(|_, [_, _, _, x, ..]| x.cos() * x.cos()), r"\cos^{2}x");
     assert_eq!(
-        latex(|_, [m, k, _, _, _, v, ..]| k * (v / m).call(Function::Tanh)),
+        formatted_latex(|_, [m, k, _, _, _, v, ..]| k * (v / m).apply_function(Function::Tanh)),
         r"k\,\tanh\!\left(\frac{\dot{x}}{m}\right)"
     );
-    assert_eq!(latex(|_, [_, _, _, x, ..]| x.call(Function::Sqrt)), r"\sqrt{x}");
-    assert_eq!(latex(|_, [_, _, _, _, _, v, ..]| v.call(Function::Abs)), r"\left|\dot{x}\right|");
-    assert_eq!(latex(|_, [_, _, _, _, _, v, ..]| v.call(Function::Signum)), r"\operatorname{sgn}\dot{x}");
-    assert_eq!(latex(|_, [_, _, _, x, ..]| x.call(Function::Atan)), r"\arctan x");
+    assert_eq!(formatted_latex(|_, [_, _, _, x, ..]| x.apply_function(Function::Sqrt)), r"\sqrt{x}");
+    assert_eq!(
+        formatted_latex(|_, [_, _, _, _, _, v, ..]| v.apply_function(Function::Abs)),
+        r"\left|\dot{x}\right|"
+    );
+    assert_eq!(
+        formatted_latex(|_, [_, _, _, _, _, v, ..]| v.apply_function(Function::Signum)),
+        r"\operatorname{sgn}\dot{x}"
+    );
+    assert_eq!(formatted_latex(|_, [_, _, _, x, ..]| x.apply_function(Function::Atan)), r"\arctan x");
 }
 
 #[test]
@@ -196,17 +217,17 @@ fn latex_names() {
         ("table.x", r"x_{\mathrm{table}}"),
         ("hip1.second", r"\mathrm{second}_{\mathrm{hip1}}"),
     ] {
-        assert_eq!(super::latex::spelled(&Name::parse(text), 0), expected);
+        assert_eq!(super::latex::format_name(&Name::parse(text), 0), expected);
     }
-    assert_eq!(super::latex::spelled(&Name::parse("theta2"), 1), r"\dot{\theta}_{2}");
-    assert_eq!(super::latex::spelled(&Name::parse("x"), 2), r"\ddot{x}");
+    assert_eq!(super::latex::format_name(&Name::parse("theta2"), 1), r"\dot{\theta}_{2}");
+    assert_eq!(super::latex::format_name(&Name::parse("x"), 2), r"\ddot{x}");
 }
 
 /// Names that would be indistinguishable in print are not split.
 #[test]
 fn names_are_kept_apart() {
     let names = names::Names::new(["m1", "m_1", "table.x", "x_table", "m2"].into_iter());
-    let spell_in_latex = |text| super::latex::spelled(&names.get(text), 0);
+    let spell_in_latex = |text| super::latex::format_name(&names.get(text), 0);
     assert_eq!(spell_in_latex("m1"), r"\mathrm{m1}");
     assert_eq!(spell_in_latex("m_1"), r"\mathrm{m\_1}");
     assert_eq!(spell_in_latex("table.x"), r"\mathrm{table.x}");

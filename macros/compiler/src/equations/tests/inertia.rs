@@ -16,19 +16,19 @@ const SATELLITE: &str = "struct Satellite { mu: f64, m: f64, a: f64, b: f64, c: 
 #[test]
 fn a_body_in_space_has_eulers_equations_whatever_acts_on_it() {
     let text = with_model("0 * z", SATELLITE, |model| {
-        let joints = crate::kinematics::joints(&model);
+        let joints = crate::kinematics::joints_of_model(&model);
         let mass = crba::mass_matrix(&model, &joints);
         assert!(derive(&model, &joints, &mass, None, &Limits::READABLE).is_none());
         let e = derive_inertia(&model, &joints, &mass, &Limits::READABLE).expect("short");
         check_text(&model, &e);
-        crate::equations(&model)
+        crate::equations_as_text(&model)
     });
     let free = with_model("g * z", FREE, |model| {
         let mut model = model;
         model.gravity = Vec3([model.graph.zero(); 3]);
-        crate::equations(&model)
+        crate::equations_as_text(&model)
     });
-    let (found, expected) = (printed(&text), printed(&free));
+    let (found, expected) = (sides_of_equations(&text), sides_of_equations(&free));
     assert_eq!(found.len(), 7);
     for (k, (found, expected)) in found.iter().zip(&expected).enumerate().skip(1) {
         assert_eq!((&found.0, &found.1), (&expected.0, &format!("Q{k}")));
@@ -43,7 +43,7 @@ fn a_body_in_space_has_eulers_equations_whatever_acts_on_it() {
 }
 
 /// Returns the constant `EQUATIONS` of a mechanism.
-fn constant(arguments: &str, item: &str) -> String {
+fn equations_constant(arguments: &str, item: &str) -> String {
     let emitted = crate::expand(arguments.parse().unwrap(), item.parse().unwrap(), Path::new(""));
     let file = syn::parse_file(&emitted.text).expect("a file");
     let constants = file.items.iter().filter_map(|item| match item {
@@ -62,12 +62,12 @@ fn constant(arguments: &str, item: &str) -> String {
 
 #[test]
 fn omitted_terms_are_reported() {
-    let text = constant("gravity = -9.81 * z", SKEW);
+    let text = equations_constant("gravity = -9.81 * z", SKEW);
     for part in
         ["M(q) v' + h(q, v) = tau", "too many terms to be readable", "`equations = lagrange`", "`kane`"]
     {
         assert!(text.contains(part), "{text}");
     }
-    let text = constant("gravity = -9.81 * z, equations = structure", CART_POLE);
+    let text = equations_constant("gravity = -9.81 * z, equations = structure", CART_POLE);
     assert!(text.contains("`equations = structure` omits the terms"), "{text}");
 }

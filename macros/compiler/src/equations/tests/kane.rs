@@ -1,7 +1,7 @@
 //! Reads Kane's equations in independent velocities back and compares them with the accelerations of
 //! Lagrange's equations with multipliers.
 
-use super::super::kane::{kane, written_kane};
+use super::super::kane::{kane_equations, written_kane};
 use super::*;
 use crate::mechanics::speeds::InSpeeds;
 
@@ -55,7 +55,7 @@ const CAM: &str = "struct Cam { m: f64, l: f64, w: f64,
     #[acts(on = first)] push: Force }";
 
 /// Solves a small linear system by elimination with pivoting.
-fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
+fn solve_linear_system(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     let n = rows.len();
     for k in 0..n {
         let pivot = (k..n).max_by(|a, b| rows[*a][k].abs().total_cmp(&rows[*b][k].abs())).expect("a row");
@@ -73,11 +73,12 @@ fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
 /// Checks the equations of the printed text at random states, with accelerations from Lagrange's equations
 /// with multipliers. Returns the text.
 pub(super) fn check_printed(model: &Model<'_>) -> String {
-    let joints = crate::kinematics::joints(model);
+    let joints = crate::kinematics::joints_of_model(model);
     let speeds = InSpeeds::new(model);
     let native = speeds.as_ref().map_or(model, |s| &s.native);
     let named = speeds.as_ref().map_or(model, |s| &s.model);
-    let found = kane(native, &joints, speeds.as_ref()).unwrap_or_else(|_| panic!("{} is short", model.name));
+    let found = kane_equations(native, &joints, speeds.as_ref())
+        .unwrap_or_else(|_| panic!("{} is short", model.name));
     let text = written_kane(named, &found).plain;
     let lagrange = lagrange::derive(native, &joints);
     let (nv, nc) = (native.nv(), native.constraints.len());
@@ -85,19 +86,19 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
     let mut all =
         [lagrange.mass_matrix.concat(), lagrange.bias, forces::generalized_forces(native, &joints)].concat();
     all.extend(rows.concat());
-    all.extend(constraints::biases(native));
-    all.extend(constraints::rates(native));
+    all.extend(constraints::constraint_biases(native));
+    all.extend(constraints::constraint_velocities(native));
     for seed in 1..8 {
-        let at = state(native, seed);
+        let at = random_symbol_values(native, seed);
         // Velocities that satisfy the constraints: the projection of random ones.
-        let rates = eval(&[rows.concat(), constraints::rates(native)].concat(), &at);
+        let rates = eval(&[rows.concat(), constraints::constraint_velocities(native)].concat(), &at);
         let (j, rate) = rates.split_at(nv * nc);
         let gram = (0..nc).map(|i| {
             let product_of_jacobian_rows =
                 |k: usize| (0..nv).map(|c| j[i * nv + c] * j[k * nv + c]).sum::<f64>();
             (0..nc).map(product_of_jacobian_rows).chain([rate[i]]).collect()
         });
-        let shares = solve(gram.collect());
+        let shares = solve_linear_system(gram.collect());
         let v: Vec<f64> = (0..nv)
             .map(|c| {
                 let own = at(Quantity::Velocity(c).symbol());
@@ -124,7 +125,7 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
         system.extend((0..nc).map(|k| {
             j[k * nv..][..nv].iter().copied().chain(vec![0.0; nc]).chain([-drift[k]]).collect::<Vec<f64>>()
         }));
-        let a = solve(system)[..nv].to_vec();
+        let a = solve_linear_system(system)[..nv].to_vec();
         // Conversion to generalized speeds, if any.
         let (v, a) = match &speeds {
             None => (v, a),
@@ -149,14 +150,15 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
             _ => at(s),
         };
         for (motion, force) in found.motion.iter().zip(&found.forces) {
-            let sides = [motion, force].map(|p| found.ring.evaluate(p, &value_with_accelerations));
+            let sides = [motion, force].map(|p| found.ring.evaluate_polynomial(p, &value_with_accelerations));
             let size = motion.terms.iter().map(|t| Polynomial { terms: vec![*t] });
-            let size =
-                size.map(|p| found.ring.evaluate(&p, &value_with_accelerations).abs()).fold(1.0, f64::max);
+            let size = size
+                .map(|p| found.ring.evaluate_polynomial(&p, &value_with_accelerations).abs())
+                .fold(1.0, f64::max);
             assert!((sides[0] - sides[1]).abs() <= 1e-10 * size, "{sides:?}, state {seed}: {text}");
         }
         let by_name = by_name(named, &value_with_accelerations);
-        let lines = printed(&text);
+        let lines = sides_of_equations(&text);
         assert!(lines.len() >= nv, "{text}");
         for (left, right) in &lines {
             // Rates of coordinates that speeds replace have no reference value here.
@@ -164,7 +166,7 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
                 continue;
             }
             let line = format!("{left} = {right}");
-            let (left, right) = (value(left, &by_name), value(right, &by_name));
+            let (left, right) = (evaluate_text(left, &by_name), evaluate_text(right, &by_name));
             // Holonomic constraints are printed as residuals, which are not zero since the states are random.
             let residuals = eval(&constraints::residuals(native), &at);
             if residuals.iter().any(|x| (x - left).abs() < 1e-12 && right == 0.0) {

@@ -41,7 +41,7 @@ fn latex_of(gravity: &str, item: &str) -> String {
 
 /// Returns the errors in a LaTeX text: unbalanced braces, unknown commands, `\left` without `\right`, indices
 /// without braces.
-pub(super) fn faults(text: &str) -> Vec<String> {
+pub(super) fn latex_errors(text: &str) -> Vec<String> {
     let mut faults = Vec::new();
     let mut open: Vec<&str> = Vec::new();
     let mut close = |open: &mut Vec<&str>, what: &str, at: usize| {
@@ -92,9 +92,9 @@ pub(super) fn faults(text: &str) -> Vec<String> {
 
 #[test]
 fn faults_are_found() {
-    assert_eq!(faults("\\left(\\tfrac{1}{2}\\,m\\right)^{2} \\\\ x_{1}"), [""; 0]);
+    assert_eq!(latex_errors("\\left(\\tfrac{1}{2}\\,m\\right)^{2} \\\\ x_{1}"), [""; 0]);
     for text in ["{", "}", "\\left(", "(\\right)", "\\foo", "\\%", "x_1", "x^2", "θ", "{(})", "\\"] {
-        assert!(!faults(text).is_empty(), "{text}");
+        assert!(!latex_errors(text).is_empty(), "{text}");
     }
 }
 
@@ -105,10 +105,10 @@ fn all_mechanisms_are_well_formed() {
     for (gravity, item) in numbers.into_iter().chain(items.map(|item| ("-g * z", item))) {
         for gravity in [gravity.to_string(), gravity.replace('z', "y")] {
             let text = latex_of(&gravity, item);
-            assert_eq!(faults(&text), [""; 0], "{text}");
+            assert_eq!(latex_errors(&text), [""; 0], "{text}");
             assert!(text.starts_with("\\begin{aligned}\n& \\mathcal{L} = "), "{text}");
             assert!(text.ends_with("\n\\end{aligned}\n"), "{text}");
-            let plain = with_model(&gravity, item, |model| crate::equations(&model));
+            let plain = with_model(&gravity, item, |model| crate::equations_as_text(&model));
             let count_equations = |text: &str, sign: &str| text.matches(sign).count();
             assert_eq!(count_equations(&text, " = "), count_equations(&plain, " = "), "{text}");
             let lines = count_equations(&text, "\n& ") - count_equations(&text, "\n& \\quad");

@@ -7,15 +7,15 @@ use super::*;
 /// LaTeX.
 fn with_linear(gravity: &str, item: &str, f: impl for<'g> Fn(&Model<'g>, &Linear, &str, &str)) {
     with_model(gravity, item, |model| {
-        let joints = crate::kinematics::joints(&model);
+        let joints = crate::kinematics::joints_of_model(&model);
         let mass = crba::mass_matrix(&model, &joints);
         assert!(!model.equilibria.is_empty());
         for at in &model.equilibria {
             let mut cx = Diagnostics::new();
-            let found = linear::linear(&model, &joints, &mass, at, &mut cx);
+            let found = linear::derive_linear_equations(&model, &joints, &mass, at, &mut cx);
             let found = found.unwrap_or_else(|| panic!("{:?}", cx.messages()));
             let written = linear::written_linear(&model, at, &found);
-            assert_eq!(latex::faults(&written.latex), [""; 0], "{}", written.latex);
+            assert_eq!(latex::latex_errors(&written.latex), [""; 0], "{}", written.latex);
             f(&model, &found, &written.plain, &written.latex);
         }
     });
@@ -27,7 +27,7 @@ fn check_rows(model: &Model<'_>, found: &Linear) {
     let (nv, nu) = (model.nv(), model.nu());
     let at = &model.equilibria[0];
     let states = at.states.len();
-    let joints = crate::kinematics::joints(model);
+    let joints = crate::kinematics::joints_of_model(model);
     let lagrange = lagrange::derive(model, &joints);
     let parameter_value = |s: Symbol| 0.4 + 1.3 * f64::from(s.0 % 7);
     let value_at_rest = |k: &Expr<'_>| crate::expr::eval::eval_one(*k, &parameter_value);
@@ -65,12 +65,16 @@ fn check_rows(model: &Model<'_>, found: &Linear) {
             Quantity::Parameter(_) => parameter_value(s),
             _ => f64::from(u8::from(s == what.symbol())),
         };
-        sides.iter().map(|p| found.ring.evaluate(p, &indicator_of_quantity)).collect()
+        sides.iter().map(|p| found.ring.evaluate_polynomial(p, &indicator_of_quantity)).collect()
     };
     for k in 0..nv {
         // All coordinates are plain here.
         let by_q = central_difference(&|d| balance_values(&displaced_list(&q, k, d), &still, &u, 0.0));
-        assert_small(&coefficients_of_quantity(linear::deviation(k), &found.motion), &by_q, "stiffness");
+        assert_small(
+            &coefficients_of_quantity(linear::deviation_symbol(k), &found.motion),
+            &by_q,
+            "stiffness",
+        );
         let by_v = central_difference(&|d| balance_values(&q, &displaced_list(&still, k, d), &u, 0.0));
         assert_small(&coefficients_of_quantity(Quantity::Velocity(k), &found.motion), &by_v, "damping");
     }
@@ -84,7 +88,7 @@ fn check_rows(model: &Model<'_>, found: &Linear) {
     }
     if states > 0 {
         let by_x = central_difference(&|d| balance_values(&q, &still, &u, d));
-        assert_small(&coefficients_of_quantity(linear::deviation(nv), &found.motion), &by_x, "states");
+        assert_small(&coefficients_of_quantity(linear::deviation_symbol(nv), &found.motion), &by_x, "states");
     }
 }
 

@@ -1,17 +1,17 @@
 //! Reads the MathML of the documentation back and compares its values with those of the plain text.
 
-use super::super::print::mathml::spelled;
+use super::super::print::mathml::format_name;
 use super::*;
 use roxmltree::{Document, Node};
 
 /// Converts an element to plain text, with simplified names of symbols.
-fn text(node: Node<'_, '_>) -> String {
+fn element_to_text(node: Node<'_, '_>) -> String {
     let children: Vec<Node<'_, '_>> = node.children().filter(Node::is_element).collect();
     let own_text = || node.text().unwrap_or("").to_string();
-    let child_text = |k: usize| text(children[k]);
+    let child_text = |k: usize| element_to_text(children[k]);
     let subscript_with_dots = |index: String| index.replace(',', ".");
     match node.tag_name().name() {
-        "math" | "mrow" => row(&children),
+        "math" | "mrow" => concatenate_elements(&children),
         "mn" | "mi" => own_text(),
         "mo" => match own_text().as_str() {
             "+" => " + ".to_string(),
@@ -26,9 +26,14 @@ fn text(node: Node<'_, '_>) -> String {
         "mover" => child_text(0) + &child_text(1),
         "msub" => format!("{}_{}", child_text(0), subscript_with_dots(child_text(1))),
         "msubsup" => {
-            format!("{}_{}{}", child_text(0), subscript_with_dots(child_text(1)), power(&child_text(2)))
+            format!(
+                "{}_{}{}",
+                child_text(0),
+                subscript_with_dots(child_text(1)),
+                superscript_of_digit(&child_text(2))
+            )
         }
-        "msup" => child_text(0) + &power(&child_text(1)),
+        "msup" => child_text(0) + &superscript_of_digit(&child_text(1)),
         "mfrac" => format!("({})/({})", child_text(0), child_text(1)),
         "msqrt" => format!("sqrt({})", child_text(0)),
         other => panic!("<{other}>"),
@@ -36,29 +41,29 @@ fn text(node: Node<'_, '_>) -> String {
 }
 
 /// Concatenates elements. An argument without parentheses gets them.
-fn row(children: &[Node<'_, '_>]) -> String {
+fn concatenate_elements(children: &[Node<'_, '_>]) -> String {
     let (mut out, mut of) = (String::new(), false);
     for child in children {
-        let one = text(*child);
+        let one = element_to_text(*child);
         out += &if of && !one.starts_with('(') { format!("({one})") } else { one };
         of = child.text() == Some("\u{2061}");
     }
     out
 }
 
-fn power(digit: &str) -> String {
+fn superscript_of_digit(digit: &str) -> String {
     ["", "", "²", "³", "⁴", "⁵", "⁶", "⁷"][digit.parse::<usize>().expect("a power")].to_string()
 }
 
 /// Returns both sides of each equation of a page.
-fn lines(page: &str) -> Vec<(String, String)> {
+fn equations_of_page(page: &str) -> Vec<(String, String)> {
     let document = Document::parse(page).unwrap_or_else(|e| panic!("{e}: {page}"));
     let paragraphs = document.root_element().children();
     paragraphs
         .map(|paragraph| {
             let parts: Vec<Node<'_, '_>> = paragraph.children().filter(Node::is_element).collect();
             // Each term is a formula of its own.
-            let line = parts.iter().map(|part| text(*part)).collect::<String>();
+            let line = parts.iter().map(|part| element_to_text(*part)).collect::<String>();
             let (left, right) = line.split_once(" = ").unwrap_or_else(|| panic!("{line}"));
             (left.to_string(), right.to_string())
         })
@@ -67,13 +72,13 @@ fn lines(page: &str) -> Vec<(String, String)> {
 
 /// Checks that both texts of a mechanism have the same values.
 fn check_page(model: &Model<'_>) {
-    let joints = crate::kinematics::joints(model);
+    let joints = crate::kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
     let e = derive(model, &joints, &mass, None, &Limits::READABLE).expect("small");
-    let written = written(model, &e);
-    let (plain, page) = (printed(&written.plain), lines(&written.mathml));
+    let written = format_equations(model, &e);
+    let (plain, page) = (sides_of_equations(&written.plain), equations_of_page(&written.mathml));
     assert_eq!(plain.len(), page.len(), "{}", written.mathml);
-    let rates = written::rates(model);
+    let rates = written::marks_of_coordinate_rates(model);
     let names = written::names_with(model, &[]);
     let symbols = (0..model.parameters.len())
         .map(Quantity::Parameter)
@@ -84,13 +89,13 @@ fn check_page(model: &Model<'_>) {
         .chain([Quantity::Time]);
     let spelled: Vec<(String, Symbol)> = symbols
         .map(|q| {
-            let (name, dots) = written::name(model, &rates, q.symbol());
-            let spelled = spelled(&names.get(&name), dots, 1);
-            (text(Document::parse(&spelled).unwrap().root_element()), q.symbol())
+            let (name, dots) = written::name_and_derivative_order(model, &rates, q.symbol());
+            let spelled = format_name(&names.get(&name), dots, 1);
+            (element_to_text(Document::parse(&spelled).unwrap().root_element()), q.symbol())
         })
         .collect();
     for seed in 1..4 {
-        let symbol = state(model, seed);
+        let symbol = random_symbol_values(model, seed);
         let by_glyphs = |word: &str| match spelled.iter().find(|(name, _)| name == word) {
             Some((_, s)) => symbol(*s),
             None => panic!("{word}: {spelled:?}"),
@@ -98,9 +103,13 @@ fn check_page(model: &Model<'_>) {
         let names = by_name(model, &symbol);
         for (k, (plain, page)) in plain.iter().zip(&page).enumerate() {
             if k > 0 {
-                assert_near(&[value(&page.0, &by_glyphs)], &[value(&plain.0, &names)], &page.0);
+                assert_near(
+                    &[evaluate_text(&page.0, &by_glyphs)],
+                    &[evaluate_text(&plain.0, &names)],
+                    &page.0,
+                );
             }
-            assert_near(&[value(&page.1, &by_glyphs)], &[value(&plain.1, &names)], &page.1);
+            assert_near(&[evaluate_text(&page.1, &by_glyphs)], &[evaluate_text(&plain.1, &names)], &page.1);
         }
     }
 }
@@ -139,6 +148,6 @@ fn all_forms_have_pages() {
         });
         let page = page.unwrap_or_else(|| panic!("{tokens}"));
         let html = page.trim_start().lines().next().expect("a line");
-        assert!(lines(html).len() >= 2, "{words}: {html}");
+        assert!(equations_of_page(html).len() >= 2, "{words}: {html}");
     }
 }

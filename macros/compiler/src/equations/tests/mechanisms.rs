@@ -185,7 +185,7 @@ struct Turns {
 }";
 
 /// Returns a row of masses with springs between neighbours.
-pub fn masses(n: usize) -> String {
+pub fn masses_with_springs(n: usize) -> String {
     let mut items = String::new();
     for k in 0..n {
         let energy = match k {

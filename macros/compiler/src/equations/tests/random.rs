@@ -11,7 +11,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// Returns a chain of pins and sleeves with a spring, a dashpot and an input. Optionally its base is a table
 /// that rotates at a prescribed speed, its first two joints are constrained, or it can rotate freely about
 /// the vertical.
-fn chain(r: &mut Random, driven: bool, constrained: bool, free: bool) -> String {
+fn random_chain(r: &mut Random, driven: bool, constrained: bool, free: bool) -> String {
     let mut pick = |n: u64| r.number_below(n) as usize;
     let length = 2 + pick(2);
     let mut item = "struct Chain { g: f64, l: f64, k: f64, c: f64,".to_string();
@@ -67,23 +67,23 @@ fn all_forms_agree() {
     let mut compared = [0; 4];
     for k in 0..48 {
         let (driven, constrained) = (k % 4 == 1 || k % 4 == 3, k % 4 > 1);
-        let item = chain(&mut random, driven, constrained, k % 8 == 0);
+        let item = random_chain(&mut random, driven, constrained, k % 8 == 0);
         with_model("-g * z", &item, |model| {
-            let joints = crate::kinematics::joints(&model);
+            let joints = crate::kinematics::joints_of_model(&model);
             let mass = crba::mass_matrix(&model, &joints);
             if derive(&model, &joints, &mass, None, &Limits::READABLE).is_some() {
-                check(&model);
+                check_equations(&model);
                 compared[0] += 1;
             }
-            if constrained && super::super::kane::kane(&model, &joints, None).is_ok() {
+            if constrained && super::super::kane::kane_equations(&model, &joints, None).is_ok() {
                 check_printed(&model);
                 compared[2] += 1;
             }
-            if !constrained && canonical(&model, &joints, &mass).is_some() {
+            if !constrained && canonical_equations(&model, &joints, &mass).is_some() {
                 check_canonical(&model);
                 compared[1] += 1;
             }
-            if !constrained && !driven && !routh::cyclic(&model, &joints).is_empty() {
+            if !constrained && !driven && !routh::cyclic_coordinates(&model, &joints).is_empty() {
                 check_whole(&model);
                 compared[3] += 1;
             }

@@ -9,14 +9,14 @@ mod numbers;
 pub(super) mod text;
 
 use numbers::{Numbers, assert_same_roots, eigenvalues, roots};
-use text::{Text, Values, value};
+use text::{Text, Values, evaluate_text};
 
 /// Compares the printed rows with accelerations by finite differences.
 #[track_caller]
 fn check_rows_of(text: &Text, names: &[&str], a: &[Vec<f64>], parameters: Values<'_>) {
     let n = names.len();
     let coefficient_column =
-        |name: &str, mark: &str| text.column(&format!("{name}{mark}"), false, parameters);
+        |name: &str, mark: &str| text.coefficient_column(&format!("{name}{mark}"), false, parameters);
     let mass: Vec<Vec<f64>> = names.iter().map(|name| coefficient_column(name, "''")).collect();
     for (k, mark) in (0..2 * n).map(|k| (k, if k < n { "" } else { "'" })) {
         let force = coefficient_column(names[k % n], mark);
@@ -36,13 +36,17 @@ fn check_rows_of(text: &Text, names: &[&str], a: &[Vec<f64>], parameters: Values
 
 /// Calls `f` with the printed linear equations of all equilibria, and with a numerical model of the
 /// mechanism.
-fn read<R>(gravity: &str, item: &str, f: impl for<'g> FnOnce(Numbers<'g>, Vec<Text>) -> R) -> R {
+fn with_linear_equations<R>(
+    gravity: &str,
+    item: &str,
+    f: impl for<'g> FnOnce(Numbers<'g>, Vec<Text>) -> R,
+) -> R {
     with_model(gravity, item, |model| {
-        let joints = crate::kinematics::joints(&model);
+        let joints = crate::kinematics::joints_of_model(&model);
         let mass = crba::mass_matrix(&model, &joints);
         let text_of_equilibrium = |at| {
             let mut cx = Diagnostics::new();
-            let found = super::super::linear::linear(&model, &joints, &mass, at, &mut cx);
+            let found = super::super::linear::derive_linear_equations(&model, &joints, &mass, at, &mut cx);
             let found = found.unwrap_or_else(|| panic!("{:?}", cx.messages()));
             Text::parse(&super::super::linear::written_linear(&model, at, &found).plain)
         };
@@ -60,14 +64,14 @@ fn values_by_name<'a>(names: &'a [&str], values: &'a [f64]) -> impl Fn(&str) -> 
 }
 
 /// Returns a generator of random numbers in a range.
-fn random(seed: u64, low: f64, high: f64) -> impl FnMut() -> f64 {
+fn random_generator(seed: u64, low: f64, high: f64) -> impl FnMut() -> f64 {
     let mut random = Random(2 * seed + 1);
     // The first numbers of a small seed are small.
     (0..20).for_each(|_| _ = random.number_below(2));
     move || low + (high - low) * random.number_below(100_000) as f64 / 100_000.0
 }
 
-fn largest(roots: &[Complex<f64>]) -> f64 {
+fn largest_real_part(roots: &[Complex<f64>]) -> f64 {
     roots.iter().map(|z| z.re).fold(f64::MIN, f64::max)
 }
 
@@ -102,18 +106,18 @@ const BALANCE: &str = "struct CartPole {
 #[test]
 fn rows_are_those_of_lagranges_equations() {
     let names = ["cart_mass", "pole_mass", "length", "stiffness", "damping"];
-    let mut next = random(3, 0.3, 2.3);
-    read("-9.81 * y", BALANCE, |numbers, texts| {
+    let mut next = random_generator(3, 0.3, 2.3);
+    with_linear_equations("-9.81 * y", BALANCE, |numbers, texts| {
         for _ in 0..20 {
             let values: Vec<f64> = (0..5).map(|_| next()).collect();
             let parameters = values_by_name(&names, &values);
             for (text, angle) in texts.iter().zip([0.0, PI / 3.0]) {
                 let torque = values[3] * angle - 9.81 * values[1] * values[2] / 2.0 * angle.sin();
-                let a = numbers.linear(&[0.0, angle], &[0.0, torque], &values);
+                let a = numbers.linear_system_matrix(&[0.0, angle], &[0.0, torque], &values);
                 check_rows_of(text, &["rail", "hinge"], &a, &parameters);
-                let of_input = |name: &str| text.column(name, true, &parameters);
+                let of_input = |name: &str| text.coefficient_column(name, true, &parameters);
                 assert_eq!([of_input("push"), of_input("motor")], [[1.0, 0.0], [0.0, 1.0]]);
-                assert_same_roots(&text.roots(&parameters), &eigenvalues(&a), 1e-4);
+                assert_same_roots(&text.characteristic_roots(&parameters), &eigenvalues(&a), 1e-4);
             }
         }
     });
@@ -144,8 +148,9 @@ const CRAFT: &str = "struct Craft {
 fn small_rotations_are_those_of_lagranges_equations() {
     let (names, values) = (["m", "a", "c", "arm", "drag"], [1.3, 0.2, 0.35, 0.1, 0.4]);
     let joints = ["pose.dx", "pose.dy", "pose.dz", "pose.rx", "pose.ry", "pose.rz"];
-    read("-9.81 * z", CRAFT, |numbers, texts| {
-        let a = numbers.linear(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], &[9.81 * 1.3, 0.0], &values);
+    with_linear_equations("-9.81 * z", CRAFT, |numbers, texts| {
+        let a =
+            numbers.linear_system_matrix(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], &[9.81 * 1.3, 0.0], &values);
         check_rows_of(&texts[0], &joints, &a, &values_by_name(&names, &values));
     });
 }
@@ -182,17 +187,18 @@ const ROW: &str = "struct Row {
 #[test]
 fn conditions_of_three_masses_are_those_of_eigenvalues() {
     let names = ["k1", "k2", "k3", "d"];
-    let mut next = random(5, -0.6, 2.2);
-    read("0 * x", ROW, |numbers, texts| {
+    let mut next = random_generator(5, -0.6, 2.2);
+    with_linear_equations("0 * x", ROW, |numbers, texts| {
         let text = &texts[0];
         assert_eq!(text.verdict, "Asymptotically stable where");
         let (mut stable, mut unstable) = (0, 0);
         for _ in 0..400 {
             let values: Vec<f64> = (0..4).map(|_| next()).collect();
-            let largest = largest(&eigenvalues(&numbers.linear(&[0.0; 3], &[], &values)));
+            let largest =
+                largest_real_part(&eigenvalues(&numbers.linear_system_matrix(&[0.0; 3], &[], &values)));
             if largest.abs() > 1e-5 {
                 assert_eq!(
-                    text.holds(&values_by_name(&names, &values)),
+                    text.satisfies_conditions(&values_by_name(&names, &values)),
                     largest < 0.0,
                     "{values:?} {largest}"
                 );
@@ -236,8 +242,8 @@ const ZIEGLER: &str = "struct Ziegler {
 #[test]
 fn a_follower_force_makes_a_column_flutter() {
     let names = ["m", "l", "k", "p"];
-    let mut next = random(9, 0.5, 2.5);
-    read("0 * x", ZIEGLER, |numbers, texts| {
+    let mut next = random_generator(9, 0.5, 2.5);
+    with_linear_equations("0 * x", ZIEGLER, |numbers, texts| {
         let text = &texts[0];
         assert_eq!(text.verdict, "Stable, all deviations oscillate, where");
         for _ in 0..150 {
@@ -245,9 +251,9 @@ fn a_follower_force_makes_a_column_flutter() {
             for (part, stable) in [(0.2, true), (0.999, true), (1.001, false), (1.4, false)] {
                 let values = [m, l, k, part * (3.5 - 2.0_f64.sqrt()) * k / l];
                 let parameters = values_by_name(&names, &values);
-                assert_eq!(text.holds(&parameters), stable, "{part} {values:?}");
-                let exact = eigenvalues(&numbers.linear(&[0.0; 2], &[], &values));
-                assert_same_roots(&text.roots(&parameters), &exact, 1e-3);
+                assert_eq!(text.satisfies_conditions(&parameters), stable, "{part} {values:?}");
+                let exact = eigenvalues(&numbers.linear_system_matrix(&[0.0; 2], &[], &values));
+                assert_same_roots(&text.characteristic_roots(&parameters), &exact, 1e-3);
             }
         }
     });
@@ -275,16 +281,19 @@ const HOOP: &str = "struct Hoop {
 #[test]
 fn a_bead_oscillates_about_both_equilibria() {
     let names = ["g", "m", "radius", "spin"];
-    read("-g * z", HOOP, |numbers, texts| {
+    with_linear_equations("-g * z", HOOP, |numbers, texts| {
         for values in
             [[9.81, 0.7, 0.5, 6.0], [1.6, 0.7, 0.8, 2.1], [9.81, 0.7, 0.5, 4.0], [2.0, 0.3, 1.0, 1.0]]
         {
             let [g, _, radius, spin] = values;
             let parameters = values_by_name(&names, &values);
             let above = spin * spin * radius > g;
-            assert_eq!([texts[0].holds(&parameters), texts[1].holds(&parameters)], [!above, above]);
+            assert_eq!(
+                [texts[0].satisfies_conditions(&parameters), texts[1].satisfies_conditions(&parameters)],
+                [!above, above]
+            );
             let [below, side] = [g / radius - spin * spin, spin * spin - (g / (radius * spin)).powi(2)];
-            let squared_frequency = |text: &Text| value(&text.frequency, &parameters).powi(2);
+            let squared_frequency = |text: &Text| evaluate_text(&text.frequency, &parameters).powi(2);
             let (found, expected) = if above {
                 (squared_frequency(&texts[1]), side)
             } else {
@@ -292,8 +301,8 @@ fn a_bead_oscillates_about_both_equilibria() {
             };
             assert!((found - expected).abs() < 1e-12 * expected, "{found} {expected}");
             let angle = if above { (g / (spin * spin * radius)).acos() } else { 0.0 };
-            let roots = eigenvalues(&numbers.linear(&[angle], &[], &values));
-            assert_same_roots(&texts[usize::from(above)].roots(&parameters), &roots, 1e-6);
+            let roots = eigenvalues(&numbers.linear_system_matrix(&[angle], &[], &values));
+            assert_same_roots(&texts[usize::from(above)].characteristic_roots(&parameters), &roots, 1e-6);
         }
     });
 }
@@ -325,8 +334,8 @@ const LATE: &str = "struct Late {
 #[test]
 fn a_lag_makes_control_unstable() {
     let names = ["m", "c", "k", "lag", "gain"];
-    let mut next = random(12, 0.1, 2.1);
-    read("0 * x", LATE, |_, texts| {
+    let mut next = random_generator(12, 0.1, 2.1);
+    with_linear_equations("0 * x", LATE, |_, texts| {
         let (mut stable, mut unstable) = (0, 0);
         for _ in 0..200 {
             let values = [next(), 0.3 * next(), next(), next(), next()];
@@ -334,9 +343,9 @@ fn a_lag_makes_control_unstable() {
             let parameters = values_by_name(&names, &values);
             let cubic = [k + gain, c + lag * k, m + lag * c, lag * m];
             let expected = cubic[2] * cubic[1] > cubic[3] * cubic[0];
-            assert_eq!(texts[0].holds(&parameters), expected, "{values:?}");
+            assert_eq!(texts[0].satisfies_conditions(&parameters), expected, "{values:?}");
             *(if expected { &mut stable } else { &mut unstable }) += 1;
-            assert_same_roots(&texts[0].roots(&parameters), &roots(&cubic), 1e-6);
+            assert_same_roots(&texts[0].characteristic_roots(&parameters), &roots(&cubic), 1e-6);
         }
         assert!(stable > 20 && unstable > 20, "{stable} {unstable}");
     });
@@ -362,12 +371,12 @@ const LADDER: &str = "struct Ladder {
 /// `U = −m g l cos θ / 2`.
 #[test]
 fn a_constrained_ladder_is_a_pendulum() {
-    read("-9.81 * y", LADDER, |_, texts| {
+    with_linear_equations("-9.81 * y", LADDER, |_, texts| {
         for values in [[1.0, 2.0], [0.4, 0.7]] {
             let parameters = values_by_name(&["m", "l"], &values);
-            let square = value(&texts[0].frequency, &parameters).powi(2);
+            let square = evaluate_text(&texts[0].frequency, &parameters).powi(2);
             assert!((square - 1.5 * 9.81 / values[1]).abs() < 1e-12 * square, "{square}");
-            let roots = texts[0].roots(&parameters);
+            let roots = texts[0].characteristic_roots(&parameters);
             assert_eq!(roots.len(), 2);
             assert!(roots.iter().all(|z| (z * z + square).norm() < 1e-9 * square), "{roots:?}");
         }

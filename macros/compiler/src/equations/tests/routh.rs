@@ -1,7 +1,7 @@
 //! Compares Routh's reduction with accelerations of the unreduced mechanism, Lagrange's equations of the
 //! Routhian, and closed forms.
 
-use super::super::reduced::{reduced, written_reduced};
+use super::super::reduced::{routh_equations, written_reduced};
 use super::*;
 use crate::expr::eval::Tape;
 use crate::mechanics::routh;
@@ -49,7 +49,7 @@ fn state_values<'a>(
     p: &'a [f64],
     tau: &'a [f64],
 ) -> impl Fn(Symbol) -> f64 + use<'a> {
-    let symbol = state(model, seed);
+    let symbol = random_symbol_values(model, seed);
     move |s| match Quantity::from_symbol(s) {
         Quantity::Momentum(k) => p[k],
         Quantity::Force(k) => tau[k],
@@ -60,17 +60,17 @@ fn state_values<'a>(
 /// Compares accelerations, velocities and Routhian with Lagrange's equations of the unreduced mechanism.
 /// Returns the names of the cyclic coordinates.
 pub(super) fn check_whole(model: &Model<'_>) -> Vec<String> {
-    let joints = crate::kinematics::joints(model);
+    let joints = crate::kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
-    let cyclic = routh::cyclic(model, &joints);
+    let cyclic = routh::cyclic_coordinates(model, &joints);
     let reduced = routh::derive(model, &joints, &mass, cyclic.clone());
     let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
-    let momenta = crate::mechanics::momentum::generalized_momentum(model, &joints, &velocities(model));
+    let momenta = crate::mechanics::momentum::generalized_momentum(model, &joints, &velocity_symbols(model));
     // Unreduced mechanism, by Lagrange's equations.
     let lagrange = lagrange::derive(model, &joints);
-    let tau = crate::mechanics::efforts(model);
+    let tau = crate::mechanics::generalized_force_symbols(model);
     let force = tau.iter().zip(&lagrange.bias).map(|(tau, bias)| *tau - *bias).collect();
-    let whole = crate::mechanics::ldl::solve(lagrange.mass_matrix, force, &joints);
+    let whole = crate::mechanics::ldl::solve_symmetric(lagrange.mass_matrix, force, &joints);
     for seed in 1..12 {
         let tau: Vec<f64> = (0..model.nv()).map(|k| 0.3 * k as f64 - 0.4).collect();
         let p: Vec<f64> = eval(&momenta, &state_values(model, seed, &[], &tau));
@@ -79,7 +79,7 @@ pub(super) fn check_whole(model: &Model<'_>) -> Vec<String> {
         let expected = eval(&whole, &value);
         let expected: Vec<f64> = others.iter().map(|k| expected[*k]).collect();
         assert_near(&eval(&reduced.acceleration, &value), &expected, "accelerations");
-        let v = eval(&velocities(model), &value);
+        let v = eval(&velocity_symbols(model), &value);
         let v: Vec<f64> = cyclic.iter().map(|k| v[*k]).collect();
         assert_near(&eval(&reduced.velocity, &value), &v, "velocities");
         let power: f64 = p.iter().zip(&v).map(|(p, v)| p * v).sum();
@@ -130,9 +130,9 @@ fn reduced_motion_of_random_chains_is_that_of_the_whole() {
 fn lagranges_equations_hold_for_the_routhian() {
     for (gravity, item, _) in ROWS {
         with_model(gravity, item, |model| {
-            let joints = crate::kinematics::joints(&model);
+            let joints = crate::kinematics::joints_of_model(&model);
             let mass = crba::mass_matrix(&model, &joints);
-            let cyclic = routh::cyclic(&model, &joints);
+            let cyclic = routh::cyclic_coordinates(&model, &joints);
             let reduced = routh::derive(&model, &joints, &mass, cyclic.clone());
             let g = model.graph;
             let routhian_derivative = |quantity: Quantity| {
@@ -153,7 +153,7 @@ fn lagranges_equations_hold_for_the_routhian() {
                 let tau = vec![0.0; model.nv()];
                 let p: Vec<f64> = (0..cyclic.len()).map(|k| 0.9 - 0.7 * k as f64).collect();
                 let value = state_values(&model, seed, &p, &tau);
-                let (a, w) = (acceleration.values(&value), velocity.values(&value));
+                let (a, w) = (acceleration.evaluate_at(&value), velocity.evaluate_at(&value));
                 let displaced_value = |h: f64| {
                     let value_along_motion = |s: Symbol| match Quantity::from_symbol(s) {
                         Quantity::Configuration(k) => {
@@ -168,7 +168,7 @@ fn lagranges_equations_hold_for_the_routhian() {
                         }
                         _ => value(s),
                     };
-                    momenta.values(&value_along_motion)
+                    momenta.evaluate_at(&value_along_motion)
                 };
                 let h = 1e-3;
                 let ((b, c), (d, e)) = (
@@ -183,8 +183,10 @@ fn lagranges_equations_hold_for_the_routhian() {
                     }
                     _ => value(s),
                 };
-                for ((rate, slope), lost) in
-                    rate.iter().zip(slopes.values(&value)).zip(lost.values(&value_with_cyclic_velocities))
+                for ((rate, slope), lost) in rate
+                    .iter()
+                    .zip(slopes.evaluate_at(&value))
+                    .zip(lost.evaluate_at(&value_with_cyclic_velocities))
                 {
                     let size = 1.0 + rate.abs() + slope.abs();
                     assert!(
@@ -204,11 +206,11 @@ fn printed_reduction_is_that_of_the_functions() {
     let mut texts = Vec::new();
     for (gravity, item, _) in ROWS {
         with_model(gravity, item, |model| {
-            let joints = crate::kinematics::joints(&model);
+            let joints = crate::kinematics::joints_of_model(&model);
             let mass = crba::mass_matrix(&model, &joints);
-            let cyclic = routh::cyclic(&model, &joints);
+            let cyclic = routh::cyclic_coordinates(&model, &joints);
             let functions = routh::derive(&model, &joints, &mass, cyclic.clone());
-            let printed = reduced(&model, &joints, &mass, cyclic.clone()).expect("small");
+            let printed = routh_equations(&model, &joints, &mass, cyclic.clone()).expect("small");
             let inputs = forces::generalized_forces(&model, &joints);
             let others: Vec<usize> = (0..model.nv()).filter(|k| !cyclic.contains(k)).collect();
             for seed in 1..8 {
@@ -224,7 +226,7 @@ fn printed_reduction_is_that_of_the_functions() {
                 let inertias: Vec<f64> = printed
                     .determinants
                     .iter()
-                    .map(|d| printed.ring.evaluate(d, &value_with_unit_inertias))
+                    .map(|d| printed.ring.evaluate_polynomial(d, &value_with_unit_inertias))
                     .collect();
                 let value_of_symbol = |s: Symbol| match Quantity::from_symbol(s) {
                     Quantity::Prepared(k) => inertias[k],
@@ -235,7 +237,7 @@ fn printed_reduction_is_that_of_the_functions() {
                     _ => symbol(s),
                 };
                 let values_of_polynomials = |list: &[Polynomial]| -> Vec<f64> {
-                    list.iter().map(|p| printed.ring.evaluate(p, &value_of_symbol)).collect()
+                    list.iter().map(|p| printed.ring.evaluate_polynomial(p, &value_of_symbol)).collect()
                 };
                 // The ring also evaluates atoms that no polynomial contains.
                 assert_near(
@@ -255,7 +257,7 @@ fn printed_reduction_is_that_of_the_functions() {
                 );
             }
             let written = written_reduced(&model, &printed);
-            assert_eq!(latex::faults(&written.latex), [""; 0], "{}", written.latex);
+            assert_eq!(latex::latex_errors(&written.latex), [""; 0], "{}", written.latex);
             texts.push(written.plain);
         });
     }

@@ -1,7 +1,7 @@
 //! Signatures of the functions, from which kernels for many states are made.
 
 use super::docs::{self, without_links};
-use super::function::{Outline, about, is_passed, public_name};
+use super::function::{Outline, function_documentation, is_passed, public_name};
 use crate::catalogue::{Argument, Shape};
 use crate::derive::Function;
 
@@ -38,29 +38,29 @@ pub struct Batch {
 impl Batch {
     /// Returns the signature of a derived function.
     pub fn from_function(f: &Function, o: &Outline<'_>) -> Batch {
-        Batch::new(&public_name(f), &f.arguments, f.shape, &about(f), o)
+        Batch::new(&public_name(f), &f.arguments, f.shape, &function_documentation(f), o)
     }
 
     /// Returns the signature of a function with these arguments and this result.
     pub fn new(name: &str, arguments: &[Argument], shape: Shape, docs: &[String], o: &Outline<'_>) -> Batch {
         let mut results: Vec<Array> = shape
-            .arrays()
+            .result_arrays()
             .into_iter()
-            .map(|(name, rows, columns)| Array::matrix(name, rows, columns))
+            .map(|(name, rows, columns)| Array::matrix_array(name, rows, columns))
             .collect();
         let returns = results.is_empty();
         if returns {
             results.push(Array::new("result", 1));
         }
         let docs = docs.iter().map(|text| without_links(text)).collect();
-        let mut batch = Batch { results, returns, docs, ..Batch::plain(name, &[], &[]) };
+        let mut batch = Batch { results, returns, docs, ..Batch::vector_signature(name, &[], &[]) };
         batch.arguments =
             arguments.iter().filter(|a| is_passed(a)).map(|a| Array::from_argument(*a, o)).collect();
         batch
     }
 
     /// Returns the signature of a handwritten function with vectors as results.
-    pub fn written(
+    pub fn handwritten_signature(
         name: &str,
         arguments: &[Argument],
         results: &[(&str, usize)],
@@ -68,11 +68,11 @@ impl Batch {
         o: &Outline<'_>,
     ) -> Batch {
         let arguments = arguments.iter().map(|a| Array::from_argument(*a, o)).collect();
-        Batch { arguments, docs: vec![docs.to_string()], ..Batch::plain(name, &[], results) }
+        Batch { arguments, docs: vec![docs.to_string()], ..Batch::vector_signature(name, &[], results) }
     }
 
     /// Returns the signature of a function on vectors.
-    pub fn plain(name: &str, arguments: &[(&str, usize)], results: &[(&str, usize)]) -> Batch {
+    pub fn vector_signature(name: &str, arguments: &[(&str, usize)], results: &[(&str, usize)]) -> Batch {
         let arrays_from_names =
             |list: &[(&str, usize)]| list.iter().map(|(name, n)| Array::new(name, *n)).collect();
         Batch {
@@ -89,30 +89,33 @@ impl Batch {
 impl Array {
     /// Returns the description of a vector argument.
     pub fn new(name: &str, length: usize) -> Array {
-        Array { name: name.to_string(), length, about: docs::numbers(length), is_value: false }
+        Array { name: name.to_string(), length, about: docs::count_in_words(length), is_value: false }
     }
 
     /// Returns a matrix, which is stored by columns.
-    pub fn matrix(name: &str, rows: usize, columns: usize) -> Array {
+    pub fn matrix_array(name: &str, rows: usize, columns: usize) -> Array {
         let about = match columns {
-            1 => docs::numbers(rows),
+            1 => docs::count_in_words(rows),
             _ => format!("{rows} by {columns}, column by column"),
         };
         Array { about, ..Array::new(name, rows * columns) }
     }
 
     /// Returns a value that is passed by itself.
-    pub fn value(name: &str, about: &str) -> Array {
+    pub fn value_argument(name: &str, about: &str) -> Array {
         Array { about: about.to_string(), is_value: true, ..Array::new(name, 1) }
     }
 
     fn from_argument(argument: Argument, o: &Outline<'_>) -> Array {
-        let about = docs::argument(argument);
+        let about = docs::argument_description(argument);
         match argument {
-            Argument::T => Array::value("t", about),
+            Argument::T => Array::value_argument("t", about),
             a => {
                 let length = o.length(a);
-                Array { about: format!("{about}, {}", docs::numbers(length)), ..Array::new(a.name(), length) }
+                Array {
+                    about: format!("{about}, {}", docs::count_in_words(length)),
+                    ..Array::new(a.argument_name(), length)
+                }
             }
         }
     }

@@ -3,7 +3,7 @@
 //! arguments.
 
 use super::pieces::{Piece, Statement};
-use super::scalar::constant;
+use super::scalar::numeric_literal;
 use super::support::Support;
 use crate::catalogue::Argument;
 use crate::expr::{Extreme, Function as Elementary, Lookup, Symbol};
@@ -57,20 +57,20 @@ pub fn write_program(
         write_inputs(out, program, scope);
         w.write_instructions();
     }
-    let outputs: Vec<Piece> = program.outputs.iter().map(|o| w.operand(*o)).collect();
+    let outputs: Vec<Piece> = program.outputs.iter().map(|o| w.operand_text(*o)).collect();
     write_statements(out, &w.statements, &outputs, places);
     outputs.into_iter().next().unwrap_or_default().text
 }
 
 /// Writes local constants for the arguments and parameters that the program uses.
 fn write_inputs(out: &mut String, program: &Program, scope: &Scope<'_>) {
-    for symbol in program.symbols() {
-        out.push_str(&input(symbol, scope));
+    for symbol in program.used_symbols() {
+        out.push_str(&input_definition(symbol, scope));
     }
 }
 
 /// Returns the definition of the local constant of an argument or parameter.
-fn input(symbol: Symbol, scope: &Scope<'_>) -> String {
+fn input_definition(symbol: Symbol, scope: &Scope<'_>) -> String {
     let quantity = Quantity::from_symbol(symbol);
     match (quantity, local_name(quantity, scope)) {
         (Quantity::Time, _) => String::new(),
@@ -78,7 +78,8 @@ fn input(symbol: Symbol, scope: &Scope<'_>) -> String {
             format!("    const double {name} = self->{};\n", scope.parameters[k])
         }
         (_, Some(name)) => {
-            let found = scope.arguments.iter().find_map(|a| a.index(quantity).map(|k| (a.name(), k)));
+            let found =
+                scope.arguments.iter().find_map(|a| a.index(quantity).map(|k| (a.argument_name(), k)));
             found.map_or(String::new(), |(argument, k)| {
                 format!("    const double {name} = {argument}[{k}];\n")
             })
@@ -92,13 +93,16 @@ fn local_name(quantity: Quantity, scope: &Scope<'_>) -> Option<String> {
     match quantity {
         Quantity::Time => Some("t".to_string()),
         Quantity::Parameter(k) => scope.parameters.get(k).map(|name| format!("p_{name}")),
-        _ => scope.arguments.iter().find_map(|a| a.index(quantity).map(|k| format!("{}{k}", a.name()))),
+        _ => scope
+            .arguments
+            .iter()
+            .find_map(|a| a.index(quantity).map(|k| format!("{}{k}", a.argument_name()))),
     }
 }
 
 impl Writer<'_> {
     fn write_instructions(&mut self) {
-        let angles = Angles::find(self.program);
+        let angles = Angles::find_angles(self.program);
         for k in (0..self.program.instructions.len()).filter(|k| angles.before[*k]) {
             self.write_instruction(k);
         }
@@ -112,17 +116,17 @@ impl Writer<'_> {
 
     /// Writes all instructions, with arguments, parameters, sines and cosines right before their first use.
     fn write_late(&mut self) {
-        let angles = Angles::find(self.program);
+        let angles = Angles::find_angles(self.program);
         let mut is_written = vec![false; self.program.instructions.len()];
         for k in 0..self.program.instructions.len() {
-            self.program.instructions[k].operands(|o| self.read(o));
+            self.program.instructions[k].visit_operands(|o| self.read_input(o));
             if !angles.covered[k] {
                 self.write_instruction(k);
             } else if !is_written[k] {
                 let has_value = |a: &&Angle| a.sine == Some(k) || a.cosine == Some(k);
                 let Some(angle) = angles.list.iter().find(has_value) else { continue };
-                let text = self.operand(angle.angle).text;
-                let function = self.support.angles(1);
+                let text = self.operand_text(angle.angle).text;
+                let function = self.support.sine_cosine_function(1);
                 let mut text = format!(
                     "    double sine{k}, cosine{k};\n    {function}({text}, &sine{k}, &cosine{k});\n"
                 );
@@ -136,30 +140,30 @@ impl Writer<'_> {
                 self.statements.push(Statement { names, text });
             }
         }
-        self.program.outputs.clone().into_iter().for_each(|o| self.read(o));
+        self.program.outputs.clone().into_iter().for_each(|o| self.read_input(o));
     }
 
     /// Adds the statement that reads an argument or parameter, if the operand is one that has not been read
     /// yet.
-    fn read(&mut self, operand: Operand) {
+    fn read_input(&mut self, operand: Operand) {
         if let Operand::Symbol(symbol) = operand
             && !self.read.contains(&symbol)
         {
             self.read.push(symbol);
-            let text = input(symbol, self.scope);
-            self.statements.push(Statement { names: self.reading(symbol), text });
+            let text = input_definition(symbol, self.scope);
+            self.statements.push(Statement { names: self.reading_statement(symbol), text });
         }
     }
 
     /// Returns the index of the statement that reads an argument or parameter, after those of the
     /// instructions.
-    fn reading(&self, symbol: Symbol) -> Vec<usize> {
+    fn reading_statement(&self, symbol: Symbol) -> Vec<usize> {
         let at = self.read.iter().position(|known| *known == symbol);
         at.map(|at| self.program.instructions.len() + at).into_iter().collect()
     }
 
     fn write_instruction(&mut self, k: usize) {
-        let piece = self.instruction(self.program.instructions[k]);
+        let piece = self.instruction_text(self.program.instructions[k]);
         if self.program.uses[k] == 1 && piece.text.len() <= LINE {
             self.pieces[k] = Some(piece);
         } else {
@@ -177,9 +181,9 @@ impl Writer<'_> {
         }
         let list = angles.widest_first(self.program, |_| 1);
         let padded = if count > 2 { count.next_multiple_of(TOGETHER) } else { count };
-        let mut texts: Vec<String> = list.iter().map(|angle| self.operand(angle.angle).text).collect();
+        let mut texts: Vec<String> = list.iter().map(|angle| self.operand_text(angle.angle).text).collect();
         texts.resize(padded, "0.0".to_string());
-        let function = self.support.angles(if count > 2 { TOGETHER } else { 1 });
+        let function = self.support.sine_cosine_function(if count > 2 { TOGETHER } else { 1 });
         let mut text = format!("    double sine[{padded}], cosine[{padded}];\n");
         if count > 2 {
             let _ = writeln!(text, "    const double angle[{padded}] = {{{}}};", texts.join(", "));
@@ -203,16 +207,18 @@ impl Writer<'_> {
         self.statements.push(Statement { names, text });
     }
 
-    fn operand(&mut self, o: Operand) -> Piece {
+    fn operand_text(&mut self, o: Operand) -> Piece {
         match o {
-            Operand::Const(c) if c.is_sign_negative() => Piece { level: 2, ..Piece::plain(constant(c)) },
-            Operand::Const(c) => Piece::plain(constant(c)),
+            Operand::Const(c) if c.is_sign_negative() => {
+                Piece { level: 2, ..Piece::plain_expression(numeric_literal(c)) }
+            }
+            Operand::Const(c) => Piece::plain_expression(numeric_literal(c)),
             Operand::Symbol(s) => match local_name(Quantity::from_symbol(s), self.scope) {
-                Some(name) => Piece { needs: self.reading(s), ..Piece::plain(name) },
-                None => self.missing(),
+                Some(name) => Piece { needs: self.reading_statement(s), ..Piece::plain_expression(name) },
+                None => self.missing_value_text(),
             },
             // Programs without lanes contain neither tuples nor gathers.
-            Operand::Tuple(_) | Operand::Gather(_) => self.missing(),
+            Operand::Tuple(_) | Operand::Gather(_) => self.missing_value_text(),
             Operand::Value(k) => self.pieces[k].take().unwrap_or_else(|| Piece {
                 text: format!("t{k}"),
                 needs: vec![k],
@@ -222,69 +228,71 @@ impl Writer<'_> {
     }
 
     /// Returns the text for a value that does not exist; the file is then refused.
-    fn missing(&mut self) -> Piece {
+    fn missing_value_text(&mut self) -> Piece {
         self.support.missing = true;
-        Piece::plain("missing".to_string())
+        Piece::plain_expression("missing".to_string())
     }
 
-    fn instruction(&mut self, op: Op) -> Piece {
+    fn instruction_text(&mut self, op: Op) -> Piece {
         match op {
             Op::Neg(a) => {
-                let a = self.operand(a);
-                Piece { text: format!("-{}", a.wrapped(3)), level: 2, needs: a.needs }
+                let a = self.operand_text(a);
+                Piece { text: format!("-{}", a.text_at_precedence(3)), level: 2, needs: a.needs }
             }
-            Op::Add(a, b) => self.infix([a, b], "+", (1, 2)),
-            Op::Sub(a, b) => self.infix([a, b], "-", (1, 2)),
-            Op::Mul(a, b) => self.infix([a, b], "*", (2, 3)),
-            Op::Div(a, b) => self.infix([a, b], "/", (2, 3)),
-            Op::MulAdd(a, b, c) => self.call(Support::MUL_ADD, &[a, b, c]),
-            Op::MulSub(a, b, c) => self.call(Support::MUL_SUB, &[a, b, c]),
-            Op::NegMulAdd(a, b, c) => self.call(Support::NEG_MUL_ADD, &[a, b, c]),
+            Op::Add(a, b) => self.infix_operation([a, b], "+", (1, 2)),
+            Op::Sub(a, b) => self.infix_operation([a, b], "-", (1, 2)),
+            Op::Mul(a, b) => self.infix_operation([a, b], "*", (2, 3)),
+            Op::Div(a, b) => self.infix_operation([a, b], "/", (2, 3)),
+            Op::MulAdd(a, b, c) => self.call_text(Support::MUL_ADD, &[a, b, c]),
+            Op::MulSub(a, b, c) => self.call_text(Support::MUL_SUB, &[a, b, c]),
+            Op::NegMulAdd(a, b, c) => self.call_text(Support::NEG_MUL_ADD, &[a, b, c]),
             Op::Call(f, a) => {
-                let name = self.elementary(f);
-                self.call(&name, &[a])
+                let name = self.elementary_function_call(f);
+                self.call_text(&name, &[a])
             }
-            Op::Atan2(a, b) => self.call("atan2", &[a, b]),
-            Op::Pow(a, b) => self.call("pow", &[a, b]),
-            Op::Extreme(Extreme::Min, a, b) => self.call("fmin", &[a, b]),
-            Op::Extreme(Extreme::Max, a, b) => self.call("fmax", &[a, b]),
-            Op::Table(lookup, a, b, c) => self.lookup(lookup, [a, b, c]),
+            Op::Atan2(a, b) => self.call_text("atan2", &[a, b]),
+            Op::Pow(a, b) => self.call_text("pow", &[a, b]),
+            Op::Extreme(Extreme::Min, a, b) => self.call_text("fmin", &[a, b]),
+            Op::Extreme(Extreme::Max, a, b) => self.call_text("fmax", &[a, b]),
+            Op::Table(lookup, a, b, c) => self.table_lookup_text(lookup, [a, b, c]),
             // Rejected by `check`.
-            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => self.missing(),
+            Op::Sum(..) | Op::Lane(..) | Op::Join(..) => self.missing_value_text(),
         }
     }
 
-    fn elementary(&mut self, f: Elementary) -> String {
+    fn elementary_function_call(&mut self, f: Elementary) -> String {
         match f {
             Elementary::Ln => "log".to_string(),
             Elementary::Abs => "fabs".to_string(),
-            Elementary::Signum => self.support.signum(),
+            Elementary::Signum => self.support.sign_function(),
             Elementary::IsaTemperature | Elementary::IsaLapseRate | Elementary::IsaPressure => {
-                self.support.atmosphere(f.name())
+                self.support.atmosphere_function(f.function_name())
             }
-            other => other.name().to_string(),
+            other => other.function_name().to_string(),
         }
     }
 
-    fn lookup(&mut self, lookup: Lookup, x: [Operand; 3]) -> Piece {
+    fn table_lookup_text(&mut self, lookup: Lookup, x: [Operand; 3]) -> Piece {
         self.support.tabulated = true;
-        let count = lookup.variables();
-        let pieces: Vec<Piece> = x.iter().take(count).map(|o| self.operand(*o)).collect();
+        let count = lookup.variable_count();
+        let pieces: Vec<Piece> = x.iter().take(count).map(|o| self.operand_text(*o)).collect();
         let x: Vec<&str> = pieces.iter().map(|piece| piece.text.as_str()).collect();
-        let orders: Vec<String> = lookup.orders().iter().map(ToString::to_string).collect();
-        let Some(table) = self.scope.tables.get(lookup.table()) else { return self.missing() };
+        let orders: Vec<String> = lookup.derivative_orders().iter().map(ToString::to_string).collect();
+        let Some(table) = self.scope.tables.get(lookup.table_index()) else {
+            return self.missing_value_text();
+        };
         let text = format!("lw_tabulated_{count}(&self->{table}, {}, {})", x.join(", "), orders.join(", "));
         Piece { text, needs: pieces.into_iter().flat_map(|piece| piece.needs).collect(), level: 3 }
     }
 
-    fn infix(&mut self, [a, b]: [Operand; 2], sign: &str, (level, right): (u8, u8)) -> Piece {
-        let (a, b) = (self.operand(a), self.operand(b));
-        let text = format!("{} {sign} {}", a.wrapped(level), b.wrapped(right));
+    fn infix_operation(&mut self, [a, b]: [Operand; 2], sign: &str, (level, right): (u8, u8)) -> Piece {
+        let (a, b) = (self.operand_text(a), self.operand_text(b));
+        let text = format!("{} {sign} {}", a.text_at_precedence(level), b.text_at_precedence(right));
         Piece { text, needs: [a.needs, b.needs].concat(), level }
     }
 
-    fn call(&mut self, function: &str, arguments: &[Operand]) -> Piece {
-        let pieces: Vec<Piece> = arguments.iter().map(|o| self.operand(*o)).collect();
+    fn call_text(&mut self, function: &str, arguments: &[Operand]) -> Piece {
+        let pieces: Vec<Piece> = arguments.iter().map(|o| self.operand_text(*o)).collect();
         let list: Vec<&str> = pieces.iter().map(|piece| piece.text.as_str()).collect();
         let text = format!("{function}({})", list.join(", "));
         Piece { text, needs: pieces.into_iter().flat_map(|piece| piece.needs).collect(), level: 3 }

@@ -1,48 +1,54 @@
 //! Results that consist of several matrices, and results that loops compose at run time.
 
 use super::body::{Scope, write_program};
-use super::function::{Outline, is_zero, place};
+use super::function::{Outline, element_of_output, is_zero};
 use super::support::Support;
 use crate::catalogue::{InverseForm, Shape};
 use crate::derive::Function;
 use std::fmt::Write;
 
 /// Writes the body of a C function whose result is assembled from the outputs of its program.
-pub fn write(body: &mut String, f: &Function, scope: &Scope<'_>, o: &Outline<'_>, support: &mut Support) {
+pub fn write_composed_body(
+    body: &mut String,
+    f: &Function,
+    scope: &Scope<'_>,
+    o: &Outline<'_>,
+    support: &mut Support,
+) {
     match f.shape {
         Shape::Inverse(n) => {
             let parts = Parts::new(f, n, 0);
-            parts.declare(body);
-            write_program(body, &f.program, scope, &|k| parts.place(k, "result", &[]), support);
-            parts.finish(body, "result", support);
+            parts.declare_structure(body);
+            write_program(body, &f.program, scope, &|k| parts.element_of_output(k, "result", &[]), support);
+            parts.complete_inverse(body, "result", support);
         }
-        Shape::Accelerated(n) => accelerated(body, f, n, scope, support),
+        Shape::Accelerated(n) => write_accelerated_body(body, f, n, scope, support),
         Shape::Forward(n) => {
             let parts = Parts::new(f, n, 2 * n * n);
-            parts.declare(body);
+            parts.declare_structure(body);
             let forces = [("by_q", n, n), ("by_v", n, n)];
             // The accelerations, which are the last outputs, are not returned.
             let mut program = f.program.clone();
-            program.outputs.truncate(3 * n * n + parts.count());
-            program.sweep();
-            write_program(body, &program, scope, &|k| parts.place(k, "by_tau", &forces), support);
-            parts.finish(body, "by_tau", support);
-            solved(body, f, n, support);
+            program.outputs.truncate(3 * n * n + parts.additional_output_count());
+            program.remove_unused();
+            write_program(body, &program, scope, &|k| parts.element_of_output(k, "by_tau", &forces), support);
+            parts.complete_inverse(body, "by_tau", support);
+            write_acceleration_conversion(body, f, n, support);
         }
         Shape::CalledForward(n) => called_forward(body, f, n, scope, o, support),
         Shape::Linear(n, m) => {
             let _ = writeln!(body, "    double by_q[{0}], by_v[{0}], inverse[{0}];", at_least_one(n * n));
             let parts = Parts::new(f, n, 2 * n * n);
-            parts.declare(body);
-            let rest = 3 * n * n + parts.count();
+            parts.declare_structure(body);
+            let rest = 3 * n * n + parts.additional_output_count();
             let forces = [("by_q", n, n), ("by_v", n, n)];
             let places = |k: usize| match k < rest {
-                true => parts.place(k, "inverse", &forces),
+                true => parts.element_of_output(k, "inverse", &forces),
                 false => assembled_place(n, m, k - rest),
             };
             write_program(body, &f.program, scope, &places, support);
-            parts.finish(body, "inverse", support);
-            products(body, n, "inverse", &[("by_q", n), ("by_v", n)], support);
+            parts.complete_inverse(body, "inverse", support);
+            write_inverse_products(body, n, "inverse", &[("by_q", n), ("by_v", n)], support);
             assemble(body, n, m, support);
         }
         Shape::CalledLinear(n, m) => called_linear(body, f, (n, m), scope, o, support),
@@ -67,7 +73,7 @@ impl<'a> Parts<'a> {
         Parts { form: &f.structure.inverse, n, first }
     }
 
-    fn trunk(&self) -> &[usize] {
+    fn trunk_velocities(&self) -> &[usize] {
         match self.form {
             InverseForm::Explicit => &[],
             InverseForm::LowRankUpdate(trunk) | InverseForm::BlockArrow { trunk, .. } => trunk,
@@ -75,12 +81,12 @@ impl<'a> Parts<'a> {
     }
 
     /// Returns the number of outputs after the columns of the inverse.
-    fn count(&self) -> usize {
-        self.n * self.trunk().len()
+    fn additional_output_count(&self) -> usize {
+        self.n * self.trunk_velocities().len()
     }
 
-    fn declare(&self, body: &mut String) {
-        let trunk: Vec<String> = self.trunk().iter().map(ToString::to_string).collect();
+    fn declare_structure(&self, body: &mut String) {
+        let trunk: Vec<String> = self.trunk_velocities().iter().map(ToString::to_string).collect();
         if trunk.is_empty() {
             return;
         }
@@ -95,22 +101,27 @@ impl<'a> Parts<'a> {
             let all: Vec<String> = (0..self.n).map(index_of_limb).collect();
             let _ = writeln!(body, "    static const int limb[{}] = {{{}}};", self.n, all.join(", "));
         }
-        let _ = writeln!(body, "    double beside[{}];", self.count());
+        let _ = writeln!(body, "    double beside[{}];", self.additional_output_count());
     }
 
     /// Returns the array element for an output: in the results before the inverse, the inverse or its
     /// additional values.
-    fn place(&self, k: usize, inverse: &str, before: &[(&'static str, usize, usize)]) -> Option<String> {
+    fn element_of_output(
+        &self,
+        k: usize,
+        inverse: &str,
+        before: &[(&'static str, usize, usize)],
+    ) -> Option<String> {
         if k < self.first {
-            return place(before, k);
+            return element_of_output(before, k);
         }
         let (k, square) = (k - self.first, self.n * self.n);
         Some(if k < square { format!("{inverse}[{k}]") } else { format!("beside[{}]", k - square) })
     }
 
     /// Writes the statements that complete the inverse mass matrix from its factored form.
-    fn finish(&self, body: &mut String, inverse: &str, support: &mut Support) {
-        let (n, width) = (self.n, self.trunk().len());
+    fn complete_inverse(&self, body: &mut String, inverse: &str, support: &mut Support) {
+        let (n, width) = (self.n, self.trunk_velocities().len());
         let _ = match self.form {
             InverseForm::Explicit => Ok(()),
             InverseForm::LowRankUpdate(_) => {
@@ -128,12 +139,18 @@ impl<'a> Parts<'a> {
     }
 }
 
-fn accelerated(body: &mut String, f: &Function, n: usize, scope: &Scope<'_>, support: &mut Support) {
+fn write_accelerated_body(
+    body: &mut String,
+    f: &Function,
+    n: usize,
+    scope: &Scope<'_>,
+    support: &mut Support,
+) {
     let parts = Parts::new(f, n, n);
-    parts.declare(body);
+    parts.declare_structure(body);
     let before = [("result", n, 1)];
-    write_program(body, &f.program, scope, &|k| parts.place(k, "inverse", &before), support);
-    parts.finish(body, "inverse", support);
+    write_program(body, &f.program, scope, &|k| parts.element_of_output(k, "inverse", &before), support);
+    parts.complete_inverse(body, "inverse", support);
     if let InverseForm::BlockArrow { trunk, .. } = &f.structure.inverse {
         support.solved = true;
         let _ = writeln!(body, "    lw_solve({n}, {}, inverse, trunk, limb, beside, result);", trunk.len());
@@ -141,7 +158,13 @@ fn accelerated(body: &mut String, f: &Function, n: usize, scope: &Scope<'_>, sup
 }
 
 /// Writes the product of the negative inverse with each factor, which the product overwrites.
-fn products(body: &mut String, n: usize, inverse: &str, factors: &[(&str, usize)], support: &mut Support) {
+fn write_inverse_products(
+    body: &mut String,
+    n: usize,
+    inverse: &str,
+    factors: &[(&str, usize)],
+    support: &mut Support,
+) {
     for (factor, columns) in factors.iter().filter(|(_, columns)| *columns > 0) {
         support.products = true;
         let _ = writeln!(body, "    lw_minus_products({n}, {columns}, {inverse}, {factor});");
@@ -150,13 +173,13 @@ fn products(body: &mut String, n: usize, inverse: &str, factors: &[(&str, usize)
 
 /// Writes the conversion from force derivatives to acceleration derivatives; columns in `known` are already
 /// converted.
-fn solved(body: &mut String, f: &Function, n: usize, support: &mut Support) {
+fn write_acceleration_conversion(body: &mut String, f: &Function, n: usize, support: &mut Support) {
     for (matrix, known) in ["by_q", "by_v"].into_iter().zip(&f.structure.known) {
         let mut first = 0;
         while first < n {
             let end = (first..n).find(|column| known.contains(column)).unwrap_or(n);
             let from = if first == 0 { matrix.to_string() } else { format!("{matrix} + {}", first * n) };
-            products(body, n, "by_tau", &[(&from, end - first)], support);
+            write_inverse_products(body, n, "by_tau", &[(&from, end - first)], support);
             first = end + 1;
         }
     }
@@ -174,10 +197,10 @@ fn called_forward(
         body,
         "    double a[{}];\n    {};\n    {};",
         at_least_one(n),
-        o.call("accelerations_and_inverse", &["q", "v", "tau"], &["a", "by_tau"]),
-        o.call("inverse_dynamics_derivatives", &["q", "v", "a"], &["by_q", "by_v"])
+        o.function_call("accelerations_and_inverse", &["q", "v", "tau"], &["a", "by_tau"]),
+        o.function_call("inverse_dynamics_derivatives", &["q", "v", "a"], &["by_q", "by_v"])
     );
-    solved(body, f, n, support);
+    write_acceleration_conversion(body, f, n, support);
     let columns = ["by_q", "by_v"].into_iter().zip(&f.structure.known);
     let columns: Vec<(&str, usize)> =
         columns.flat_map(|(matrix, known)| known.iter().map(move |column| (matrix, *column))).collect();
@@ -251,12 +274,14 @@ fn called_linear(
     );
     let rest = n + 2 * n * n;
     let before = [("tau", n, 1), ("more_by_q", n, n), ("more_by_v", n, n)];
-    let places = |k: usize| if k < rest { place(&before, k) } else { assembled_place(n, m, k - rest) };
+    let places =
+        |k: usize| if k < rest { element_of_output(&before, k) } else { assembled_place(n, m, k - rest) };
     write_program(body, &f.program, scope, &places, support);
-    let call = o.call("forward_dynamics_derivatives", &["q", "v", "tau"], &["by_q", "by_v", "inverse"]);
+    let call =
+        o.function_call("forward_dynamics_derivatives", &["q", "v", "tau"], &["by_q", "by_v", "inverse"]);
     let _ = writeln!(body, "    {call};");
     if (n..rest).any(|k| !is_zero(f, k)) {
-        products(body, n, "inverse", &[("more_by_q", n), ("more_by_v", n)], support);
+        write_inverse_products(body, n, "inverse", &[("more_by_q", n), ("more_by_v", n)], support);
         let _ = writeln!(
             body,
             "    for (int k = 0; k < {}; ++k) {{\n        by_q[k] -= more_by_q[k];\n        by_v[k] \

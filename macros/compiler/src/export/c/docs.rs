@@ -7,7 +7,7 @@ use crate::catalogue::Argument;
 const WIDTH: usize = 100;
 
 /// Returns a text that is valid inside a comment: without comment marks, trigraphs and control characters.
-pub fn safe(text: &str) -> String {
+pub fn comment_safe_text(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     plain.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?")
 }
@@ -21,7 +21,7 @@ pub fn without_links(text: &str) -> String {
         out.push_str(before);
         let (words, after) = match found.strip_prefix('`') {
             Some(code) => found.split_at(code.find('`').map_or(found.len(), |end| end + 2)),
-            None => link(found).unwrap_or(found.split_at(1)),
+            None => split_leading_link(found).unwrap_or(found.split_at(1)),
         };
         out.push_str(words);
         rest = after;
@@ -30,7 +30,7 @@ pub fn without_links(text: &str) -> String {
 }
 
 /// Returns the text of the link at the start of `text`, and the remainder after the link.
-fn link(text: &str) -> Option<(&str, &str)> {
+fn split_leading_link(text: &str) -> Option<(&str, &str)> {
     let is_code = text.starts_with("[`");
     let end = if is_code { text.find("`]")? + 1 } else { text.find(']')? };
     let (words, after) = (&text[1..end], &text[end + 1..]);
@@ -41,11 +41,11 @@ fn link(text: &str) -> Option<(&str, &str)> {
 }
 
 /// Wraps a paragraph to lines that begin with `first` and `others`.
-pub fn wrapped(text: &str, first: &str, others: &str) -> String {
+pub fn wrap_paragraph(text: &str, first: &str, others: &str) -> String {
     let mut out = String::new();
     let mut line = first.to_string();
     let mut is_empty = true;
-    for word in safe(text).split_whitespace() {
+    for word in comment_safe_text(text).split_whitespace() {
         if !is_empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
             out.push_str(line.trim_end());
             out.push('\n');
@@ -64,7 +64,7 @@ pub fn wrapped(text: &str, first: &str, others: &str) -> String {
 }
 
 /// Returns the description of an argument.
-pub fn argument(a: Argument) -> &'static str {
+pub fn argument_description(a: Argument) -> &'static str {
     match a {
         Argument::T => "time, s",
         Argument::Q => "configuration",
@@ -80,32 +80,37 @@ pub fn argument(a: Argument) -> &'static str {
 }
 
 /// Returns a count of numbers in words, such as `3 numbers`.
-pub fn numbers(n: usize) -> String {
+pub fn count_in_words(n: usize) -> String {
     if n == 1 { "1 number".to_string() } else { format!("{n} numbers") }
 }
 
 /// Returns the comment of a function: its documentation, then its arguments and results with their sizes.
-pub fn function(docs: &[String], arguments: &[Argument], results: &[Given], o: &Outline<'_>) -> String {
+pub fn function_comment(
+    docs: &[String],
+    arguments: &[Argument],
+    results: &[Given],
+    o: &Outline<'_>,
+) -> String {
     let mut text = String::new();
     for (k, paragraph) in docs.iter().enumerate() {
         let first = if k == 0 { "/* " } else { " * " };
-        text.push_str(&wrapped(&without_links(paragraph), first, " * "));
+        text.push_str(&wrap_paragraph(&without_links(paragraph), first, " * "));
     }
     text.push_str(" *\n");
     let array_length_text = |a: &Argument| match a {
         Argument::T => String::new(),
-        a => format!(", {}", numbers(o.length(*a))),
+        a => format!(", {}", count_in_words(o.length(*a))),
     };
     for a in arguments.iter().filter(|a| !matches!(a, Argument::Into(..) | Argument::Called(_))) {
-        let line = format!("{}{}", argument(*a), array_length_text(a));
-        text.push_str(&wrapped(&line, &format!(" * {:9} ", a.name()), " *           "));
+        let line = format!("{}{}", argument_description(*a), array_length_text(a));
+        text.push_str(&wrap_paragraph(&line, &format!(" * {:9} ", a.argument_name()), " *           "));
     }
     for (name, rows, columns) in results {
         let line = match columns {
-            1 => format!("out: {}", numbers(*rows)),
+            1 => format!("out: {}", count_in_words(*rows)),
             _ => format!("out: {rows} by {columns}, column by column"),
         };
-        text.push_str(&wrapped(&line, &format!(" * {name:9} "), " *           "));
+        text.push_str(&wrap_paragraph(&line, &format!(" * {name:9} "), " *           "));
     }
     text.push_str(" */\n");
     text
@@ -117,7 +122,7 @@ mod tests {
 
     #[test]
     fn a_comment_ends_where_it_should() {
-        assert_eq!(safe("a */ b /* c ??/ d\n"), "a * / b / * c ? ?/ d ");
+        assert_eq!(comment_safe_text("a */ b /* c ??/ d\n"), "a * / b / * c ? ?/ d ");
         assert_eq!(without_links("of [`x`](Self::x) and [`y`](Self::y)."), "of `x` and `y`.");
         for (text, plain) in [
             ("[`a`](::linkwork::Error::A) where [this](crate) is", "`a` where this is"),

@@ -52,8 +52,9 @@ const ACCESSES: [Access; 4] = [
     },
 ];
 
-fn signature(o: &Outline<'_>, access: &Access) -> String {
-    let spelled = o.spelled("int", access.name, &o.timed(access.arguments), &["result"]);
+fn access_signature(o: &Outline<'_>, access: &Access) -> String {
+    let spelled =
+        o.signature_with_results("int", access.name, &o.with_time_argument(access.arguments), &["result"]);
     // The index of the frame is the first argument after the parameters.
     let open = spelled.find('(').map_or(0, |at| at + 1);
     let at = if !o.has_own() { open } else { spelled.find(", ").map_or(open, |at| at + 2) };
@@ -61,7 +62,7 @@ fn signature(o: &Outline<'_>, access: &Access) -> String {
 }
 
 /// Returns the C macros for the indices of the frames.
-pub fn indices(o: &Outline<'_>, frames: &[(String, String)]) -> String {
+pub fn frame_index_constants(o: &Outline<'_>, frames: &[(String, String)]) -> String {
     let mut text = String::new();
     if frames.is_empty() {
         return text;
@@ -70,26 +71,27 @@ pub fn indices(o: &Outline<'_>, frames: &[(String, String)]) -> String {
     text.push_str("/* Frames by number. */\nenum {\n");
     for (k, (name, says)) in frames.iter().enumerate() {
         let comma = if k + 1 < frames.len() { "," } else { "" };
-        let _ = writeln!(text, "    {upper}_FRAME_{name} = {k}{comma} /* {} */", docs::safe(says));
+        let _ =
+            writeln!(text, "    {upper}_FRAME_{name} = {k}{comma} /* {} */", docs::comment_safe_text(says));
     }
     text.push_str("};\n\n");
     text
 }
 
 /// Returns the declarations and the indices of the frames.
-pub fn declare(o: &Outline<'_>, frames: &[(String, String)]) -> String {
-    let mut text = indices(o, frames);
+pub fn frame_declarations(o: &Outline<'_>, frames: &[(String, String)]) -> String {
+    let mut text = frame_index_constants(o, frames);
     for access in ACCESSES.iter().filter(|_| !frames.is_empty()) {
-        text.push_str(&docs::wrapped(access.docs, "/* ", " * "));
+        text.push_str(&docs::wrap_paragraph(access.docs, "/* ", " * "));
         text.push_str(" * Returns 0; 1 where there is no such frame.\n *\n");
-        text.push_str(&docs::wrapped(access.result, " * result    ", " *           "));
-        let _ = writeln!(text, " */\n{};\n", signature(o, access));
+        text.push_str(&docs::wrap_paragraph(access.result, " * result    ", " *           "));
+        let _ = writeln!(text, " */\n{};\n", access_signature(o, access));
     }
     text
 }
 
 /// Returns the signatures of the functions of frames.
-pub fn batches(output: &Output, o: &Outline<'_>) -> Vec<Batch> {
+pub fn frame_batches(output: &Output, o: &Outline<'_>) -> Vec<Batch> {
     let accesses = ACCESSES.iter().filter(|_| !output.frames.is_empty());
     let batch_of_access = |access: &Access| {
         let size = match access.name {
@@ -97,17 +99,17 @@ pub fn batches(output: &Output, o: &Outline<'_>) -> Vec<Batch> {
             "frame_jacobian" => 6 * o.nv,
             _ => 6,
         };
-        let arguments = o.timed(access.arguments);
+        let arguments = o.with_time_argument(access.arguments);
         Batch {
             of_frame: true,
-            ..Batch::written(access.name, &arguments, &[("result", size)], access.docs, o)
+            ..Batch::handwritten_signature(access.name, &arguments, &[("result", size)], access.docs, o)
         }
     };
     accesses.map(batch_of_access).collect()
 }
 
 /// Returns the definitions of the functions of frames.
-pub fn define(output: &Output, o: &Outline<'_>, support: &mut Support) -> String {
+pub fn frame_definitions(output: &Output, o: &Outline<'_>, support: &mut Support) -> String {
     let (links, frames) = (&output.links, &output.frames);
     if frames.is_empty() {
         return String::new();
@@ -121,8 +123,8 @@ pub fn define(output: &Output, o: &Outline<'_>, support: &mut Support) -> String
     write_frame_steps(&mut text, frames, o, support);
     for access in &ACCESSES {
         let body = access_body(access, o, most);
-        let unused = o.unused(&body, &o.timed(access.arguments), &["result"]);
-        let _ = writeln!(text, "{} {{\n{unused}{body}}}\n", signature(o, access));
+        let unused = o.silence_unused_arguments(&body, &o.with_time_argument(access.arguments), &["result"]);
+        let _ = writeln!(text, "{} {{\n{unused}{body}}}\n", access_signature(o, access));
     }
     text
 }
@@ -168,8 +170,8 @@ fn write_step(text: &mut String, step: &Step<'_>, o: &Outline<'_>, support: &mut
         }
         body.push_str("    break;\n    }\n");
     }
-    let unused = o.unused(&body, &step.arguments, &["result"]);
-    let spelled = o.spelled("static void", step.name, &step.arguments, &["result"]);
+    let unused = o.silence_unused_arguments(&body, &step.arguments, &["result"]);
+    let spelled = o.signature_with_results("static void", step.name, &step.arguments, &["result"]);
     // An argument may have the same name as the type.
     let spelled = spelled.replacen(
         &format!("(const {} *self", o.prefix),
@@ -195,22 +197,23 @@ fn write_steps(text: &mut String, links: &[LinkSteps], o: &Outline<'_>, support:
     let steps = [
         Step {
             name: "link_placement",
-            arguments: [o.timed(&[Q]), vec![PLACED]].concat(),
+            arguments: [o.with_time_argument(&[Q]), vec![PLACED]].concat(),
             programs: programs(|l| &l.placement),
         },
         Step {
             name: "link_twist",
-            arguments: [o.timed(&[Q, V]), vec![parent_argument(6)]].concat(),
+            arguments: [o.with_time_argument(&[Q, V]), vec![parent_argument(6)]].concat(),
             programs: programs(|l| &l.twist),
         },
         Step {
             name: "link_acceleration",
-            arguments: [o.timed(&[Q, V, A]), vec![parent_argument(12)]].concat(),
+            arguments: [o.with_time_argument(&[Q, V, A]), vec![parent_argument(12)]].concat(),
             programs: programs(|l| &l.acceleration),
         },
         Step {
             name: "link_columns",
-            arguments: [o.timed(&[Q]), vec![PLACED, Argument::Given("o", Supplied::Origin, 3)]].concat(),
+            arguments: [o.with_time_argument(&[Q]), vec![PLACED, Argument::Given("o", Supplied::Origin, 3)]]
+                .concat(),
             programs: programs(|l| &l.columns),
         },
     ];
@@ -291,7 +294,7 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
 "
         );
         if is_jacobian {
-            copy(&mut body, "        ", "placements[12 * k + i]", "next[i]", 12);
+            write_copy_loop(&mut body, "        ", "placements[12 * k + i]", "next[i]", 12);
         }
         if acceleration {
             let _ = write!(
@@ -299,11 +302,11 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
                 "        lw_link_acceleration(path[k], {own}{time}q, {v}, {a}, p + 12, next + 6);\n        \
                  lw_link_twist(path[k], {own}{time}q, {v}, p + 12, next);\n"
             );
-            copy(&mut body, "        ", "p[12 + i]", "next[i]", 12);
+            write_copy_loop(&mut body, "        ", "p[12 + i]", "next[i]", 12);
         }
         if twist {
             let _ = writeln!(body, "        lw_link_twist(path[k], {own}{time}q, {v}, p + 12, next);");
-            copy(&mut body, "        ", "p[12 + i]", "next[i]", 6);
+            write_copy_loop(&mut body, "        ", "p[12 + i]", "next[i]", 6);
         }
         body.push_str("    }\n");
     }
@@ -332,7 +335,7 @@ fn access_body(access: &Access, o: &Outline<'_>, most: Option<usize>) -> String 
 }
 
 /// Writes a C loop that copies `n` values from one array to another.
-fn copy(body: &mut String, indent: &str, to: &str, from: &str, n: usize) {
+fn write_copy_loop(body: &mut String, indent: &str, to: &str, from: &str, n: usize) {
     let _ =
         writeln!(body, "{indent}for (int i = 0; i < {n}; ++i) {{\n{indent}    {to} = {from};\n{indent}}}");
 }

@@ -3,7 +3,7 @@
 use super::body::{Scope, write_program};
 use super::composed;
 use super::docs;
-use super::names::letters;
+use super::names::replace_invalid_characters;
 use super::support::Support;
 use crate::catalogue::{Argument, Called, Id, Shape};
 use crate::derive::Function;
@@ -39,8 +39,8 @@ pub struct Outline<'a> {
 pub type Given = (&'static str, usize, usize);
 
 /// Returns the arrays that receive the results of a function; empty for a function that returns a number.
-pub fn results(shape: Shape) -> Vec<Given> {
-    shape.arrays()
+pub fn result_arrays(shape: Shape) -> Vec<Given> {
+    shape.result_arrays()
 }
 
 impl Outline<'_> {
@@ -50,7 +50,7 @@ impl Outline<'_> {
     }
 
     /// Returns the arguments, preceded by time if functions take it.
-    pub fn timed(&self, arguments: &[Argument]) -> Vec<Argument> {
+    pub fn with_time_argument(&self, arguments: &[Argument]) -> Vec<Argument> {
         self.time.then_some(Argument::T).into_iter().chain(arguments.iter().copied()).collect()
     }
 
@@ -60,21 +60,27 @@ impl Outline<'_> {
     }
 
     /// Returns the signature of a function with the results of a shape.
-    pub fn signature(&self, name: &str, arguments: &[Argument], shape: Shape) -> String {
+    pub fn signature_for_shape(&self, name: &str, arguments: &[Argument], shape: Shape) -> String {
         let kind = if shape == Shape::Scalar { "double" } else { "void" };
-        let given: Vec<&str> = results(shape).iter().map(|(name, ..)| *name).collect();
-        self.spelled(kind, name, arguments, &given)
+        let given: Vec<&str> = result_arrays(shape).iter().map(|(name, ..)| *name).collect();
+        self.signature_with_results(kind, name, arguments, &given)
     }
 
     /// Returns the signature of a function with any results.
-    pub fn spelled(&self, kind: &str, name: &str, arguments: &[Argument], given: &[&str]) -> String {
+    pub fn signature_with_results(
+        &self,
+        kind: &str,
+        name: &str,
+        arguments: &[Argument],
+        given: &[&str],
+    ) -> String {
         let mut list: Vec<String> = Vec::new();
         if self.has_own() {
             list.push(format!("const {} *self", self.prefix));
         }
         list.extend(arguments.iter().filter(|a| is_passed(a)).map(|a| match a {
             Argument::T => "double t".to_string(),
-            a => format!("const double *{}", a.name()),
+            a => format!("const double *{}", a.argument_name()),
         }));
         list.extend(given.iter().map(|name| format!("double *{name}")));
         let list = if list.is_empty() { "void".to_string() } else { list.join(", ") };
@@ -83,7 +89,7 @@ impl Outline<'_> {
 
     /// Returns a call of a function. Parameters and time are added to the arguments; `given` are the result
     /// arrays.
-    pub fn call(&self, name: &str, arguments: &[&str], given: &[&str]) -> String {
+    pub fn function_call(&self, name: &str, arguments: &[&str], given: &[&str]) -> String {
         let own = self.has_own().then_some("self");
         let time = self.time.then_some("t");
         let list: Vec<&str> = own
@@ -103,11 +109,11 @@ impl Outline<'_> {
     }
 
     /// Returns statements that suppress compiler warnings on unused arguments and result arrays.
-    pub fn unused(&self, body: &str, arguments: &[Argument], given: &[&str]) -> String {
+    pub fn silence_unused_arguments(&self, body: &str, arguments: &[Argument], given: &[&str]) -> String {
         let own = self.has_own().then_some("self");
-        let passed = arguments.iter().filter(|a| is_passed(a)).map(|a| a.name());
+        let passed = arguments.iter().filter(|a| is_passed(a)).map(|a| a.argument_name());
         let names = own.into_iter().chain(passed).chain(given.iter().copied());
-        names.filter(|name| !mentions(body, name)).map(|name| format!("    (void)({name});\n")).collect()
+        names.filter(|name| !contains_word(body, name)).map(|name| format!("    (void)({name});\n")).collect()
     }
 }
 
@@ -117,7 +123,7 @@ pub fn is_passed(argument: &Argument) -> bool {
 }
 
 /// Returns true if a text contains a word as a whole.
-pub fn mentions(text: &str, word: &str) -> bool {
+pub fn contains_word(text: &str, word: &str) -> bool {
     let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
     text.match_indices(word).any(|(at, _)| {
         let before = text.get(..at).and_then(|t| t.chars().next_back());
@@ -127,8 +133,8 @@ pub fn mentions(text: &str, word: &str) -> bool {
 }
 
 /// Returns the identifier of a function without the underscore that marks internal functions.
-pub fn plain(name: &str) -> String {
-    letters(name.trim_start_matches('_'))
+pub fn public_identifier(name: &str) -> String {
+    replace_invalid_characters(name.trim_start_matches('_'))
 }
 
 /// Documentation of the function of [`Id::InputDerivatives`].
@@ -139,7 +145,7 @@ const CONTACT_LAWS: &str =
     "Coefficients of friction, restitution and static friction of each contact, in the order of the gaps.";
 
 /// Returns the documentation of a generated function in C.
-pub fn about(f: &Function) -> Vec<String> {
+pub fn function_documentation(f: &Function) -> Vec<String> {
     match f.id {
         Id::InputDerivatives => vec![INPUT_DERIVATIVES.to_string()],
         Id::ContactLaws => vec![CONTACT_LAWS.to_string()],
@@ -149,11 +155,15 @@ pub fn about(f: &Function) -> Vec<String> {
 
 /// Returns the public name of a function.
 pub fn public_name(f: &Function) -> String {
-    if f.id == Id::InputDerivatives { "generalized_forces_derivatives".to_string() } else { plain(&f.name) }
+    if f.id == Id::InputDerivatives {
+        "generalized_forces_derivatives".to_string()
+    } else {
+        public_identifier(&f.name)
+    }
 }
 
 /// Returns a definition, with its documentation if the function is public.
-pub fn define(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
+pub fn function_definition(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
     let mut body = String::new();
     let scope_arguments: Vec<Argument> =
         f.arguments.iter().copied().chain(Called::ALL.map(Argument::Called)).collect();
@@ -171,9 +181,9 @@ pub fn define(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
         | Shape::Linear(..)
         | Shape::Accelerated(_)
         | Shape::CalledForward(_)
-        | Shape::CalledLinear(..) => composed::write(&mut body, f, &scope, o, support),
+        | Shape::CalledLinear(..) => composed::write_composed_body(&mut body, f, &scope, o, support),
         _ => {
-            let mut results = results(f.shape);
+            let mut results = result_arrays(f.shape);
             // Another function computes the forces themselves.
             if f.id == Id::InputDerivatives {
                 results.insert(0, ("forces", o.nv, 1));
@@ -181,29 +191,29 @@ pub fn define(f: &Function, o: &Outline<'_>, support: &mut Support) -> String {
             }
             let count: usize = results.iter().map(|(_, rows, columns)| rows * columns).sum();
             support.missing |= count != f.program.outputs.len();
-            write_program(&mut body, &f.program, &scope, &|k| place(&results, k), support);
+            write_program(&mut body, &f.program, &scope, &|k| element_of_output(&results, k), support);
             if f.id == Id::InputDerivatives {
                 body.push_str("    (void)(forces);\n");
             }
         }
     }
-    let given: Vec<&str> = results(f.shape).iter().map(|(name, ..)| *name).collect();
-    let unused = o.unused(&body, &f.arguments, &given);
+    let given: Vec<&str> = result_arrays(f.shape).iter().map(|(name, ..)| *name).collect();
+    let unused = o.silence_unused_arguments(&body, &f.arguments, &given);
     let is_public = matches!(f.id, Id::InputDerivatives | Id::ContactLaws);
     let hidden = if f.is_hidden() && !is_public { "static " } else { "" };
-    let signature = o.signature(&public_name(f), &f.arguments, f.shape);
+    let signature = o.signature_for_shape(&public_name(f), &f.arguments, f.shape);
     format!("{hidden}{signature} {{\n{unused}{body}}}\n")
 }
 
 /// Returns the declaration of a function, preceded by its documentation.
-pub fn declare(f: &Function, o: &Outline<'_>) -> String {
-    let results = results(f.shape);
-    let docs = docs::function(&about(f), &f.arguments, &results, o);
-    format!("{docs}{};\n", o.signature(&public_name(f), &f.arguments, f.shape))
+pub fn function_declaration(f: &Function, o: &Outline<'_>) -> String {
+    let results = result_arrays(f.shape);
+    let docs = docs::function_comment(&function_documentation(f), &f.arguments, &results, o);
+    format!("{docs}{};\n", o.signature_for_shape(&public_name(f), &f.arguments, f.shape))
 }
 
 /// Returns the array element to which output `k` is written; the arrays of `results` follow one another.
-pub fn place(results: &[Given], mut k: usize) -> Option<String> {
+pub fn element_of_output(results: &[Given], mut k: usize) -> Option<String> {
     for (name, rows, columns) in results {
         if k < rows * columns {
             return Some(format!("{name}[{k}]"));
@@ -216,15 +226,15 @@ pub fn place(results: &[Given], mut k: usize) -> Option<String> {
 /// Writes the call of a function whose results are inputs of the program, if the program uses them.
 fn write_call(body: &mut String, f: &Function, called: Called, o: &Outline<'_>) {
     let argument = Argument::Called(called);
-    if !f.program.symbols().iter().any(|s| argument.index(Quantity::from_symbol(*s)).is_some()) {
+    if !f.program.used_symbols().iter().any(|s| argument.index(Quantity::from_symbol(*s)).is_some()) {
         return;
     }
-    let (name, [forces, derivatives]) = (argument.name(), o.passive);
+    let (name, [forces, derivatives]) = (argument.argument_name(), o.passive);
     let length = if called == Called::PassiveForces { forces } else { derivatives };
     let _ = writeln!(
         body,
         "    double {name}[{length}];\n    {};",
-        o.call(&plain(called.function()), &["q", "v"], &[name])
+        o.function_call(&public_identifier(called.function_name()), &["q", "v"], &[name])
     );
 }
 

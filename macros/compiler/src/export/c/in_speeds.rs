@@ -57,28 +57,32 @@ const TO_FIRST_ORDER: [Space; 2] = [
     },
 ];
 
-fn all(o: &Outline<'_>) -> impl Iterator<Item = &'static Space> {
+fn space_functions(o: &Outline<'_>) -> impl Iterator<Item = &'static Space> {
     let derivatives: &[Space] = if o.derivatives { &TO_FIRST_ORDER } else { &[] };
     SPACE.iter().chain(derivatives)
 }
 
 /// Returns the signatures of the functions on the configuration space in generalized speeds.
-pub fn batches(o: &Outline<'_>) -> Vec<Batch> {
+pub fn space_batches(o: &Outline<'_>) -> Vec<Batch> {
     let batch_of_space = |of: &Space| {
         let length_of_argument = |name: &str| if ["q", "from", "to"].contains(&name) { o.nq } else { o.nv };
         let arguments: Vec<_> = of.arguments.iter().map(|name| (*name, length_of_argument(name))).collect();
         let result_array = |name: &&str| match (of.name, *name) {
             ("integrate", name) => Array::new(name, o.nq),
             (_, "result") => Array::new("result", o.nv),
-            (_, name) => Array::matrix(name, o.nv, o.nv),
+            (_, name) => Array::matrix_array(name, o.nv, o.nv),
         };
         let results = of.results.iter().map(result_array).collect();
-        Batch { results, docs: vec![of.docs.to_string()], ..Batch::plain(of.name, &arguments, &[]) }
+        Batch {
+            results,
+            docs: vec![of.docs.to_string()],
+            ..Batch::vector_signature(of.name, &arguments, &[])
+        }
     };
-    all(o).map(batch_of_space).collect()
+    space_functions(o).map(batch_of_space).collect()
 }
 
-fn signature(o: &Outline<'_>, of: &Space) -> String {
+fn space_signature(o: &Outline<'_>, of: &Space) -> String {
     let given = of.arguments.iter().map(|name| format!("const double *{name}"));
     let results = of.results.iter().map(|name| format!("double *{name}"));
     let list: Vec<String> = given.chain(results).collect();
@@ -86,23 +90,23 @@ fn signature(o: &Outline<'_>, of: &Space) -> String {
 }
 
 /// Returns the declarations of the functions on the configuration space in generalized speeds.
-pub fn declare(o: &Outline<'_>) -> String {
+pub fn space_declarations(o: &Outline<'_>) -> String {
     let mut text = String::new();
-    for of in all(o) {
-        text.push_str(&docs::wrapped(of.docs, "/* ", " * "));
-        let _ = writeln!(text, " */\n{};\n", signature(o, of));
+    for of in space_functions(o) {
+        text.push_str(&docs::wrap_paragraph(of.docs, "/* ", " * "));
+        let _ = writeln!(text, " */\n{};\n", space_signature(o, of));
     }
     text
 }
 
 /// Writes the definitions of the functions on the configuration space in generalized speeds.
-pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut Support) {
+pub fn write_space_definitions(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut Support) {
     if o.derivatives {
         support.sums = true;
         manifold::define_all_derivatives(out, charts, o, support);
-        out.push_str(&filled(include_str!("templates/products_of_squares.c"), o));
+        out.push_str(&fill_template(include_str!("templates/products_of_squares.c"), o));
     }
-    for of in all(o) {
+    for of in space_functions(o) {
         let body = match of.name {
             "integrate" => include_str!("templates/integrate_in_speeds.c"),
             "difference" => include_str!("templates/difference_in_speeds.c"),
@@ -110,11 +114,11 @@ pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut
             "integrate_derivatives" => include_str!("templates/integrate_derivatives_in_speeds.c"),
             _ => include_str!("templates/rate_derivatives_in_speeds.c"),
         };
-        let _ = writeln!(out, "{} {{\n{}}}\n", signature(o, of), filled(body, o));
+        let _ = writeln!(out, "{} {{\n{}}}\n", space_signature(o, of), fill_template(body, o));
     }
 }
 
-fn filled(template: &str, o: &Outline<'_>) -> String {
+fn fill_template(template: &str, o: &Outline<'_>) -> String {
     let own = if o.has_own() { "self, " } else { "" };
     template
         .replace("@PREFIX@", &o.prefix)

@@ -29,26 +29,29 @@ pub fn self_parameter(o: &Outline<'_>) -> String {
     if o.has_own() { format!("const {} *self, ", o.prefix) } else { String::new() }
 }
 
-fn signature(o: &Outline<'_>, name: &str, [a, b]: [&str; 2]) -> String {
+fn manifold_signature(o: &Outline<'_>, name: &str, [a, b]: [&str; 2]) -> String {
     let own = self_parameter(o);
     format!("void {}_{name}({own}const double *{a}, const double *{b}, double *result)", o.prefix)
 }
 
 /// Returns the signatures of the functions on the configuration manifold.
-pub fn batches(o: &Outline<'_>) -> Vec<Batch> {
+pub fn manifold_batches(o: &Outline<'_>) -> Vec<Batch> {
     if o.speeds {
-        return in_speeds::batches(o);
+        return in_speeds::space_batches(o);
     }
     let length_of_argument = |name: &str| if ["q", "from", "to"].contains(&name) { o.nq } else { o.nv };
     let plain = MANIFOLD.iter().map(|(name, arguments, docs)| {
         let result = if *name == "integrate" { o.nq } else { o.nv };
         let arguments = arguments.map(|argument| (argument, length_of_argument(argument)));
-        Batch { docs: vec![docs.to_string()], ..Batch::plain(name, &arguments, &[("result", result)]) }
+        Batch {
+            docs: vec![docs.to_string()],
+            ..Batch::vector_signature(name, &arguments, &[("result", result)])
+        }
     });
     let derivatives = TO_FIRST_ORDER.iter().filter(|_| o.derivatives).map(|of| {
         let arguments: Vec<_> = of.arguments.iter().map(|name| (*name, o.nv)).collect();
-        let mut batch = Batch::plain(&format!("{}_derivatives", of.name), &arguments, &[]);
-        batch.results = of.results.iter().map(|name| Array::matrix(name, o.nv, o.nv)).collect();
+        let mut batch = Batch::vector_signature(&format!("{}_derivatives", of.name), &arguments, &[]);
+        batch.results = of.results.iter().map(|name| Array::matrix_array(name, o.nv, o.nv)).collect();
         Batch { docs: vec![of.docs.to_string()], ..batch }
     });
     plain.chain(derivatives).collect()
@@ -61,7 +64,7 @@ pub fn bodies_of_plain_charts(charts: &[Chart], o: &Outline<'_>) -> Vec<(Batch, 
     }
     let statements_of_charts =
         |batch: &Batch| charts.iter().map(|chart| plain_statement(*chart, &batch.name)).collect();
-    batches(o)
+    manifold_batches(o)
         .into_iter()
         .take(MANIFOLD.len())
         .map(|batch| (batch.clone(), statements_of_charts(&batch)))
@@ -80,7 +83,12 @@ fn plain_statement(chart: Chart, name: &str) -> String {
 
 /// Writes the definitions. With declared generalized speeds, the functions of joint velocities are internal,
 /// and the public functions call them.
-pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut Support) {
+pub fn write_manifold_definitions(
+    out: &mut String,
+    charts: &[Chart],
+    o: &Outline<'_>,
+    support: &mut Support,
+) {
     for (name, [a, b], _) in MANIFOLD {
         let mut body = String::new();
         for chart in charts {
@@ -101,14 +109,18 @@ pub fn define(out: &mut String, charts: &[Chart], o: &Outline<'_>, support: &mut
             };
             let _ = writeln!(body, "    lw_{kind}_{name}({a} + {x}, {b} + {y}, result + {r});");
         }
-        let unused = o.unused(&body, &[], &[a, b, "result"]);
+        let unused = o.silence_unused_arguments(&body, &[], &[a, b, "result"]);
         let _ = match o.speeds {
-            true => writeln!(out, "static {} {{\n{unused}{body}}}\n", signature(o, &of_joints(name), [a, b])),
-            false => writeln!(out, "{} {{\n{unused}{body}}}\n", signature(o, name, [a, b])),
+            true => writeln!(
+                out,
+                "static {} {{\n{unused}{body}}}\n",
+                manifold_signature(o, &of_joints(name), [a, b])
+            ),
+            false => writeln!(out, "{} {{\n{unused}{body}}}\n", manifold_signature(o, name, [a, b])),
         };
     }
     if o.speeds {
-        in_speeds::define(out, charts, o, support);
+        in_speeds::write_space_definitions(out, charts, o, support);
         return;
     }
     if o.derivatives {
@@ -175,7 +187,7 @@ fn define_derivatives(
         of.plain
     );
     for chart in charts {
-        let Some((kind, at, n)) = block(*chart, support) else { continue };
+        let Some((kind, at, n)) = curved_joint_block(*chart, support) else { continue };
         let given: Vec<String> = of.arguments.iter().map(|name| format!("{name} + {at}")).collect();
         let _ = writeln!(
             body,
@@ -189,14 +201,14 @@ fn define_derivatives(
         );
     }
     let names = [of.arguments, &of.results].concat();
-    let unused = o.unused(&body, &[], &names);
+    let unused = o.silence_unused_arguments(&body, &[], &names);
     let hidden = if o.speeds { "static " } else { "" };
     let _ = writeln!(out, "{hidden}{} {{\n{unused}{body}}}\n", derivatives_signature(o, of));
 }
 
 /// Returns the type of a joint with a curved configuration space, the index of its first velocity, and the
 /// number of its velocities. Registers the helpers for its derivatives.
-pub fn block(chart: Chart, support: &mut Support) -> Option<(&'static str, usize, usize)> {
+pub fn curved_joint_block(chart: Chart, support: &mut Support) -> Option<(&'static str, usize, usize)> {
     match chart {
         Chart::Plain(..) => None,
         Chart::Ball(_, v) => {
@@ -217,17 +229,17 @@ fn of_joints(name: &str) -> String {
 }
 
 /// Returns the declarations of the functions on the configuration manifold.
-pub fn declare(o: &Outline<'_>) -> String {
+pub fn manifold_declarations(o: &Outline<'_>) -> String {
     let mut text = String::new();
     if o.speeds {
-        return in_speeds::declare(o);
+        return in_speeds::space_declarations(o);
     }
     for (name, arguments, about) in MANIFOLD {
-        text.push_str(&docs::wrapped(about, "/* ", " * "));
-        let _ = writeln!(text, " */\n{};\n", signature(o, name, arguments));
+        text.push_str(&docs::wrap_paragraph(about, "/* ", " * "));
+        let _ = writeln!(text, " */\n{};\n", manifold_signature(o, name, arguments));
     }
     for of in TO_FIRST_ORDER.iter().filter(|_| o.derivatives) {
-        text.push_str(&docs::wrapped(of.docs, "/* ", " * "));
+        text.push_str(&docs::wrap_paragraph(of.docs, "/* ", " * "));
         let _ = writeln!(text, " */\n{};\n", derivatives_signature(o, of));
     }
     text

@@ -241,7 +241,7 @@ const OF_HEADERS: &[&str] = &[
 
 /// Replaces characters that are invalid in identifiers: ASCII punctuation by underscores, other characters by
 /// their Unicode numbers.
-pub fn letters(name: &str) -> String {
+pub fn replace_invalid_characters(name: &str) -> String {
     let mut text = String::new();
     for c in name.trim_start_matches("r#").chars() {
         match c {
@@ -255,8 +255,8 @@ pub fn letters(name: &str) -> String {
 
 /// Converts a name to an identifier. Keywords and names in capitals (most macros are) get a trailing
 /// underscore; names that begin with a digit or an underscore get a leading letter.
-pub fn identifier(name: &str) -> String {
-    let mut text = letters(name);
+pub fn identifier_from_name(name: &str) -> String {
+    let mut text = replace_invalid_characters(name);
     if text.starts_with(|c: char| !c.is_ascii_alphabetic()) {
         text.insert(0, 'x');
     }
@@ -270,7 +270,7 @@ pub fn identifier(name: &str) -> String {
 /// Returns the prefix of all names of a mechanism, which is also the name of a type. The prefix differs from
 /// all names in headers, and no name of the mechanism begins with `lw_`, the prefix of helpers.
 pub fn prefix_identifier(name: &str) -> String {
-    let mut text = identifier(name);
+    let mut text = identifier_from_name(name);
     if text == "lw" || text.starts_with("lw_") {
         text.insert(0, 'x');
     }
@@ -284,16 +284,16 @@ pub fn prefix_identifier(name: &str) -> String {
 }
 
 /// Returns unique identifiers for several names in one scope.
-pub fn identifiers<S: AsRef<str>>(names: &[S]) -> Vec<String> {
-    different(names.iter().map(|name| identifier(name.as_ref())))
+pub fn unique_identifiers<S: AsRef<str>>(names: &[S]) -> Vec<String> {
+    make_unique(names.iter().map(|name| identifier_from_name(name.as_ref())))
 }
 
 /// Returns unique preprocessor names for several names with a common prefix.
-pub fn capitals<S: AsRef<str>>(names: &[S]) -> Vec<String> {
-    different(names.iter().map(|name| letters(name.as_ref()).to_ascii_uppercase()))
+pub fn preprocessor_names<S: AsRef<str>>(names: &[S]) -> Vec<String> {
+    make_unique(names.iter().map(|name| replace_invalid_characters(name.as_ref()).to_ascii_uppercase()))
 }
 
-fn different(all: impl Iterator<Item = String>) -> Vec<String> {
+fn make_unique(all: impl Iterator<Item = String>) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     for name in all {
         let mut text = name.clone();
@@ -308,7 +308,7 @@ fn different(all: impl Iterator<Item = String>) -> Vec<String> {
 }
 
 /// Converts a type name to lower case with underscores between words.
-pub fn prefix(name: &str) -> String {
+pub fn snake_case_prefix(name: &str) -> String {
     let mut text = String::new();
     let mut before: Option<char> = None;
     let mut rest = name.trim_start_matches("r#").chars().peekable();
@@ -333,13 +333,13 @@ mod tests {
     fn what_c_does_not_have_gets_other_names() {
         assert_eq!(
             ["mass", "r#type", "int", "class", "2nd", "_x", "µ", "NAN", "M_PI", "L", "left-arm"]
-                .map(identifier),
+                .map(identifier_from_name),
             ["mass", "type", "int_", "class_", "x2nd", "x_x", "u00b5", "NAN_", "M_PI_", "L", "left_arm"]
         );
-        assert_eq!(identifiers(&["a-b", "a_b", "a b"]), ["a_b", "a_b_2", "a_b_3"]);
-        assert_eq!(capitals(&["tool", "r#in", "left-arm"]), ["TOOL", "IN", "LEFT_ARM"]);
+        assert_eq!(unique_identifiers(&["a-b", "a_b", "a b"]), ["a_b", "a_b_2", "a_b_3"]);
+        assert_eq!(preprocessor_names(&["tool", "r#in", "left-arm"]), ["TOOL", "IN", "LEFT_ARM"]);
         assert_eq!(
-            ["CartPole", "UR5", "Solo12", "HTTPServer"].map(prefix),
+            ["CartPole", "UR5", "Solo12", "HTTPServer"].map(snake_case_prefix),
             ["cart_pole", "ur5", "solo12", "http_server"]
         );
     }

@@ -13,12 +13,12 @@ pub struct Piece {
 
 impl Piece {
     /// Creates an expression that refers to no values and needs no parentheses.
-    pub fn plain(text: String) -> Piece {
+    pub fn plain_expression(text: String) -> Piece {
         Piece { text, needs: Vec::new(), level: 3 }
     }
 
     /// Returns the text, in parentheses if the precedence is below `level`.
-    pub fn wrapped(&self, level: u8) -> String {
+    pub fn text_at_precedence(&self, level: u8) -> String {
         if self.level < level { format!("({})", self.text) } else { self.text.clone() }
     }
 }

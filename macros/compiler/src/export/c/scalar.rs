@@ -16,12 +16,22 @@ const WORDS: &[(&str, &str)] = &[
 ];
 
 /// Returns the C literal of a number.
-pub fn constant(c: f64) -> String {
+pub fn numeric_literal(c: f64) -> String {
     format!("{c:?}")
 }
 
-/// Converts code for `double` to `float`. Comments do not change.
+/// Converts code for `double` to `float`.
 pub fn in_single_precision(code: &str) -> String {
+    replaced(code, &single_precision_literal, &word_in_single_precision)
+}
+
+/// Replaces the numbers of code, and its words, which are given together with the code after them. Comments
+/// do not change.
+pub fn replaced(
+    code: &str,
+    number: &dyn Fn(&str) -> String,
+    replaced_word: &dyn Fn(&str, &str) -> String,
+) -> String {
     let mut out = String::with_capacity(code.len());
     let mut rest = code;
     while let Some(first) = rest.chars().next() {
@@ -37,14 +47,14 @@ pub fn in_single_precision(code: &str) -> String {
         let (word, after) = rest.split_at(length);
         match first {
             c if c.is_ascii_digit() => out.push_str(&number(word)),
-            _ => out.push_str(&self::word(word, after)),
+            _ => out.push_str(&replaced_word(word, after)),
         }
         rest = after;
     }
     out
 }
 
-fn word(word: &str, after: &str) -> String {
+fn word_in_single_precision(word: &str, after: &str) -> String {
     if let Some((_, single)) = WORDS.iter().find(|(double, _)| *double == word) {
         return (*single).to_string();
     }
@@ -64,7 +74,7 @@ pub fn number_length(text: &str) -> usize {
 }
 
 /// Converts a numeric literal to single precision; integers do not change.
-fn number(text: &str) -> String {
+fn single_precision_literal(text: &str) -> String {
     let is_whole = !text.contains(['.', 'e', 'E']) || text.starts_with("0x");
     match text.parse::<f64>() {
         Ok(x) if !is_whole && (x as f32).is_finite() => format!("{:?}f", x as f32),

@@ -3,8 +3,8 @@
 use super::batch::Batch;
 use super::function::Outline;
 use super::source::{
-    LIMITS, Named, Options, Selection, Unfit, bodies, check, description, frame_names, parameter_types,
-    reaction_arguments, reaction_docs, sizes,
+    LIMITS, Named, Options, Selection, Unfit, frame_names, function_definitions, list_state_entries,
+    parameter_types, reaction_arguments, reaction_docs, reject_vector_lanes, size_macros,
 };
 use super::support::Support;
 use super::{frames, manifold, names, steps};
@@ -37,30 +37,30 @@ pub struct CodeParts {
 ///
 /// # Errors
 /// The mechanism is not supported, for the reason in [`Unfit`].
-pub fn parts(
+pub fn code_parts(
     model: &Model<'_>,
     output: &Output,
     tables: &[String],
     options: &Options,
 ) -> Result<CodeParts, Unfit> {
-    check(output)?;
+    reject_vector_lanes(output)?;
     let named = Named::from_model(model, tables, &options.prefix);
-    let o = &named.outline(model, output);
+    let o = &named.outline_of_mechanism(model, output);
     let chosen = Selection::new(output);
     let mut support = Support::of_kernels();
     let steps = steps::Steps::new(model, output);
-    let bodies = bodies(model, output, &chosen, &steps, o, &mut support)?;
-    let functions = signatures(model, output, &chosen, &steps, o);
+    let bodies = function_definitions(model, output, &chosen, &steps, o, &mut support)?;
+    let functions = function_signatures(model, output, &chosen, &steps, o);
     let mut left_out = chosen.left_out.clone();
     left_out.extend(options.left_out.iter().cloned());
-    let mut types = sizes(model, output, o);
+    let mut types = size_macros(model, output, o);
     types.push_str(&parameter_types(model, o));
-    types.push_str(&frames::indices(o, &frame_names(model)));
+    types.push_str(&frames::frame_index_constants(o, &frame_names(model)));
     Ok(CodeParts {
         prefix: o.prefix.clone(),
-        about: description(model),
+        about: list_state_entries(model),
         types,
-        definitions: format!("{}\n{}", support.text(model.nv(), &o.prefix), bodies.trim_end()),
+        definitions: format!("{}\n{}", support.support_definitions(model.nv(), &o.prefix), bodies.trim_end()),
         functions,
         parameters: named.parameters.clone(),
         tables: named.tables.clone(),
@@ -69,7 +69,7 @@ pub fn parts(
 }
 
 /// Returns the signatures of all functions that a program can call.
-fn signatures(
+fn function_signatures(
     model: &Model<'_>,
     output: &Output,
     chosen: &Selection<'_>,
@@ -78,13 +78,15 @@ fn signatures(
 ) -> Vec<Batch> {
     let mut functions: Vec<Batch> = chosen.public.iter().map(|f| Batch::from_function(f, o)).collect();
     functions.extend(chosen.reactions.iter().map(|f| {
-        let name = names::letters(f.name.strip_prefix(REACTION).unwrap_or_default());
+        let name = names::replace_invalid_characters(f.name.strip_prefix(REACTION).unwrap_or_default());
         Batch::new(&name, &reaction_arguments(model), f.shape, &[reaction_docs(&name)], o)
     }));
-    functions.extend(chosen.limits.map(|_| Batch::plain("limits", &[], &LIMITS.map(|name| (name, o.nv)))));
-    functions.extend(manifold::batches(o));
-    functions.extend(steps.batches(o));
-    functions.extend(frames::batches(output, o));
+    functions.extend(
+        chosen.limits.map(|_| Batch::vector_signature("limits", &[], &LIMITS.map(|name| (name, o.nv)))),
+    );
+    functions.extend(manifold::manifold_batches(o));
+    functions.extend(steps.step_batches(o));
+    functions.extend(frames::frame_batches(output, o));
     functions
 }
 
@@ -106,12 +108,16 @@ impl Signatures {
     /// Returns the signatures of the functions that [`write`](super::write) writes.
     pub fn new(model: &Model<'_>, output: &Output, tables: &[String], prefix: &str) -> Signatures {
         let named = Named::from_model(model, tables, prefix);
-        let o = &named.outline(model, output);
+        let o = &named.outline_of_mechanism(model, output);
         let chosen = Selection::new(output);
-        let functions = signatures(model, output, &chosen, &steps::Steps::new(model, output), o);
-        let own = chosen.public.iter().filter(|f| f.id == Id::Output).map(|f| names::letters(&f.name));
+        let functions = function_signatures(model, output, &chosen, &steps::Steps::new(model, output), o);
+        let own = chosen
+            .public
+            .iter()
+            .filter(|f| f.id == Id::Output)
+            .map(|f| names::replace_invalid_characters(&f.name));
         let reactions = chosen.reactions.iter().filter_map(|f| f.name.strip_prefix(REACTION));
-        let outputs = own.chain(reactions.map(names::letters)).collect();
+        let outputs = own.chain(reactions.map(names::replace_invalid_characters)).collect();
         let prefix = o.prefix.clone();
         Signatures { prefix, functions, outputs, parameters: named.parameters, tables: named.tables }
     }

@@ -9,7 +9,7 @@
 use super::batch::{Array, Batch};
 use super::docs;
 use super::function::Outline;
-use super::manifold::block;
+use super::manifold::curved_joint_block;
 use super::support::Support;
 use crate::catalogue::{Argument, Id};
 use crate::derive::Output;
@@ -81,15 +81,15 @@ impl<'a> Steps<'a> {
     }
 
     /// Returns the signatures of the integration steps.
-    pub fn batches(&self, o: &Outline<'_>) -> Vec<Batch> {
+    pub fn step_batches(&self, o: &Outline<'_>) -> Vec<Batch> {
         let mut all = Vec::new();
         for (method, about) in METHODS.iter().filter(|_| self.has_steps) {
-            let arguments = o.timed(&STATE);
+            let arguments = o.with_time_argument(&STATE);
             let docs = format!("One step of {about}; `h` seconds long, under inputs `u` that are held.");
-            let mut step = Batch::written(&format!("{method}_step"), &arguments, &[], &docs, o);
-            step.arguments.push(Array::value("h", "step size, s"));
+            let mut step = Batch::handwritten_signature(&format!("{method}_step"), &arguments, &[], &docs, o);
+            step.arguments.push(Array::value_argument("h", "step size, s"));
             let matrix_array =
-                |(name, rows, columns): (&str, usize, usize)| Array::matrix(name, rows, columns);
+                |(name, rows, columns): (&str, usize, usize)| Array::matrix_array(name, rows, columns);
             step.results = next(o).into_iter().map(matrix_array).collect();
             let docs = format!("The step of `{method}_step` with its Jacobians along displacements.");
             let mut transition = Batch { docs: vec![docs], ..step.clone() };
@@ -102,15 +102,15 @@ impl<'a> Steps<'a> {
     }
 
     /// Returns the declarations of the integration steps.
-    pub fn declare(&self, o: &Outline<'_>) -> String {
+    pub fn step_declarations(&self, o: &Outline<'_>) -> String {
         let mut text = String::new();
         for (method, about) in METHODS.iter().filter(|_| self.has_steps) {
             let says = format!(
                 "One step of {about}, of `h` seconds, with constant inputs `u`: configuration and velocity \
                  after it. The results may be stored in `q` and `v`."
             );
-            text.push_str(&docs::function(&[says], &o.timed(&STATE), &next(o), o));
-            let _ = writeln!(text, "{};\n", signature(o, &format!("{method}_step"), &NEXT));
+            text.push_str(&docs::function_comment(&[says], &o.with_time_argument(&STATE), &next(o), o));
+            let _ = writeln!(text, "{};\n", step_signature(o, &format!("{method}_step"), &NEXT));
             if !self.has_transitions {
                 continue;
             }
@@ -121,34 +121,43 @@ impl<'a> Steps<'a> {
                  velocity, `x` at the end is `by_state` times `x` at the start plus `by_input` times the \
                  change of the inputs{by_h}."
             );
-            text.push_str(&docs::function(&[says], &o.timed(&STATE), &transition_results(o), o));
-            let _ = writeln!(text, "{};\n", signature(o, &format!("{method}_transition"), &transition(o)));
+            text.push_str(&docs::function_comment(
+                &[says],
+                &o.with_time_argument(&STATE),
+                &transition_results(o),
+                o,
+            ));
+            let _ = writeln!(
+                text,
+                "{};\n",
+                step_signature(o, &format!("{method}_transition"), &transition_result_names(o))
+            );
         }
         text
     }
 
     /// Writes the definitions of the integration steps.
-    pub fn define(&self, out: &mut String, o: &Outline<'_>, support: &mut Support) {
+    pub fn write_step_definitions(&self, out: &mut String, o: &Outline<'_>, support: &mut Support) {
         if !self.has_steps {
             return;
         }
-        out.push_str(&self.filled(include_str!("templates/steps.c"), o, support));
+        out.push_str(&self.fill_template(include_str!("templates/steps.c"), o, support));
         if self.has_transitions {
             support.sums = true;
-            out.push_str(&self.filled(include_str!("templates/transitions.c"), o, support));
+            out.push_str(&self.fill_template(include_str!("templates/transitions.c"), o, support));
         }
     }
 
     /// Fills the placeholders of a template with the sizes, names and calls of the mechanism.
-    fn filled(&self, template: &str, o: &Outline<'_>, support: &mut Support) -> String {
+    fn fill_template(&self, template: &str, o: &Outline<'_>, support: &mut Support) -> String {
         let own = if o.has_own() { "self, " } else { "" };
         let own_declared = if o.has_own() { format!("const {} *self, ", o.prefix) } else { String::new() };
         let [t, t_declared] = if o.time { ["t, ", "double t, "] } else { ["", ""] };
         let time_after = |part: &str| if o.time { format!("t + {part}, ") } else { String::new() };
         let mut text = template.to_string();
         let mut put = |word: &str, by: &str| text = text.replace(word, by);
-        put("@FORCES@", &self.forces(o));
-        put("@LINEAR@", &self.linear(o));
+        put("@FORCES@", &self.input_force_statement(o));
+        put("@LINEAR@", &self.acceleration_derivatives_code(o));
         let has_blocks = !o.speeds && self.charts.iter().any(|chart| !matches!(chart, Chart::Plain(..)));
         let ways = match o.speeds {
             true => include_str!("templates/ways_in_speeds.c"),
@@ -163,13 +172,13 @@ impl<'a> Steps<'a> {
         put("@START@", &start);
         put("@START_DECLARED@", &start_declared);
         put("@MOVED_BLOCK@", if has_blocks { include_str!("templates/moved_block.c") } else { "" });
-        put("@MOVED@", &self.blocks(o, "integrate", support));
-        put("@RATE@", &self.blocks(o, "tangent_rate", support));
+        put("@MOVED@", &self.curved_joint_statements(o, "integrate", support));
+        put("@RATE@", &self.curved_joint_statements(o, "tangent_rate", support));
         for (method, _) in METHODS {
-            put(&format!("@{method}_step@"), &signature(o, &format!("{method}_step"), &NEXT));
+            put(&format!("@{method}_step@"), &step_signature(o, &format!("{method}_step"), &NEXT));
             put(
                 &format!("@{method}_transition@"),
-                &signature(o, &format!("{method}_transition"), &transition(o)),
+                &step_signature(o, &format!("{method}_transition"), &transition_result_names(o)),
             );
         }
         let [h_declared, h_passed] = if o.time { ["", ""] } else { [", double *by_h", ", by_h"] };
@@ -180,7 +189,7 @@ impl<'a> Steps<'a> {
         put("@UNUSED@", if o.nu == 0 { "    (void)(by_input);\n" } else { "" });
         put("@PERIOD@", if o.time { "0" } else { "1" });
         put("@S@", if o.time { "        const double s = part * h;\n" } else { "" });
-        put("@MOVED_PLAIN@", &self.plain(o));
+        put("@MOVED_PLAIN@", &self.identity_derivatives(o));
         put("@OWN@", own);
         put("@OWN_DECLARED@", &own_declared);
         put("@T@", t);
@@ -197,9 +206,9 @@ impl<'a> Steps<'a> {
     }
 
     /// Returns the statement that computes the generalized forces of the inputs in `tau`.
-    fn forces(&self, o: &Outline<'_>) -> String {
+    fn input_force_statement(&self, o: &Outline<'_>) -> String {
         match self.inputs {
-            Some(inputs) => format!("{};", o.call("generalized_forces", inputs, &["tau"])),
+            Some(inputs) => format!("{};", o.function_call("generalized_forces", inputs, &["tau"])),
             None => format!(
                 "(void)(u);\n    for (int k = 0; k < {}; ++k) {{\n        tau[k] = 0.0;\n    }}",
                 o.nv
@@ -208,14 +217,15 @@ impl<'a> Steps<'a> {
     }
 
     /// Returns the statements that compute the derivatives of the accelerations for given inputs.
-    fn linear(&self, o: &Outline<'_>) -> String {
-        let call = o.call("forward_dynamics_derivatives", &["q", "v", "tau"], &["by_q", "by_v", "by_tau"]);
+    fn acceleration_derivatives_code(&self, o: &Outline<'_>) -> String {
+        let call =
+            o.function_call("forward_dynamics_derivatives", &["q", "v", "tau"], &["by_q", "by_v", "by_tau"]);
         let mut text = format!("    {call};\n");
         if o.nu == 0 {
             text.push_str("    (void)(by_u);\n");
             return text;
         }
-        let of_inputs = o.call(
+        let of_inputs = o.function_call(
             "generalized_forces_derivatives",
             &["q", "v", "u"],
             &["force_by_q", "force_by_v", "force_by_u"],
@@ -240,7 +250,7 @@ impl<'a> Steps<'a> {
     }
 
     /// Returns the derivatives of plain coordinates after a displacement: the identity.
-    fn plain(&self, o: &Outline<'_>) -> String {
+    fn identity_derivatives(&self, o: &Outline<'_>) -> String {
         let all = self.charts.iter().filter_map(|chart| match chart {
             Chart::Plain(_, v) => Some(format!("    motion[(1 + {v}) * {} + {v}] += 1.0;\n", o.nv)),
             _ => None,
@@ -250,10 +260,10 @@ impl<'a> Steps<'a> {
 
     /// Returns the statements for joints with a curved configuration space, which transform columns of
     /// derivatives.
-    fn blocks(&self, o: &Outline<'_>, function: &str, support: &mut Support) -> String {
+    fn curved_joint_statements(&self, o: &Outline<'_>, function: &str, support: &mut Support) -> String {
         let mut text = String::new();
         for chart in self.charts {
-            let Some((kind, at, n)) = block(*chart, support) else { continue };
+            let Some((kind, at, n)) = curved_joint_block(*chart, support) else { continue };
             let _ = match function {
                 "integrate" => writeln!(
                     text,
@@ -306,13 +316,13 @@ fn transition_results(o: &Outline<'_>) -> Vec<(&'static str, usize, usize)> {
 }
 
 /// Returns the names of the results of a step with its Jacobians.
-fn transition(o: &Outline<'_>) -> Vec<&'static str> {
+fn transition_result_names(o: &Outline<'_>) -> Vec<&'static str> {
     let by_h = (!o.time).then_some("by_h");
     NEXT.into_iter().chain(["by_state", "by_input"]).chain(by_h).collect()
 }
 
 /// Returns a signature with the step size after the inputs.
-fn signature(o: &Outline<'_>, name: &str, given: &[&str]) -> String {
-    let spelled = o.spelled("void", name, &o.timed(&STATE), given);
+fn step_signature(o: &Outline<'_>, name: &str, given: &[&str]) -> String {
+    let spelled = o.signature_with_results("void", name, &o.with_time_argument(&STATE), given);
     spelled.replacen("const double *u, ", "const double *u, double h, ", 1)
 }

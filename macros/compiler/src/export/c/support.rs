@@ -7,6 +7,8 @@
 pub struct Support {
     /// Whether numbers have single precision.
     single: bool,
+    /// Whether every operation is rounded by itself.
+    pub is_reproducible: bool,
     /// Whether the target defines fused products and the functions for sines and cosines itself.
     pub is_kernel: bool,
     one_angle: bool,
@@ -55,28 +57,37 @@ impl Support {
     }
 
     /// Returns the helper for sines and cosines of one or four angles, and marks it as needed.
-    pub fn angles(&mut self, count: usize) -> &'static str {
+    pub fn sine_cosine_function(&mut self, count: usize) -> &'static str {
         self.one_angle = true;
         self.four_angles |= count > 1;
         if count > 1 { "lw_sin_cos_4" } else { "lw_sin_cos" }
     }
 
     /// Returns the helper for signs, and marks it as needed.
-    pub fn signum(&mut self) -> String {
+    pub fn sign_function(&mut self) -> String {
         self.signum = true;
         "lw_signum".to_string()
     }
 
     /// Returns the function for a quantity of the standard atmosphere.
-    pub fn atmosphere(&mut self, name: &str) -> String {
+    pub fn atmosphere_function(&mut self, name: &str) -> String {
         if let Some(at) = QUANTITIES.iter().position(|(known, _)| *known == name) {
             self.atmosphere[at] = true;
         }
         format!("lw_{name}")
     }
 
+    /// Returns what the results depend on whose bits are not those of Rust.
+    pub fn irreproducible(&self) -> Option<&'static str> {
+        match (self.atmosphere.contains(&true), self.tabulated) {
+            (true, _) => Some("the standard atmosphere"),
+            (_, true) => Some("a table"),
+            _ => None,
+        }
+    }
+
     /// Returns the required headers in addition to `math.h`.
-    pub fn includes(self) -> &'static [&'static str] {
+    pub fn required_headers(self) -> &'static [&'static str] {
         let exact = self.one_angle && !self.single;
         match (exact, self.balls || self.motions || exact) {
             (true, _) => &["float.h", "stdint.h", "string.h"],
@@ -86,7 +97,7 @@ impl Support {
     }
 
     /// Returns the definitions for a mechanism with `nv` velocities and this prefix of names.
-    pub fn text(self, nv: usize, prefix: &str) -> String {
+    pub fn support_definitions(self, nv: usize, prefix: &str) -> String {
         let angles = match self.single {
             true => {
                 [include_str!("templates/single_angles.c"), include_str!("templates/four_single_angles.c")]
@@ -94,9 +105,11 @@ impl Support {
             false => [include_str!("templates/angles.c"), include_str!("templates/four_angles.c")],
         };
         let air = self.atmosphere.contains(&true);
+        let jacobians = self.jacobians.contains(&true);
+        let own_sines = self.is_reproducible && (self.balls || self.motions);
         let parts = [
-            (!self.is_kernel, include_str!("templates/fused.c")),
-            (self.one_angle && !self.is_kernel, angles[0]),
+            (!self.is_kernel && !self.is_reproducible, include_str!("templates/fused.c")),
+            ((self.one_angle || own_sines) && !self.is_kernel, angles[0]),
             (self.four_angles && !self.is_kernel, angles[1]),
             (self.signum, include_str!("templates/signum.c")),
             (air, include_str!("templates/atmosphere.c")),
@@ -104,11 +117,12 @@ impl Support {
             (self.completed || self.inverted, include_str!("templates/completed.c")),
             (self.inverted, include_str!("templates/inverted.c")),
             (self.solved, include_str!("templates/solved.c")),
+            (own_sines, include_str!("templates/own_sines.c")),
             (self.balls || self.motions, include_str!("templates/turns.c")),
+            (self.motions || jacobians, include_str!("templates/even_brackets.c")),
+            (self.motions || self.jacobians[0], include_str!("templates/left_jacobian.c")),
             (self.balls, include_str!("templates/ball_rates.c")),
             (self.motions, include_str!("templates/motions.c")),
-            (self.jacobians.contains(&true), include_str!("templates/fourth_bracket.c")),
-            (self.jacobians[0], include_str!("templates/left_jacobian.c")),
             (self.jacobians[0], include_str!("templates/ball_jacobians.c")),
             (self.jacobians[1], include_str!("templates/motion_jacobians.c")),
             (self.sums, include_str!("templates/sums.c")),

@@ -5,7 +5,7 @@ use super::function::Outline;
 use std::fmt::Write;
 
 /// Returns the definition of the table type, if there are tables.
-pub fn kind(o: &Outline<'_>) -> String {
+pub fn table_type_definition(o: &Outline<'_>) -> String {
     if o.tables.is_empty() {
         return String::new();
     }
@@ -22,13 +22,13 @@ pub fn kind(o: &Outline<'_>) -> String {
 }
 
 /// Returns the declarations of the table members, with the units of the variables and of the value.
-pub fn members(o: &Outline<'_>, units: &[Vec<String>]) -> String {
+pub fn table_member_declarations(o: &Outline<'_>, units: &[Vec<String>]) -> String {
     let mut text = String::new();
     for (k, member) in o.tables.iter().enumerate() {
         let units = units.get(k).map_or(&[][..], Vec::as_slice);
         let (value, variables) = units.split_last().map_or(("", &[][..]), |(v, rest)| (v.as_str(), rest));
         let says = format!("{value} of {}", variables.join(", "));
-        let _ = writeln!(text, "    {}_table {member}; /* {} */", o.prefix, docs::safe(&says));
+        let _ = writeln!(text, "    {}_table {member}; /* {} */", o.prefix, docs::comment_safe_text(&says));
     }
     text
 }

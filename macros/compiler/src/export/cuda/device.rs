@@ -20,9 +20,9 @@ pub fn device_functions(code: &str) -> String {
                 head.push(' ');
                 head.push_str(next.trim_start());
             }
-            out.push_str(&function(&head));
+            out.push_str(&convert_function_head(&head));
         } else {
-            out.push_str(&statement(line));
+            out.push_str(&convert_statement(line));
         }
         out.push('\n');
     }
@@ -30,14 +30,14 @@ pub fn device_functions(code: &str) -> String {
 }
 
 /// Converts the first line of a function definition. Each array becomes an argument of a type parameter.
-fn function(head: &str) -> String {
+fn convert_function_head(head: &str) -> String {
     let plain = KINDS[..2].iter().fold(head, |head, kind| head.strip_prefix(kind).unwrap_or(head));
     let Some((name, rest)) = plain.split_once('(') else { return head.to_string() };
     let list = rest.rsplit_once(')').map_or(rest, |(list, _)| list);
     let mut types = Vec::new();
     let mut arguments = Vec::new();
     for argument in list.split(", ").filter(|argument| *argument != "void") {
-        match array(argument) {
+        match array_argument_name(argument) {
             Some(array) => {
                 let kind = format!("T{}", types.len());
                 arguments.push(format!("{kind} {array}"));
@@ -51,7 +51,7 @@ fn function(head: &str) -> String {
 }
 
 /// Returns the name of an argument that is an array of numbers.
-fn array(argument: &str) -> Option<&str> {
+fn array_argument_name(argument: &str) -> Option<&str> {
     let plain = argument.strip_prefix("const ").unwrap_or(argument).strip_prefix("double ")?;
     match plain.strip_prefix('*') {
         Some(name) => Some(name),
@@ -60,7 +60,7 @@ fn array(argument: &str) -> Option<&str> {
 }
 
 /// Converts a line of a function body: pointers into arrays, and results that are always zero.
-fn statement(line: &str) -> String {
+fn convert_statement(line: &str) -> String {
     let text = line.trim_start();
     let indent = &line[..line.len() - text.len()];
     let is_zero = text.strip_suffix("] = 0.0;").filter(|place| !place.contains(' '));

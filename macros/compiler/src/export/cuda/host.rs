@@ -1,31 +1,31 @@
 //! C++ functions that launch the CUDA kernels.
 
 use super::Kernels;
-use crate::export::c::{Batch, wrapped};
+use crate::export::c::{Batch, wrap_paragraph};
 use std::fmt::Write;
 
 /// Returns the text of the header that launches the kernels.
-pub fn text(kernels: &Kernels<'_>) -> String {
+pub fn header_text(kernels: &Kernels<'_>) -> String {
     let p = &kernels.parts.prefix;
     let upper = p.to_ascii_uppercase();
     let mut text = include_str!("templates/launch.cuh").replace("@PREFIX@", p).replace("@UPPER@", &upper);
-    kernels.functions.iter().for_each(|f| launch(&mut text, kernels, f));
+    kernels.functions.iter().for_each(|f| write_launch_function(&mut text, kernels, f));
     text.push_str("#endif\n");
     text
 }
 
 /// Writes the function that launches a kernel, with its documentation.
-fn launch(text: &mut String, kernels: &Kernels<'_>, f: &Batch) {
+fn write_launch_function(text: &mut String, kernels: &Kernels<'_>, f: &Batch) {
     let p = &kernels.parts.prefix;
     let upper = p.to_ascii_uppercase();
-    let _ = writeln!(text, "{}", kernels.condition(f));
+    let _ = writeln!(text, "{}", kernels.kernel_condition(f));
     for (k, paragraph) in f.docs.iter().enumerate() {
-        text.push_str(&wrapped(paragraph, if k == 0 { "/* " } else { " * " }, " * "));
+        text.push_str(&wrap_paragraph(paragraph, if k == 0 { "/* " } else { " * " }, " * "));
     }
     text.push_str(if f.docs.is_empty() { "/*\n" } else { " *\n" });
     for (array, of) in f.arguments.iter().map(|a| (a, "")).chain(f.results.iter().map(|a| (a, "out: "))) {
         let says = format!("{of}{}", array.about);
-        text.push_str(&wrapped(&says, &format!(" * {:9} ", array.name), " *           "));
+        text.push_str(&wrap_paragraph(&says, &format!(" * {:9} ", array.name), " *           "));
     }
     text.push_str(" */\n");
     let mut declared = vec!["long long states".to_string()];

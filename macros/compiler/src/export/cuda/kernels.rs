@@ -45,7 +45,7 @@ impl<'a> Products<'a> {
     }
 
     /// Returns the signatures of the vector–Jacobian products.
-    pub fn batches(&self) -> Vec<Batch> {
+    pub fn product_batches(&self) -> Vec<Batch> {
         let mut all = Vec::new();
         for (k, name) in NAMES.iter().enumerate().filter(|(k, _)| self.has[*k]) {
             let of = ["inverse_dynamics", "forward_dynamics"][k];
@@ -65,7 +65,7 @@ impl<'a> Products<'a> {
     }
 
     /// Writes the definitions of the vector–Jacobian products.
-    pub fn define(&self, out: &mut String) {
+    pub fn write_product_definitions(&self, out: &mut String) {
         let p = &self.parts.prefix;
         let has_own = !(self.parts.parameters.is_empty() && self.parts.tables.is_empty());
         let own_declared = if has_own { format!("const {p} *self, ") } else { String::new() };

@@ -4,7 +4,7 @@ use super::{Array, Kernels};
 use std::fmt::Write;
 
 /// Returns the text of the Python module that launches the kernels.
-pub fn text(kernels: &Kernels<'_>) -> String {
+pub fn python_module(kernels: &Kernels<'_>) -> String {
     let parts = kernels.parts;
     let format_name_list = |list: &[String]| {
         let quoted: Vec<String> = list.iter().map(|name| format!("{name:?}")).collect();

@@ -1,19 +1,24 @@
 //! The file `modelDescription.xml`, and the description of the sources.
 
-use super::units::{BASES, exponents};
+use super::units::{BASES, exponents_of_unit};
 use super::variables::{ScalarVariable, VariableRole, Variables};
 use crate::mechanism::Model;
 use std::fmt::Write;
 
 /// Returns a text that is valid in an attribute of XML.
-fn escaped(text: &str) -> String {
+fn escape_xml(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let plain = plain.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
     plain.replace('"', "&quot;").replace('\'', "&apos;")
 }
 
 /// Returns the text of `modelDescription.xml`.
-pub fn text(model: &Model<'_>, identifier: &str, token: &str, variables: &Variables) -> String {
+pub fn model_description_text(
+    model: &Model<'_>,
+    identifier: &str,
+    token: &str,
+    variables: &Variables,
+) -> String {
     let mut abilities = r#"canGetAndSetFMUState="true" canSerializeFMUState="true""#.to_string();
     if variables.is_differentiable {
         abilities.push_str(r#" providesDirectionalDerivatives="true" providesAdjointDerivatives="true""#);
@@ -33,7 +38,7 @@ pub fn text(model: &Model<'_>, identifier: &str, token: &str, variables: &Variab
         .replace("@ABILITIES@", &abilities)
         .replace("@UNITS@", &units)
         .replace("@STRUCTURE@", &structure)
-        .replace("@NAME@", &escaped(&model.name))
+        .replace("@NAME@", &escape_xml(&model.name))
         .replace("@VARIABLES@", &list)
 }
 
@@ -44,12 +49,12 @@ fn write_units(text: &mut String, variables: &Variables) {
     units.sort_unstable();
     units.dedup();
     for unit in units {
-        let base = exponents(unit).map_or(String::new(), |all| {
+        let base = exponents_of_unit(unit).map_or(String::new(), |all| {
             let powers = BASES.iter().zip(all).filter(|(_, power)| *power != 0);
             let powers: Vec<String> = powers.map(|(name, power)| format!(r#" {name}="{power}""#)).collect();
             format!("<BaseUnit{}/>", powers.concat())
         });
-        let _ = writeln!(text, r#"    <Unit name="{}">{base}</Unit>"#, escaped(unit));
+        let _ = writeln!(text, r#"    <Unit name="{}">{base}</Unit>"#, escape_xml(unit));
     }
 }
 
@@ -79,13 +84,13 @@ fn write_variable(text: &mut String, reference: usize, variable: &ScalarVariable
     let variability = if variable.role == VariableRole::Parameter { "tunable" } else { "continuous" };
     let attributes = format!(r#"causality="{causality}" variability="{variability}"{further}"#);
     let unit = match is_known(&variable.unit) {
-        true => format!(r#" unit="{}""#, escaped(&variable.unit)),
+        true => format!(r#" unit="{}""#, escape_xml(&variable.unit)),
         false => String::new(),
     };
     let _ = writeln!(
         text,
         r#"    <Float64 name="{}" valueReference="{reference}" {attributes}{unit}/>"#,
-        escaped(&variable.name)
+        escape_xml(&variable.name)
     );
 }
 

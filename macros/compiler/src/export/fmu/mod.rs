@@ -47,7 +47,7 @@ pub struct FmuFiles {
 const SIMULATE: &str = "compliant contacts (`stiffness = …`) may have friction; `linkwork simulate` has all";
 
 /// Returns the reason why a mechanism cannot be exported as an FMU, and what to do instead.
-pub fn obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'static str)> {
+pub fn export_obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'static str)> {
     use crate::catalogue::Id;
     let has_function = |id: Id| output.functions.iter().any(|f| f.id == id);
     if model.kinematic || model.nv() == 0 || !has_function(Id::MassMatrix) {
@@ -73,20 +73,20 @@ pub fn obstacle(model: &Model<'_>, output: &Output) -> Option<(String, &'static 
 ///
 /// # Errors
 /// The mechanism is not supported, for the reason in [`Unfit`].
-pub fn write(
+pub fn export_fmu(
     model: &Model<'_>,
     output: &Output,
     tables: &[String],
     options: &c::Options,
     start: &StartValues,
 ) -> Result<FmuFiles, Unfit> {
-    let code = c::write(model, output, tables, options)?;
+    let code = c::export_c_source(model, output, tables, options)?;
     let signatures = Signatures::new(model, output, tables, &options.prefix);
     let variables = Variables::new(model, &signatures, start);
     let identifier = code.prefix.clone();
-    let model_text = model::text(model, output, &signatures, &variables, start);
-    let token = token(&[&code.source, &code.header, &model_text]);
-    let description = description::text(model, &identifier, &token, &variables);
+    let model_text = model::model_header(model, output, &signatures, &variables, start);
+    let token = instantiation_token(&[&code.source, &code.header, &model_text]);
+    let description = description::model_description_text(model, &identifier, &token, &variables);
     let sources = [format!("sources/{identifier}.c"), format!("sources/{MAIN}")];
     let mut files = vec![
         ("modelDescription.xml".to_string(), description),
@@ -107,7 +107,7 @@ pub fn write(
 }
 
 /// Returns a token that identifies the model: a hash of its texts, in the form of a UUID.
-fn token(texts: &[&str]) -> String {
+fn instantiation_token(texts: &[&str]) -> String {
     let hash_of_texts = |seed: u64| {
         let bytes = texts.iter().flat_map(|text| text.bytes());
         bytes.fold(seed, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))

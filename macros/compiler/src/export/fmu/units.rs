@@ -22,7 +22,7 @@ const NAMED: [(&str, Exponents); 11] = [
 ];
 
 /// Returns the exponents of a unit; `None` for text that is not a product of known units.
-pub fn exponents(unit: &str) -> Option<Exponents> {
+pub fn exponents_of_unit(unit: &str) -> Option<Exponents> {
     let (mut sum, mut sign, mut depth_sign) = ([0; 4], 1, 1);
     let mut rest = unit;
     while let Some(first) = rest.chars().next() {
@@ -57,7 +57,7 @@ fn split_power(word: &str) -> Option<(&str, i32)> {
 }
 
 /// Returns the unit of the rate of a quantity.
-pub fn rate(unit: &str) -> String {
+pub fn unit_of_rate(unit: &str) -> String {
     match unit {
         "any" | "" => "any".to_string(),
         "1" => "1/s".to_string(),
@@ -69,7 +69,7 @@ pub fn rate(unit: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{exponents, rate};
+    use super::{exponents_of_unit, unit_of_rate};
 
     #[test]
     fn products_and_quotients_have_exponents_of_base_units() {
@@ -81,9 +81,12 @@ mod tests {
             ("rad/s", [0, 0, -1, 1]),
             ("(m/s)/s", [0, 1, -2, 0]),
         ] {
-            assert_eq!(exponents(unit), Some(expected), "{unit}");
+            assert_eq!(exponents_of_unit(unit), Some(expected), "{unit}");
         }
-        assert_eq!([exponents("any"), exponents(""), exponents("m^(1/2)")], [None; 3]);
-        assert_eq!(["m", "rad/s", "1", "m²/s²"].map(rate), ["m/s", "rad/s²", "1/s", "(m²/s²)/s"]);
+        assert_eq!(
+            [exponents_of_unit("any"), exponents_of_unit(""), exponents_of_unit("m^(1/2)")],
+            [None; 3]
+        );
+        assert_eq!(["m", "rad/s", "1", "m²/s²"].map(unit_of_rate), ["m/s", "rad/s²", "1/s", "(m²/s²)/s"]);
     }
 }

@@ -91,7 +91,7 @@ impl Variables {
             && rates.iter().all(|rate| rate.is_differentiable)
             && model.contacts.is_empty()
             && model.speeds.is_none();
-        let has_quaternions = model.charts.iter().any(|chart| chart.quaternion().is_some());
+        let has_quaternions = model.charts.iter().any(|chart| chart.first_quaternion_index().is_some());
         let parameters: Vec<usize> =
             (0..model.parameters.len()).filter(|k| !start.states.contains(k)).collect();
         let mut variables = Variables {
@@ -103,47 +103,54 @@ impl Variables {
             is_projected: has_quaternions || is_constrained || !model.contacts.is_empty(),
             is_constrained,
         };
-        variables.list(model, start);
+        variables.list_variables(model, start);
         variables
     }
 
     /// Lists all variables in the order of their value references.
-    fn list(&mut self, model: &Model<'_>, start: &StartValues) {
+    fn list_variables(&mut self, model: &Model<'_>, start: &StartValues) {
         let u = &model.units;
         self.add("time".to_string(), "s", VariableRole::Time, 0.0);
         for (k, name) in model.configuration.iter().enumerate() {
-            self.add(format!("q.{name}"), unit(&u.configuration, k), VariableRole::State, start.q[k]);
+            self.add(
+                format!("q.{name}"),
+                unit_at_index(&u.configuration, k),
+                VariableRole::State,
+                start.q[k],
+            );
         }
         for (k, (name, _)) in model.velocities.iter().enumerate() {
-            self.add(format!("v.{name}"), unit(&u.velocities, k), VariableRole::State, start.v[k]);
+            self.add(format!("v.{name}"), unit_at_index(&u.velocities, k), VariableRole::State, start.v[k]);
         }
         for &k in &start.states {
             self.add(
                 format!("x.{}", model.parameters[k]),
-                unit(&u.parameters, k),
+                unit_at_index(&u.parameters, k),
                 VariableRole::State,
                 start.parameters[k],
             );
         }
         for state in 1..self.all.len() {
             let ScalarVariable { name, unit, .. } = self.all[state].clone();
-            self.add(format!("der({name})"), &units::rate(&unit), VariableRole::Rate(state), 0.0);
+            self.add(format!("der({name})"), &units::unit_of_rate(&unit), VariableRole::Rate(state), 0.0);
         }
         for (k, (name, _)) in model.inputs.iter().enumerate() {
-            self.add(format!("u.{name}"), unit(&u.inputs, k), VariableRole::Input, start.u[k]);
+            self.add(format!("u.{name}"), unit_at_index(&u.inputs, k), VariableRole::Input, start.u[k]);
         }
         for k in self.parameters.clone() {
             self.add(
                 model.parameters[k].clone(),
-                unit(&u.parameters, k),
+                unit_at_index(&u.parameters, k),
                 VariableRole::Parameter,
                 start.parameters[k],
             );
         }
         for output in self.outputs.clone() {
-            let at =
-                model.outputs.iter().position(|known| super::super::c::letters(&known.name) == output.name);
-            let unit = at.map_or("any", |at| unit(&u.outputs, at));
+            let at = model
+                .outputs
+                .iter()
+                .position(|known| super::super::c::replace_invalid_characters(&known.name) == output.name);
+            let unit = at.map_or("any", |at| unit_at_index(&u.outputs, at));
             let name = at.map_or(&output.name, |at| &model.outputs[at].name);
             for k in 0..output.size {
                 let name = if output.size == 1 { name.clone() } else { format!("{name}[{}]", k + 1) };
@@ -168,12 +175,12 @@ impl Variables {
     }
 
     /// Returns the number of outputs whose derivatives are differences.
-    pub fn numeric(&self) -> usize {
+    pub fn count_differenced_outputs(&self) -> usize {
         let outputs = self.outputs.iter().filter(|output| !output.is_differentiable);
         ENERGIES.len() + outputs.map(|output| output.size).sum::<usize>()
     }
 }
 
-fn unit(units: &[String], k: usize) -> &str {
+fn unit_at_index(units: &[String], k: usize) -> &str {
     units.get(k).map_or("any", String::as_str)
 }

@@ -36,7 +36,7 @@ const FUNCTIONS: [(&str, &str); 6] = [
 ///
 /// # Errors
 /// The mechanism is not supported, for the reason in [`Unfit`].
-pub fn write(
+pub fn export_wgsl_shaders(
     model: &Model<'_>,
     output: &Output,
     tables: &[String],
@@ -56,7 +56,7 @@ pub fn write(
     );
     let mut functions = Vec::new();
     for (batch, body) in &bodies.functions {
-        match shader(p, batch, body, &bodies.parameters) {
+        match shader_text(p, batch, body, &bodies.parameters) {
             Ok(shader) => {
                 text.push_str(&shader);
                 functions.push(batch);
@@ -64,21 +64,21 @@ pub fn write(
             Err(reason) => left_out.push(format!("{}: {reason}", batch.name)),
         }
     }
-    let python = python(p, &functions, &bodies.parameters);
+    let python = python_module(p, &functions, &bodies.parameters);
     Ok(ShaderFiles { prefix: p.clone(), shaders: text, python, left_out })
 }
 
 /// Returns the shader of a function, or the reason why there is none.
-fn shader(p: &str, batch: &Batch, body: &str, parameters: &[String]) -> Result<String, String> {
+fn shader_text(p: &str, batch: &Batch, body: &str, parameters: &[String]) -> Result<String, String> {
     let mut text = String::new();
     for (k, paragraph) in batch.docs.iter().enumerate() {
-        text.push_str(&c::wrapped(paragraph, if k == 0 { "/* " } else { " * " }, " * "));
+        text.push_str(&c::wrap_paragraph(paragraph, if k == 0 { "/* " } else { " * " }, " * "));
     }
     text.push_str(if batch.docs.is_empty() { "/*\n" } else { " *\n" });
     for (list, of) in [(&batch.arguments, ""), (&batch.results, "out: ")] {
         for array in list {
             let says = format!("{of}{}", array.about);
-            text.push_str(&c::wrapped(&says, &format!(" * {:9} ", array.name), " *           "));
+            text.push_str(&c::wrap_paragraph(&says, &format!(" * {:9} ", array.name), " *           "));
         }
     }
     text.push_str(" */\n");
@@ -93,7 +93,7 @@ fn shader(p: &str, batch: &Batch, body: &str, parameters: &[String]) -> Result<S
     }
     let converter = Converter { batch, parameters };
     for line in body.lines() {
-        converter.statement(&mut text, line)?;
+        converter.write_statement(&mut text, line)?;
     }
     text.push_str("}\n\n");
     Ok(text)
@@ -107,7 +107,7 @@ struct Converter<'a> {
 
 impl Converter<'_> {
     /// Writes a statement in WGSL.
-    fn statement(&self, out: &mut String, line: &str) -> Result<(), String> {
+    fn write_statement(&self, out: &mut String, line: &str) -> Result<(), String> {
         let text = line.trim_start();
         // Sine and cosine of an angle: two lines in C, one vector in WGSL.
         if text.starts_with("double sine") {
@@ -117,33 +117,37 @@ impl Converter<'_> {
             let end = call.rfind(", &sine").ok_or("internal error: a sine")?;
             let number: String =
                 call[end + ", &sine".len()..].chars().take_while(char::is_ascii_digit).collect();
-            let _ = writeln!(out, "    let angle{number} = lw_sin_cos({});", self.expression(&call[..end])?);
+            let _ = writeln!(
+                out,
+                "    let angle{number} = lw_sin_cos({});",
+                self.convert_expression(&call[..end])?
+            );
             return Ok(());
         }
         match text.strip_prefix("const double ") {
             Some(rest) => {
-                let _ = writeln!(out, "    let {}", self.expression(rest)?);
+                let _ = writeln!(out, "    let {}", self.convert_expression(rest)?);
             }
             None => {
-                let _ = writeln!(out, "    {}", self.expression(text)?);
+                let _ = writeln!(out, "    {}", self.convert_expression(text)?);
             }
         }
         Ok(())
     }
 
     /// Converts the tokens of an expression or assignment.
-    fn expression(&self, code: &str) -> Result<String, String> {
+    fn convert_expression(&self, code: &str) -> Result<String, String> {
         let mut out = String::new();
         let mut rest = code;
         while let Some(first) = rest.chars().next() {
             let is_word_character = |c: char| c.is_ascii_alphanumeric() || c == '_';
             if first.is_ascii_digit() {
                 let (number, after) = rest.split_at(c::number_length(rest));
-                out.push_str(&literal(number)?);
+                out.push_str(&single_precision_literal(number)?);
                 rest = after;
             } else if is_word_character(first) {
                 let (word, after) = rest.split_at(rest.find(|c| !is_word_character(c)).unwrap_or(rest.len()));
-                rest = self.word(&mut out, word, after)?;
+                rest = self.convert_indexed_name(&mut out, word, after)?;
             } else {
                 out.push(first);
                 rest = &rest[first.len_utf8()..];
@@ -153,12 +157,17 @@ impl Converter<'_> {
     }
 
     /// Converts a name with its index, and returns the remaining code.
-    fn word<'c>(&self, out: &mut String, word: &str, after: &'c str) -> Result<&'c str, String> {
+    fn convert_indexed_name<'c>(
+        &self,
+        out: &mut String,
+        word: &str,
+        after: &'c str,
+    ) -> Result<&'c str, String> {
         if let Some(index) = after.strip_prefix('[')
             && let Some((index, after)) = index.split_once(']')
         {
             let index: usize = index.parse().map_err(|_| "internal error: an index")?;
-            let (buffer, first) = self.offset(word).ok_or("internal error: an array")?;
+            let (buffer, first) = self.buffer_and_offset(word).ok_or("internal error: an array")?;
             let _ = write!(out, "{buffer}[{} * n + i]", first + index);
             return Ok(after);
         }
@@ -190,7 +199,7 @@ impl Converter<'_> {
     }
 
     /// Returns the buffer of an array, and the index of its first entry.
-    fn offset(&self, name: &str) -> Option<(&'static str, usize)> {
+    fn buffer_and_offset(&self, name: &str) -> Option<(&'static str, usize)> {
         let offset_in_arrays = |list: &[Array]| {
             let at = list.iter().position(|array| array.name == name)?;
             Some(list[..at].iter().map(|array| array.length).sum())
@@ -203,7 +212,7 @@ impl Converter<'_> {
 }
 
 /// Returns a WGSL literal of single precision.
-fn literal(number: &str) -> Result<String, String> {
+fn single_precision_literal(number: &str) -> Result<String, String> {
     match number.parse::<f64>() {
         Ok(x) if (x as f32).is_finite() => Ok(format!("{:?}f", x as f32)),
         _ => Err(format!("the constant {number} is beyond single precision")),
@@ -211,7 +220,7 @@ fn literal(number: &str) -> Result<String, String> {
 }
 
 /// Returns the text of the Python module that runs the shaders.
-fn python(p: &str, functions: &[&Batch], parameters: &[String]) -> String {
+fn python_module(p: &str, functions: &[&Batch], parameters: &[String]) -> String {
     let format_array_list = |list: &[Array]| {
         let entries: Vec<String> = list.iter().map(|a| format!("({:?}, {})", a.name, a.length)).collect();
         format!("[{}]", entries.join(", "))
@@ -239,12 +248,12 @@ mod tests {
 
     #[test]
     fn statements_are_converted() {
-        let batch = Batch::plain("f", &[("q", 2), ("v", 2)], &[("by_q", 4), ("by_v", 4)]);
+        let batch = Batch::vector_signature("f", &[("q", 2), ("v", 2)], &[("by_q", 4), ("by_v", 4)]);
         assert_eq!(batch.arguments[0], Array::new("q", 2));
         let converter = Converter { batch: &batch, parameters: &["mass".to_string()] };
         let convert_statement = |line: &str| {
             let mut out = String::new();
-            converter.statement(&mut out, line).map(|()| out)
+            converter.write_statement(&mut out, line).map(|()| out)
         };
         for (c, wgsl) in [
             ("    const double v1 = v[1];", "    let v1 = arguments[3 * n + i];\n"),

@@ -1,22 +1,32 @@
 //! `<actuator>` → inputs, and the springs and dampers of servos.
 //!
 //! The length of an actuator is a gear ratio times a coordinate or the length of a tendon; on a site it is
-//! zero. The force is `gain · u + b₀ + b₁ length + b₂ rate` (MuJoCo, *Computation*, "Actuation model",
-//! without activation and muscles).
+//! zero. The force is `gain · u + b₀ + b₁ length + b₂ rate`, or an expression of states and inputs (MuJoCo,
+//! *Computation*, "Actuation model").
 
+use super::activation::{ActuatorLaw, ActuatorNames, OTHER_INPUTS};
 use super::defaults::Element;
-use super::law::{Force, OTHER_INPUTS, read_force};
+use super::formula::Formula;
+use super::law::{Force, read_force};
 use super::reader::Reader;
 use super::tendon::Tendon;
 use crate::import::context::Cx;
-use crate::import::element::{Node, elements, name, place};
+use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
 use crate::import::imported::Placed;
-use crate::import::robot::unused;
+use crate::import::robot::{identifier, unused_name};
+use crate::syntax::file_parameters::{FileField, FileFieldKind};
 use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, InputOption, JointKind, LimitOption, Name};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Supported actuator types: shortcuts and `general`.
-const KNOWN: [&str; 4] = ["motor", "position", "velocity", "general"];
+/// Actuator types that are not supported, with the reasons.
+const REFUSED: [(&str, &str); 3] = [
+    ("adhesion", "it acts at contacts, whose forces MuJoCo divides among them"),
+    (
+        "orientation",
+        "its force is that of three angles together: write three `<motor>`s, and the law in your program",
+    ),
+    ("plugin", "its force is computed by a program"),
+];
 
 /// All actuator types of MuJoCo.
 pub(super) const ALL: [&str; 13] = [
@@ -44,8 +54,8 @@ type Efforts = BTreeMap<String, Option<Placed<f64>>>;
 impl<'a> Reader<'a> {
     /// Reads all actuators.
     pub(super) fn actuators(&mut self, root: Node<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
-        let groups = elements(root).filter(|node| node.tag_name().name() == "actuator");
-        let nodes: Vec<Node<'a>> = groups.flat_map(elements).collect();
+        let groups = child_elements(root).filter(|node| node.tag_name().name() == "actuator");
+        let nodes: Vec<Node<'a>> = groups.flat_map(child_elements).collect();
         let off = self.options.inputs != InputOption::Actuators || !self.settings.actuation;
         if off && !nodes.is_empty() {
             self.left_out.push(format!("{} actuators", nodes.len()));
@@ -78,37 +88,76 @@ impl<'a> Reader<'a> {
     ) {
         let node = any.node;
         let kind = node.tag_name().name();
-        if !KNOWN.contains(&kind) {
-            // Unknown elements are reported by the schema check.
-            if ALL.contains(&kind) {
-                let message = format!("actuator `<{kind}>` is not supported");
-                cx.error(&place(node, cx), message, |d| d.help(OTHER_INPUTS));
-            }
+        if let Some((_, why)) = REFUSED.iter().find(|(refused, _)| *refused == kind) {
+            let message = format!("actuator `<{kind}>` is not supported");
+            cx.report_error(&element_position(node, cx), message, |d| {
+                d.add_help(*why).add_help(OTHER_INPUTS)
+            });
+            return;
+        }
+        if !ALL.contains(&kind) {
+            // The schema check reports unknown elements.
             return;
         }
         let classes = self.defaults.by_class(node, &ALL, 0, cx);
-        let Some(force) = read_force(any, &classes, cx) else { return };
-        let Some((on, turns)) = self.transmission(any, tendons, force.bias[1] != 0.0, cx) else { return };
         if let Some(found) = any.nonzero("delay", cx) {
-            cx.error(&found.place, "`delay` of an actuator is not supported", |d| d.help(OTHER_INPUTS));
+            cx.report_error(&found.place, "`delay` of an actuator is not supported", |d| {
+                d.add_help(OTHER_INPUTS)
+            });
         }
-        let said = node.has_attribute("name").then(|| name(node, "name", cx)).flatten();
+        let Some((on, turns)) = self.transmission(any, tendons, false, cx) else { return };
+        let said = node.has_attribute("name").then(|| read_name_attribute(node, "name", cx)).flatten();
         let named = said.unwrap_or_else(|| {
-            let joint = on.terms().first().map(|(joint, _)| joint.text.as_str());
+            let joint = on.weighted_joints().first().map(|(joint, _)| joint.text.as_str());
             let target = joint.or(any.text("site")).unwrap_or("motor");
             Name {
-                text: unused(&format!("{target}_{kind}"), |name| names.contains(name)),
-                place: place(node, cx),
+                text: unused_name(&format!("{target}_{kind}"), |name| names.contains(name)),
+                place: element_position(node, cx),
             }
         });
         names.insert(named.text.clone());
-        self.add_effort(any, &on, &force, efforts, cx);
-        let unit = unit(kind, turns, &force);
-        let mut drive = |on: DriveOn, law: DriveLaw| {
-            self.robot.drives.push(Drive { name: named.clone(), on, law });
+        let states = &self.robot.states;
+        let field = |word: &str| {
+            let is_taken = |name: &str| states.iter().any(|(field, _)| field.ident == name);
+            unused_name(&identifier(&named.text, word, "actuator"), is_taken)
         };
-        drive(on.scaled(force.gain), DriveLaw::Input(unit));
-        let [constant, stiffness, damping] = force.bias;
+        let input = |word: &str| match word {
+            "" => named.text.clone(),
+            word => unused_name(&format!("{}_{word}", named.text), |name| names.contains(name)),
+        };
+        let length = if turns { "rad" } else { "m" };
+        let quantities = ActuatorNames { actuator: &named.text, length, field: &field, input: &input };
+        let Some(force) = read_force(any, &classes, &quantities, cx) else { return };
+        match force {
+            Force::Affine { gain, bias } => {
+                let servo = bias[1] != 0.0;
+                let Some((on, _)) = self.transmission(any, tendons, servo, cx) else { return };
+                self.add_effort(any, &on, ((gain, bias), None), efforts, cx);
+                self.add_affine(&named, on, (gain, bias), unit(kind, turns, (gain, bias)));
+            }
+            Force::Law(law) => {
+                let Some((on, _)) = self.transmission(any, tendons, true, cx) else { return };
+                self.add_effort(any, &on, ((1.0, [1.0; 3]), law.limit.clone()), efforts, cx);
+                let limited = self.range(any, "actlimited", "actrange", cx).is_some();
+                self.count("ranges of activations", usize::from(limited));
+                names.extend(law.inputs.iter().map(|(input, _)| input.clone()));
+                self.add_law(named, on, law);
+            }
+        }
+    }
+
+    /// Adds the input of an actuator, and a spring and a damper for the force that does not depend on it.
+    fn add_affine(
+        &mut self,
+        name: &Name,
+        on: DriveOn,
+        (gain, [constant, stiffness, damping]): (f64, [f64; 3]),
+        unit: &'static str,
+    ) {
+        let mut drive = |on: DriveOn, law: DriveLaw| {
+            self.robot.drives.push(Drive { name: name.clone(), on, law });
+        };
+        drive(on.scaled_target(gain), DriveLaw::Input(unit));
         // The length of an actuator on a site is zero.
         let stiffness = if matches!(on, DriveOn::Wrench(_)) { 0.0 } else { stiffness };
         if stiffness != 0.0 {
@@ -119,6 +168,30 @@ impl<'a> Reader<'a> {
         if damping != 0.0 {
             drive(on, DriveLaw::Damper(-damping));
         }
+    }
+
+    /// Adds the inputs, the states and the force of an actuator.
+    fn add_law(&mut self, name: Name, on: DriveOn, law: ActuatorLaw) {
+        for (input, unit) in law.inputs {
+            let name = Name { text: input, place: name.place.clone() };
+            let on = DriveOn::Sum(Vec::new());
+            self.robot.drives.push(Drive { name, on, law: DriveLaw::Input(unit) });
+        }
+        for state in law.states {
+            let field = FileField {
+                ident: state.ident,
+                kind: FileFieldKind::Number,
+                of: name.text.clone(),
+                about: state.about,
+                values: vec![0.0],
+                units: vec![state.unit],
+            };
+            let Formula(rate) = state.rate;
+            self.robot.states.push((field, rate));
+        }
+        let Formula(force) = law.force;
+        let law = DriveLaw::Expression { force: Box::new(force), offset: 0.0 };
+        self.robot.drives.push(Drive { name, on, law });
     }
 
     /// Returns what an actuator acts on, scaled by the gear ratio, and whether its force is a torque.
@@ -135,15 +208,15 @@ impl<'a> Reader<'a> {
             [_] | ["slidersite", "cranksite"] => {}
             [] => {
                 let message = "an actuator without a target";
-                cx.error(&place(element.node, cx), message, |d| {
-                    d.help("expected `joint`, `tendon` or `site`").help(OTHER_INPUTS)
+                cx.report_error(&element_position(element.node, cx), message, |d| {
+                    d.add_help("expected `joint`, `tendon` or `site`").add_help(OTHER_INPUTS)
                 });
                 return None;
             }
             several => {
                 let message =
                     format!("an actuator has one target, but here are `{}`", several.join("` and `"));
-                cx.error(&place(element.node, cx), message, |d| d.help(OTHER_INPUTS));
+                cx.report_error(&element_position(element.node, cx), message, |d| d.add_help(OTHER_INPUTS));
                 return None;
             }
         }
@@ -162,31 +235,40 @@ impl<'a> Reader<'a> {
             return Some((DriveOn::Sum(vec![(joint, gear)]), turns));
         }
         if let Some(tendon) = element.name("tendon", cx) {
-            return Some((Tendon::drive_target(&tendon, tendons, OTHER_INPUTS, cx)?.scaled(gear), false));
+            return Some((
+                Tendon::drive_target(&tendon, tendons, OTHER_INPUTS, cx)?.scaled_target(gear),
+                false,
+            ));
         }
         let message = "an actuator on no joint, tendon or site is not supported";
-        cx.error(&place(element.node, cx), message, |d| d.help(OTHER_INPUTS));
+        cx.report_error(&element_position(element.node, cx), message, |d| d.add_help(OTHER_INPUTS));
         None
     }
 
     /// Adds the rotor inertia and the viscous damping of an actuator. They act on the joint or tendon even if
     /// the actuator is not used.
     fn add_losses(&mut self, element: &Element<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
-        let damping = element.linear("damping", OTHER_INPUTS, cx).filter(|_| self.dampers);
+        let gear = element.some("gear", [1.0; 6], cx).map_or(1.0, |gear| gear.value[0].abs());
+        let damping = element.polynomial("damping", cx).filter(|_| self.dampers && gear > 0.0);
+        // MuJoCo multiplies all coefficients by the square of the gear ratio.
+        let damping = damping.map(|Placed { value: [linear, square, cube], place }| Placed {
+            value: [linear, square / gear, cube / (gear * gear)],
+            place,
+        });
         let rotor = element.nonzero("armature", cx);
         let laws = [
-            damping.map(|found| (DriveLaw::Damper(found.value), found.place)),
+            damping.map(|found| (DriveLaw::damper(found.value), found.place)),
             rotor.as_ref().map(|found| (DriveLaw::Inerter(found.value), found.place.clone())),
         ];
         let laws: Vec<_> = laws.into_iter().flatten().collect();
         let Some((_, at)) = laws.first() else { return };
         if element.node.has_attribute("site") {
             let message = "`damping` and `armature` of an actuator on a site are not supported";
-            cx.error(at, message, |d| d.help("MuJoCo has them only on joints and tendons"));
+            cx.report_error(at, message, |d| d.add_help("MuJoCo has them only on joints and tendons"));
             return;
         }
         if let Some(rotor) = rotor.filter(|rotor| rotor.value < 0.0) {
-            cx.error(&rotor.place, format!("negative armature `{}`", rotor.value), |d| d);
+            cx.report_error(&rotor.place, format!("negative armature `{}`", rotor.value), |d| d);
         }
         let Some((on, _)) = self.transmission(element, tendons, false, cx) else { return };
         let target = ["joint", "jointinparent", "tendon"].into_iter().find_map(|target| element.text(target));
@@ -202,7 +284,7 @@ impl<'a> Reader<'a> {
         &mut self,
         element: &Element<'a>,
         on: &DriveOn,
-        force: &Force,
+        ((gain, bias), saturation): ((f64, [f64; 3]), Option<Placed<f64>>),
         efforts: &mut Efforts,
         cx: &mut Cx<'_>,
     ) {
@@ -211,15 +293,16 @@ impl<'a> Reader<'a> {
             Placed { value: low.value.abs().max(high.value.abs()), place: low.place }
         };
         let by_force = self.range(element, "forcelimited", "forcerange", cx).map(largest);
+        let saturation = saturation.filter(|_| self.options.limits != LimitOption::Ignore);
+        let by_force = saturation.or(by_force);
         let by_input = self.range(element, "ctrllimited", "ctrlrange", cx).map(largest);
         let by_input = by_input.filter(|_| self.settings.clamped);
         let inherits = element.nonzero("inheritrange", cx).is_some();
-        let is_servo = force.bias != [0.0; 3];
+        let is_servo = bias != [0.0; 3];
         let servos = usize::from((by_input.is_some() || inherits) && is_servo);
         self.count("ranges of servo commands", servos);
-        let by_input = by_input
-            .filter(|_| !is_servo)
-            .map(|found| Placed { value: found.value * force.gain.abs(), ..found });
+        let by_input =
+            by_input.filter(|_| !is_servo).map(|found| Placed { value: found.value * gain.abs(), ..found });
         let limit = match (by_force, by_input) {
             (Some(a), Some(b)) => Some(if a.value <= b.value { a } else { b }),
             (a, b) => a.or(b),
@@ -253,13 +336,13 @@ impl<'a> Reader<'a> {
     fn joints_below(&self, on: &DriveOn) -> Vec<String> {
         let ends = match on {
             DriveOn::Sum(_) => Vec::new(),
-            DriveOn::Length(e) => e.parts(),
+            DriveOn::Length(e) => e.subexpressions(),
             DriveOn::Wrench(wrench) => {
-                std::iter::once(&wrench.on).chain(&wrench.against).flat_map(Expr::parts).collect()
+                std::iter::once(&wrench.on).chain(&wrench.against).flat_map(Expr::subexpressions).collect()
             }
         };
         let mut found = Vec::new();
-        for mut body in ends.into_iter().filter_map(Expr::name) {
+        for mut body in ends.into_iter().filter_map(Expr::as_name) {
             while let Some(joint) = self.robot.joints.iter().find(|joint| joint.child.text == body) {
                 found.push(joint.name.text.clone());
                 body = &joint.parent.text;
@@ -286,7 +369,7 @@ impl<'a> Reader<'a> {
 }
 
 /// Returns the unit of an input.
-fn unit(kind: &str, turns: bool, force: &Force) -> &'static str {
+fn unit(kind: &str, turns: bool, (gain, bias): (f64, [f64; 3])) -> &'static str {
     match (kind, turns) {
         ("motor", true) => "N·m",
         ("motor", false) => "N",
@@ -295,8 +378,8 @@ fn unit(kind: &str, turns: bool, force: &Force) -> &'static str {
         ("velocity", true) => "rad/s",
         ("velocity", false) => "m/s",
         // The input of a servo is its set-point.
-        (_, true) if force.gain == -force.bias[1] => "rad",
-        (_, false) if force.gain == -force.bias[1] => "m",
+        (_, true) if gain == -bias[1] => "rad",
+        (_, false) if gain == -bias[1] => "m",
         _ => "any",
     }
 }

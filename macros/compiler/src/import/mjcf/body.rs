@@ -6,11 +6,13 @@ use super::geometry;
 use super::joint::{BodyJoint, IGNORE_PASSIVE, is_joint};
 use super::reader::{Reader, give, origin};
 use crate::diag::Place;
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, elements, name, number, place, tag};
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{
+    Node, child_elements, element_position, quoted_tag, read_name_attribute, read_number_attribute,
+};
 use crate::import::imported::Placed;
-use crate::import::pose::{Pose, add, apply, axis_rotation, product, scale};
-use crate::import::robot::{FileJoint, FileLimits, MAX_ELEMENTS, bare_link, unused};
+use crate::import::pose::{Pose, add, axis_rotation, matrix_product, matrix_times_vector, scale_vector};
+use crate::import::robot::{FileJoint, FileLimits, MAX_ELEMENTS, bare_link, unused_name};
 use crate::syntax::{Base, BinaryOp, Expr, ExprKind, GROUND, Inertias, JointKind, Name};
 
 /// MuJoCo's name of the fixed body.
@@ -47,7 +49,7 @@ struct Inside<'a> {
 impl<'a> Reader<'a> {
     /// Reads all bodies.
     pub(super) fn read_world(&mut self, root: Node<'a>, cx: &mut Cx<'_>) -> Option<()> {
-        let world = Name { text: GROUND.to_string(), place: place(root, cx) };
+        let world = Name { text: GROUND.to_string(), place: element_position(root, cx) };
         self.robot.links.push(bare_link(world.clone()));
         // Generated names must differ from the names in the file.
         let names_of = |kind: fn(Node<'_>) -> bool| {
@@ -62,9 +64,9 @@ impl<'a> Reader<'a> {
         self.link_names = names_of(|node| node.tag_name().name() == "body").collect();
         self.link_names.extend([GROUND.to_string(), WORLD.to_string()]);
         let worlds: Vec<Node<'a>> =
-            elements(root).filter(|node| node.tag_name().name() == "worldbody").collect();
+            child_elements(root).filter(|node| node.tag_name().name() == "worldbody").collect();
         if worlds.is_empty() {
-            cx.error(&place(root, cx), "`<mujoco>` without `<worldbody>`", |d| d);
+            cx.report_error(&element_position(root, cx), "`<mujoco>` without `<worldbody>`", |d| d);
             return None;
         }
         let mut open: Vec<Open<'a>> = Vec::new();
@@ -73,8 +75,10 @@ impl<'a> Reader<'a> {
             let inside = self.inside(node, class, cx);
             let fixed = inside.jointed.iter().map(|(node, ..)| *node);
             for node in fixed.chain(inside.inertial.map(|(node, _)| node)) {
-                let message = format!("{} of the world, which does not move", tag(node));
-                cx.error(&place(node, cx), message, |d| d.help("move it into a `<body>`"));
+                let message = format!("{} of the world, which does not move", quoted_tag(node));
+                cx.report_error(&element_position(node, cx), message, |d| {
+                    d.add_help("move it into a `<body>`")
+                });
             }
             self.add_sites(&inside, GROUND, cx);
             self.add_planes(&inside.shapes, cx);
@@ -91,7 +95,11 @@ impl<'a> Reader<'a> {
         // With an explicit stack, because chains may be long.
         while let Some(next) = open.pop() {
             if self.robot.links.len() > MAX_ELEMENTS {
-                cx.error(&place(next.node, cx), format!("more than {MAX_ELEMENTS} bodies"), |d| d);
+                cx.report_error(
+                    &element_position(next.node, cx),
+                    format!("more than {MAX_ELEMENTS} bodies"),
+                    |d| d,
+                );
                 return None;
             }
             let below = self.read_body(next, cx);
@@ -107,7 +115,7 @@ impl<'a> Reader<'a> {
             return;
         }
         let fits = match open {
-            [one] => !elements(one.node).any(is_joint),
+            [one] => !child_elements(one.node).any(is_joint),
             _ => false,
         };
         if !fits {
@@ -117,8 +125,8 @@ impl<'a> Reader<'a> {
             };
             let message = format!("`base = free` does not fit this file: {found}");
             let place = self.options.path.place.clone();
-            cx.error(&place, message, |d| {
-                d.help(
+            cx.report_error(&place, message, |d| {
+                d.add_help(
                     "an MJCF file determines the base itself: write `<freejoint/>` into a body, and remove \
                      `base`",
                 )
@@ -131,20 +139,20 @@ impl<'a> Reader<'a> {
         self.bodies += 1;
         let mocap = choice(node, "mocap", cx) == Some(true);
         let class = self.defaults.class(node, "childclass", open.class, cx);
-        let said = node.attribute("name").and_then(|_| name(node, "name", cx));
+        let said = node.attribute("name").and_then(|_| read_name_attribute(node, "name", cx));
         let body = self.body_name(said, node, cx);
         let element = self.defaults.element(node, &[], 0, cx);
-        let pose = open.outer.then(&read_pose(&element, &self.settings, cx));
-        let world = open.world.then(&pose);
+        let pose = open.outer.compose_with(&read_pose(&element, &self.settings, cx));
+        let world = open.world.compose_with(&pose);
         let inside = self.inside(node, class, cx);
         let mut joints = Vec::new();
         for (child, outer, class) in &inside.jointed {
             joints.extend(self.read_joint((*child, outer, *class), &body, cx));
         }
         if mocap && (open.parent.text != GROUND || !joints.is_empty()) {
-            let message = format!("mocap body {} is not fixed to the world", quote(&body.text));
-            cx.error(&body.place, message, |d| {
-                d.help("a mocap body is a child of `<worldbody>` and has no joint")
+            let message = format!("mocap body {} is not fixed to the world", quote_word(&body.text));
+            cx.report_error(&body.place, message, |d| {
+                d.add_help("a mocap body is a child of `<worldbody>` and has no joint")
             });
         }
         self.refuse_alignment(&inside, cx);
@@ -184,15 +192,15 @@ impl<'a> Reader<'a> {
 
     fn body_name(&mut self, said: Option<Name>, node: Node<'a>, cx: &mut Cx<'_>) -> Name {
         let mut body = said.unwrap_or_else(|| {
-            let text = unused(&format!("body{}", self.bodies), |name| self.link_names.contains(name));
-            Name { text, place: place(node, cx) }
+            let text = unused_name(&format!("body{}", self.bodies), |name| self.link_names.contains(name));
+            Name { text, place: element_position(node, cx) }
         });
         if body.text == GROUND {
-            body.text = unused("ground_link", |name| self.link_names.contains(name));
+            body.text = unused_name("ground_link", |name| self.link_names.contains(name));
         }
         if body.text == WORLD {
             let help = "`world` is the fixed world: choose another name";
-            cx.error(&body.place, "a body with the name `world`", |d| d.help(help));
+            cx.report_error(&body.place, "a body with the name `world`", |d| d.add_help(help));
         }
         self.link_names.insert(body.text.clone());
         body
@@ -213,18 +221,20 @@ impl<'a> Reader<'a> {
         found: &mut Inside<'a>,
         cx: &mut Cx<'_>,
     ) {
-        for child in elements(node) {
+        for child in child_elements(node) {
             match child.tag_name().name() {
                 "frame" => {
                     for which in ["scale", "scaling", "massscale"] {
                         if let Some(found) = child.attribute_node(which) {
                             let message = format!("`{which}` of a `<frame>` is not supported");
-                            cx.error(&cx.place(found.range_value().start), message, |d| d.help(WRITTEN_OUT));
+                            cx.report_error(&cx.source_position(found.range_value().start), message, |d| {
+                                d.add_help(WRITTEN_OUT)
+                            });
                         }
                     }
                     let class = self.defaults.class(child, "childclass", class, cx);
                     let element = self.defaults.element(child, &[], 0, cx);
-                    let pose = outer.then(&read_pose(&element, &self.settings, cx));
+                    let pose = outer.compose_with(&read_pose(&element, &self.settings, cx));
                     // The recursion depth is that of nested elements, which is limited.
                     self.gather(child, &pose, class, found, cx);
                 }
@@ -232,15 +242,15 @@ impl<'a> Reader<'a> {
                 "geom" => found.shapes.push((self.defaults.element(child, &["geom"], class, cx), *outer)),
                 "site" => found.sites.push((self.defaults.element(child, &["site"], class, cx), *outer)),
                 "inertial" if found.inertial.is_some() => {
-                    cx.error(&place(child, cx), "second `<inertial>` of one body", |d| d);
+                    cx.report_error(&element_position(child, cx), "second `<inertial>` of one body", |d| d);
                 }
                 "inertial" => found.inertial = Some((child, *outer)),
                 "joint" | "freejoint" => found.jointed.push((child, *outer, class)),
                 "camera" => self.count("cameras", 1),
                 "light" => self.count("lights", 1),
                 "composite" | "flexcomp" | "replicate" | "attach" | "plugin" => {
-                    let message = format!("{} is not supported", tag(child));
-                    cx.error(&place(child, cx), message, |d| d.help(WRITTEN_OUT));
+                    let message = format!("{} is not supported", quoted_tag(child));
+                    cx.report_error(&element_position(child, cx), message, |d| d.add_help(WRITTEN_OUT));
                 }
                 // Unknown elements are reported by the schema check.
                 _ => {}
@@ -256,17 +266,19 @@ impl<'a> Reader<'a> {
                 && choice(*joint, "align", cx).unwrap_or(self.settings.align_free);
             if aligned && inside.bodies.is_empty() {
                 let message = "a free body in principal axes is not supported";
-                cx.error(&place(*joint, cx), message, |d| {
-                    d.help("write `align=\"false\"` into the joint: the motion is the same in any axes")
+                cx.report_error(&element_position(*joint, cx), message, |d| {
+                    d.add_help("write `align=\"false\"` into the joint: the motion is the same in any axes")
                 });
             }
         }
     }
 
     fn check_compensation(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
-        if let Some(found) = number(node, "gravcomp", cx).filter(|found| self.passive && found.value != 0.0) {
+        if let Some(found) =
+            read_number_attribute(node, "gravcomp", cx).filter(|found| self.passive && found.value != 0.0)
+        {
             let message = "`gravcomp` is not supported";
-            cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+            cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
         }
     }
 
@@ -276,13 +288,13 @@ impl<'a> Reader<'a> {
         let free = joints.iter().find(|joint| joint.kind == JointKind::Free);
         if let Some(free) = free.filter(|_| number > 1 || parent.text != GROUND) {
             let message =
-                format!("free joint {} of a body with other joints or a parent", quote(&free.name.text));
+                format!("free joint {} of a body with other joints or a parent", quote_word(&free.name.text));
             let help = "a free body is a child of `<worldbody>` and has no other joint";
-            cx.error(&free.name.place, message, |d| d.help(help));
+            cx.report_error(&free.name.place, message, |d| d.add_help(help));
             return;
         }
         if joints.is_empty() {
-            let text = unused(&format!("{}_weld", body.text), |name| self.joint_names.contains(name));
+            let text = unused_name(&format!("{}_weld", body.text), |name| self.joint_names.contains(name));
             self.joint_names.insert(text.clone());
             let name = Name { text, place: body.place.clone() };
             self.robot.joints.push(weld(name, parent.clone(), body.clone(), pose));
@@ -305,7 +317,7 @@ impl<'a> Reader<'a> {
     /// Adds a massless link between two joints of a body and returns its name.
     fn add_massless_link(&mut self, body: &Name, joint: &BodyJoint) -> Name {
         let text =
-            unused(&format!("{}_{}", body.text, joint.name.text), |name| self.link_names.contains(name));
+            unused_name(&format!("{}_{}", body.text, joint.name.text), |name| self.link_names.contains(name));
         self.link_names.insert(text.clone());
         let name = Name { text, place: body.place.clone() };
         self.robot.links.push(bare_link(name.clone()));
@@ -319,22 +331,30 @@ impl<'a> Reader<'a> {
         let at = &damping.place;
         let name_expr = |name: &str| Expr { kind: ExprKind::Name(name.to_string()), place: at.clone() };
         let half_square = |e: Expr| {
-            let square = Expr::call("dot", vec![e.clone(), e], at);
-            Expr::binary(BinaryOp::Mul, Expr::number(damping.value / 2.0, at), square)
+            let square = Expr::function_call_at("dot", vec![e.clone(), e], at);
+            Expr::binary_operation(BinaryOp::Mul, Expr::number_at(damping.value / 2.0, at), square)
         };
-        let slash = |a, b| Expr::binary(BinaryOp::Div, a, b);
-        let turning = Expr::call("omega", vec![slash(name_expr(&child.text), name_expr(&carrier.text))], at);
+        let slash = |a, b| Expr::binary_operation(BinaryOp::Div, a, b);
+        let turning = Expr::function_call_at(
+            "omega",
+            vec![slash(name_expr(&child.text), name_expr(&carrier.text))],
+            at,
+        );
         let mut sum = half_square(turning);
         if joint.kind == JointKind::Free {
             let path = slash(slash(name_expr(&child.text), name_expr(GROUND)), name_expr(GROUND));
-            sum = Expr::binary(BinaryOp::Add, sum, half_square(Expr::call("v", vec![path], at)));
+            sum = Expr::binary_operation(
+                BinaryOp::Add,
+                sum,
+                half_square(Expr::function_call_at("v", vec![path], at)),
+            );
         }
         let text = format!("{}_damping", joint.name.text);
         self.robot.dissipations.push((Name { text, place: at.clone() }, sum));
     }
 
     fn bare_free(&mut self, body: &Name) -> Option<BodyJoint> {
-        let text = unused(crate::syntax::ROOT_JOINT, |name| self.joint_names.contains(name));
+        let text = unused_name(crate::syntax::ROOT_JOINT, |name| self.joint_names.contains(name));
         self.joint_names.insert(text.clone());
         let place = body.place.clone();
         let placed = |value| Placed { value, place: place.clone() };
@@ -355,14 +375,15 @@ impl<'a> Reader<'a> {
     /// Collects the sites of a body. Sites with names become frames.
     fn add_sites(&mut self, inside: &Inside<'a>, body: &str, cx: &mut Cx<'_>) {
         for (site, outer) in &inside.sites {
-            let named = site.node.has_attribute("name").then(|| name(site.node, "name", cx)).flatten();
+            let named =
+                site.node.has_attribute("name").then(|| read_name_attribute(site.node, "name", cx)).flatten();
             if let Some(mesh) = site.name("mesh", cx) {
-                cx.error(&mesh.place, "a site that is fitted to a mesh is not supported", |d| d);
+                cx.report_error(&mesh.place, "a site that is fitted to a mesh is not supported", |d| d);
             }
             let Some((pose, _)) = geometry::extent(site, &self.settings, cx) else { continue };
             if let Some(named) = named {
-                self.poses_of_sites.insert(named.text.clone(), (body.to_string(), outer.then(&pose)));
-                self.sites.push((named, body.to_string(), outer.then(&pose)));
+                self.poses_of_sites.insert(named.text.clone(), (body.to_string(), outer.compose_with(&pose)));
+                self.sites.push((named, body.to_string(), outer.compose_with(&pose)));
             }
         }
     }
@@ -370,14 +391,15 @@ impl<'a> Reader<'a> {
     fn place_sites(&mut self, cx: &mut Cx<'_>) {
         for (mut site, body, pose) in std::mem::take(&mut self.sites) {
             if self.robot.links.len() > 2 * MAX_ELEMENTS {
-                cx.error(&site.place, format!("more than {MAX_ELEMENTS} bodies and sites"), |d| d);
+                cx.report_error(&site.place, format!("more than {MAX_ELEMENTS} bodies and sites"), |d| d);
                 return;
             }
             if self.link_names.contains(&site.text) {
-                site.text = unused(&format!("{}_site", site.text), |name| self.link_names.contains(name));
+                site.text =
+                    unused_name(&format!("{}_site", site.text), |name| self.link_names.contains(name));
             }
             self.link_names.insert(site.text.clone());
-            let text = unused(&format!("{}_weld", site.text), |name| self.joint_names.contains(name));
+            let text = unused_name(&format!("{}_weld", site.text), |name| self.joint_names.contains(name));
             self.joint_names.insert(text.clone());
             let joint = Name { text, place: site.place.clone() };
             let parent = Name { text: body, place: site.place.clone() };
@@ -390,7 +412,7 @@ impl<'a> Reader<'a> {
 
 /// Returns the source position of the mass properties of a body.
 fn mass_place(inside: &Inside<'_>, node: Node<'_>, cx: &Cx<'_>) -> Place {
-    place(inside.inertial.map_or(node, |(node, _)| node), cx)
+    element_position(inside.inertial.map_or(node, |(node, _)| node), cx)
 }
 
 /// Returns a fixed joint.
@@ -419,16 +441,19 @@ fn weld(name: Name, parent: Name, child: Name, pose: &Pose) -> FileJoint {
 fn placed(joint: BodyJoint, carrier: &Name, child: &Name, outer: &Pose) -> FileJoint {
     let axis = joint.axis.value;
     let mut inner = Pose { at: joint.anchor.value, ..Pose::ZERO };
-    match joint.kind.rotates() {
+    match joint.kind.rotates_about_one_axis() {
         Some(true) if joint.reference != 0.0 => inner.axes = axis_rotation(axis, -joint.reference),
-        Some(false) => inner.at = add(inner.at, scale(axis, -joint.reference)),
+        Some(false) => inner.at = add(inner.at, scale_vector(axis, -joint.reference)),
         Some(true) | None => {}
     }
     let free = joint.kind == JointKind::Free;
     let pose = if free {
         Pose::ZERO
     } else {
-        Pose { at: add(outer.at, apply(&outer.axes, inner.at)), axes: product(&outer.axes, &inner.axes) }
+        Pose {
+            at: add(outer.at, matrix_times_vector(&outer.axes, inner.at)),
+            axes: matrix_product(&outer.axes, &inner.axes),
+        }
     };
     FileJoint {
         origin: origin(&pose, &joint.anchor.place),

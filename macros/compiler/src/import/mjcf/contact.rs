@@ -5,9 +5,9 @@ use super::defaults::Element;
 use super::reader::{Reader, origin};
 use super::touch::{CollisionShape, Law, Plane};
 use crate::import::context::Cx;
-use crate::import::element::place;
+use crate::import::element::element_position;
 use crate::import::pose::Pose;
-use crate::import::robot::{FileCollision, unused};
+use crate::import::robot::{FileCollision, unused_name};
 use crate::syntax::Shape;
 use crate::syntax::contact::CONTACT_HELP;
 use std::collections::BTreeSet;
@@ -27,14 +27,14 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let Some((kind, pose)) = self.collision(shape, cx) else { continue };
-            let at = place(shape.node, cx);
+            let at = element_position(shape.node, cx);
             let mesh = match kind {
                 Shape::Mesh if is_mesh(shape) => self.meshes.vertices(shape, cx),
                 _ => None,
             };
             let is_known = kind != Shape::Mesh || mesh.is_some();
             self.add_touching(link, shape, is_known, cx);
-            let origin = origin(&outer.then(&pose), &at);
+            let origin = origin(&outer.compose_with(&pose), &at);
             let part = FileCollision { origin, shape: kind, mesh, place: at };
             self.robot.collisions.push((link, part));
         }
@@ -51,7 +51,7 @@ impl<'a> Reader<'a> {
             return;
         }
         let number = self.robot.collisions.iter().filter(|(known, _)| *known == link).count();
-        let (law, place) = (Law::read(shape, cx), place(shape.node, cx));
+        let (law, place) = (Law::read(shape, cx), element_position(shape.node, cx));
         let name = shape.node.attribute("name").map(str::to_string);
         self.touching.push(CollisionShape { link, number, name, law, place });
     }
@@ -68,7 +68,7 @@ impl<'a> Reader<'a> {
                 self.count("geometry of the ground", 1);
                 continue;
             }
-            let pose = outer.then(&super::frame::read_pose(shape, &self.settings, cx));
+            let pose = outer.compose_with(&super::frame::read_pose(shape, &self.settings, cx));
             let number = self.planes.len() + 1;
             let name = shape.node.attribute("name").map_or_else(|| format!("plane{number}"), str::to_string);
             self.planes.push(Plane { name, pose, law });
@@ -86,7 +86,9 @@ impl<'a> Reader<'a> {
         }
         if self.planes.is_empty() {
             let place = &self.options.path.place;
-            cx.error(place, "the world of the file has no plane to touch", |d| d.help(CONTACT_HELP));
+            cx.report_error(place, "the world of the file has no plane to touch", |d| {
+                d.add_help(CONTACT_HELP)
+            });
             return;
         }
         self.left_out.push("contacts of bodies with each other".to_string());
@@ -96,19 +98,23 @@ impl<'a> Reader<'a> {
             let shape = touching.name.clone().unwrap_or_else(|| format!("{link}_geom{}", touching.number));
             for plane in self.planes.iter().filter(|plane| touching.law.meets(&plane.law)) {
                 let end = if self.planes.len() > 1 { format!("_{}", plane.name) } else { String::new() };
-                let text = unused(&format!("{shape}{end}_contact"), |name| names.contains(name));
+                let text = unused_name(&format!("{shape}{end}_contact"), |name| names.contains(name));
                 names.insert(text.clone());
                 self.robot.contacts.push(touching.contact(text, &link, plane));
             }
         }
         if self.robot.contacts.is_empty() {
             let place = &self.options.path.place;
-            cx.error(place, "no body of the file has a shape that can touch a plane of its world", |d| {
-                d.help(
+            cx.report_error(
+                place,
+                "no body of the file has a shape that can touch a plane of its world",
+                |d| {
+                    d.add_help(
                     "shapes excluded by `contype` and `conaffinity`, or fitted to meshes, have no contacts",
                 )
-                .help("to ignore the contacts of the file, remove `contacts = file`")
-            });
+                .add_help("to ignore the contacts of the file, remove `contacts = file`")
+                },
+            );
         }
     }
 

@@ -1,7 +1,10 @@
 //! `<default>` classes: default values of attributes.
 
-use super::super::context::{Cx, position, quote};
-use super::super::element::{Node, check_attributes, elements, name, number, numbers, place};
+use super::super::context::{Cx, format_position, quote_word};
+use super::super::element::{
+    Node, check_attributes, child_elements, element_position, read_name_attribute, read_number_attribute,
+    read_numbers_attribute,
+};
 use crate::import::imported::Placed;
 use crate::syntax::Name;
 use std::collections::BTreeMap;
@@ -35,7 +38,7 @@ impl<'a> Defaults<'a> {
     /// Reads the `<default>` elements of the root.
     pub(super) fn read(root: Node<'a>, cx: &mut Cx<'_>) -> Defaults<'a> {
         let mut all = Defaults { classes: vec![Class::default()], names: BTreeMap::new() };
-        for node in elements(root).filter(|node| node.tag_name().name() == "default") {
+        for node in child_elements(root).filter(|node| node.tag_name().name() == "default") {
             match node.attribute("class") {
                 Some(class) if class != MAIN => {
                     // The outermost class may have any name. Several `<default>` elements share it.
@@ -54,23 +57,25 @@ impl<'a> Defaults<'a> {
         let mut open = vec![(node, class)];
         while let Some((node, class)) = open.pop() {
             check_attributes(node, &[], &["class"], cx);
-            for child in elements(node) {
+            for child in child_elements(node) {
                 if child.tag_name().name() != "default" {
                     self.classes[class].elements.push(child);
                     continue;
                 }
                 let Some(within) = child.attribute("class") else {
                     let help = "write `<default class=\"…\">`; only the outermost needs no name";
-                    cx.error(&place(child, cx), "`<default>` without `class`", |d| d.help(help));
+                    cx.report_error(&element_position(child, cx), "`<default>` without `class`", |d| {
+                        d.add_help(help)
+                    });
                     continue;
                 };
                 let number = self.classes.len();
                 if let Some(known) = self.names.insert(within, number) {
                     let at = self.classes.get(known).and_then(|class| class.elements.first());
-                    let first = at.map(|node| position(&place(*node, cx)));
-                    let message = format!("second class {}", quote(within));
-                    cx.error(&place(child, cx), message, |d| match first {
-                        Some(first) => d.help(format!("the first is at {first}")),
+                    let first = at.map(|node| format_position(&element_position(*node, cx)));
+                    let message = format!("second class {}", quote_word(within));
+                    cx.report_error(&element_position(child, cx), message, |d| match first {
+                        Some(first) => d.add_help(format!("the first is at {first}")),
                         None => d,
                     });
                 }
@@ -83,13 +88,13 @@ impl<'a> Defaults<'a> {
     /// Returns the index of the class that an attribute names. Without the attribute, or if the class is
     /// unknown, returns `inherited`.
     pub(super) fn class(&self, node: Node<'_>, attribute: &str, inherited: usize, cx: &mut Cx<'_>) -> usize {
-        let Some(Name { text, place }) = name(node, attribute, cx) else { return inherited };
+        let Some(Name { text, place }) = read_name_attribute(node, attribute, cx) else { return inherited };
         match self.names.get(text.as_str()) {
             Some(class) => *class,
             None => {
                 let known = self.names.keys().copied();
-                let message = format!("unknown class {}", quote(&text));
-                cx.error(&place, message, |d| d.suggest(&text, known));
+                let message = format!("unknown class {}", quote_word(&text));
+                cx.report_error(&place, message, |d| d.suggest_name(&text, known));
                 inherited
             }
         }
@@ -148,12 +153,12 @@ impl<'a> Element<'a> {
 
     /// Returns the text of an attribute with its source position.
     pub(super) fn name(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Name> {
-        name(self.node_with(attribute)?, attribute, cx)
+        read_name_attribute(self.node_with(attribute)?, attribute, cx)
     }
 
     /// Returns a finite number.
     pub(super) fn number(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
-        number(self.node_with(attribute)?, attribute, cx)
+        read_number_attribute(self.node_with(attribute)?, attribute, cx)
     }
 
     /// Returns a finite number, or `None` if it is zero.
@@ -161,13 +166,19 @@ impl<'a> Element<'a> {
         self.number(attribute, cx).filter(|found| found.value != 0.0)
     }
 
-    /// Returns the linear coefficient of a force. Newer versions of the format give a polynomial; nonzero
-    /// coefficients of higher order are reported.
+    /// Returns the coefficients of a polynomial force from the first order on, or `None` if they are zero.
+    pub(super) fn polynomial(&self, attribute: &str, cx: &mut Cx<'_>) -> Option<Placed<[f64; 3]>> {
+        self.some(attribute, [0.0; 3], cx).filter(|found| found.value != [0.0; 3])
+    }
+
+    /// Returns the coefficient of a force on a joint with several coordinates, which must be linear.
     pub(super) fn linear(&self, attribute: &str, help: &'static str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
-        let Placed { value: [linear, square, cube], place } = self.some(attribute, [0.0; 3], cx)?;
+        let Placed { value: [linear, square, cube], place } = self.polynomial(attribute, cx)?;
         if square != 0.0 || cube != 0.0 {
-            let message = format!("`{attribute}` is a polynomial, as MuJoCo reads it since version 3.7");
-            cx.error(&place, message, |d| d.help("expected one number: a linear coefficient").help(help));
+            let message = format!("a polynomial `{attribute}` is supported only on a `hinge` or a `slide`");
+            cx.report_error(&place, message, |d| {
+                d.add_help("expected one number: a linear coefficient").add_help(help)
+            });
         }
         (linear != 0.0).then_some(Placed { value: linear, place })
     }
@@ -178,7 +189,7 @@ impl<'a> Element<'a> {
         attribute: &str,
         cx: &mut Cx<'_>,
     ) -> Option<Placed<[f64; N]>> {
-        numbers(self.node_with(attribute)?, attribute, cx)
+        read_numbers_attribute(self.node_with(attribute)?, attribute, cx)
     }
 
     /// Returns up to `N` finite numbers. Entries that the element does not specify come from its defaults,
@@ -206,7 +217,10 @@ impl<'a> Element<'a> {
     /// Returns the source position of an attribute's value, or of the element if the attribute is missing.
     pub(super) fn place(&self, attribute: &str, cx: &Cx<'_>) -> crate::diag::Place {
         let found = self.node_with(attribute).and_then(|node| node.attribute_node(attribute));
-        found.map_or_else(|| place(self.node, cx), |found| cx.place(found.range_value().start))
+        found.map_or_else(
+            || element_position(self.node, cx),
+            |found| cx.source_position(found.range_value().start),
+        )
     }
 }
 
@@ -219,17 +233,17 @@ pub(super) fn some<const N: usize>(
 ) -> Option<Placed<[f64; N]>> {
     let text = node.attribute(attribute)?;
     let count = text.split_ascii_whitespace().count();
-    let place = cx.place(node.attribute_node(attribute)?.range_value().start);
+    let place = cx.source_position(node.attribute_node(attribute)?.range_value().start);
     // One instance of `numbers` per length, so that only `numbers` reports a wrong count.
     macro_rules! of_length {
         ($($n:literal)*) => {
             match count {
                 $($n if $n <= N => {
-                    let found = numbers::<$n>(node, attribute, cx)?;
+                    let found = read_numbers_attribute::<$n>(node, attribute, cx)?;
                     rest.iter_mut().zip(found.value).for_each(|(to, from)| *to = from);
                     Some(Placed { value: rest, place })
                 })*
-                _ => numbers::<N>(node, attribute, cx),
+                _ => read_numbers_attribute::<N>(node, attribute, cx),
             }
         };
     }
@@ -244,8 +258,9 @@ pub(super) fn choice(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option
         "false" | "disable" => Some(false),
         "auto" => None,
         other => {
-            let message = format!("expected `true` or `false` for `{attribute}`, found {}", quote(other));
-            cx.error(&cx.place(found.range_value().start), message, |d| d);
+            let message =
+                format!("expected `true` or `false` for `{attribute}`, found {}", quote_word(other));
+            cx.report_error(&cx.source_position(found.range_value().start), message, |d| d);
             None
         }
     }

@@ -3,10 +3,10 @@
 use super::defaults::Element;
 use super::reader::{Reader, origin};
 use super::tendon::Tendon;
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, elements, name, place};
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
 use crate::import::pose::{Pose, of_quaternion};
-use crate::import::robot::{bare_joint, unused};
+use crate::import::robot::{bare_joint, unused_name};
 use crate::syntax::{
     BinaryOp, Constraint, ConstraintKind, Endpoint, Expr, ExprKind, GROUND, JointKind, Mimic, Name,
     WrittenArguments,
@@ -17,8 +17,8 @@ const LEAVE_OUT: &str = "to ignore `<equality>`, write `#[mechanism(…, mimic =
 impl<'a> Reader<'a> {
     /// Reads all elements of `<equality>`.
     pub(super) fn equalities(&mut self, root: Node<'a>, tendons: &[Tendon], cx: &mut Cx<'_>) {
-        let groups = elements(root).filter(|node| node.tag_name().name() == "equality");
-        let nodes: Vec<Node<'a>> = groups.flat_map(elements).collect();
+        let groups = child_elements(root).filter(|node| node.tag_name().name() == "equality");
+        let nodes: Vec<Node<'a>> = groups.flat_map(child_elements).collect();
         if !self.options.follow_mimic || !self.settings.equality() {
             if !nodes.is_empty() {
                 self.left_out.push(format!("{} couplings (`<equality>`)", nodes.len()));
@@ -38,7 +38,7 @@ impl<'a> Reader<'a> {
                 "weld" => self.close(&element, JointKind::Weld, cx),
                 kind => {
                     let message = format!("the coupling `<{kind}>` is not supported");
-                    cx.error(&place(node, cx), message, |d| d.help(LEAVE_OUT));
+                    cx.report_error(&element_position(node, cx), message, |d| d.add_help(LEAVE_OUT));
                 }
             }
         }
@@ -47,12 +47,16 @@ impl<'a> Reader<'a> {
     /// Couples two joints: `y − y₀ = a₀ + a₁ (x − x₀) + …`. The coordinates `x₀` and `y₀` are those in the
     /// configuration of the file. A linear relation becomes a `mimic`, any other a constraint.
     fn couple(&mut self, element: &Element<'a>, cx: &mut Cx<'_>) {
-        let Some(first) =
-            name(element.node, "joint1", cx).filter(|joint| self.check_joint(joint, "follow", cx))
+        let Some(first) = read_name_attribute(element.node, "joint1", cx)
+            .filter(|joint| self.check_joint(joint, "follow", cx))
         else {
             return;
         };
-        let second = element.node.has_attribute("joint2").then(|| name(element.node, "joint2", cx)).flatten();
+        let second = element
+            .node
+            .has_attribute("joint2")
+            .then(|| read_name_attribute(element.node, "joint2", cx))
+            .flatten();
         if second.as_ref().is_some_and(|joint| !self.check_joint(joint, "be followed by", cx)) {
             return;
         }
@@ -108,8 +112,8 @@ impl<'a> Reader<'a> {
         polynomial: [f64; 5],
         cx: &mut Cx<'_>,
     ) {
-        let at = place(element.node, cx);
-        let number = |x: f64| Expr::number(x, &at);
+        let at = element_position(element.node, cx);
+        let number = |x: f64| Expr::number_at(x, &at);
         let sum = |terms: &[(Name, f64)]| {
             let zero: f64 = terms
                 .iter()
@@ -117,7 +121,11 @@ impl<'a> Reader<'a> {
                 .sum();
             terms.iter().fold(number(-zero), |sum, (joint, weight)| {
                 let coordinate = Expr { kind: ExprKind::Name(joint.text.clone()), place: at.clone() };
-                Expr::binary(BinaryOp::Add, sum, Expr::binary(BinaryOp::Mul, number(*weight), coordinate))
+                Expr::binary_operation(
+                    BinaryOp::Add,
+                    sum,
+                    Expr::binary_operation(BinaryOp::Mul, number(*weight), coordinate),
+                )
             })
         };
         let other = match second {
@@ -126,10 +134,10 @@ impl<'a> Reader<'a> {
                 let highest = polynomial.iter().rposition(|factor| *factor != 0.0).unwrap_or(0);
                 let start = number(polynomial.get(highest).copied().unwrap_or(0.0));
                 polynomial.iter().take(highest).rev().fold(start, |inner, factor| {
-                    Expr::binary(
+                    Expr::binary_operation(
                         BinaryOp::Add,
                         number(*factor),
-                        Expr::binary(BinaryOp::Mul, inner, d.clone()),
+                        Expr::binary_operation(BinaryOp::Mul, inner, d.clone()),
                     )
                 })
             }
@@ -137,9 +145,13 @@ impl<'a> Reader<'a> {
         };
         let value = sum(first);
         let kind = element.node.tag_name().name();
-        let said = element.node.has_attribute("name").then(|| name(element.node, "name", cx)).flatten();
+        let said = element
+            .node
+            .has_attribute("name")
+            .then(|| read_name_attribute(element.node, "name", cx))
+            .flatten();
         let mut named = said.unwrap_or_else(|| Name { text: format!("{kind}_coupling"), place: at.clone() });
-        named.text = unused(&named.text, |name| {
+        named.text = unused_name(&named.text, |name| {
             self.joint_names.contains(name)
                 || self.robot.constraints.iter().any(|known| known.name.text == name)
         });
@@ -158,27 +170,31 @@ impl<'a> Reader<'a> {
         let Some([first, second]) = self.ends(element, kind, cx) else { return };
         for (body, _) in [&first, &second] {
             if self.mocap.contains(&body.text) {
-                let message = format!("{} is a mocap body, which does not move here", quote(&body.text));
-                cx.error(&body.place, message, |d| d.help(LEAVE_OUT));
+                let message = format!("{} is a mocap body, which does not move here", quote_word(&body.text));
+                cx.report_error(&body.place, message, |d| d.add_help(LEAVE_OUT));
                 return;
             }
         }
         if first.0.text == second.0.text {
-            let message = format!("body {} closes a loop with itself", quote(&first.0.text));
-            cx.error(&second.0.place, message, |d| d.help(LEAVE_OUT));
+            let message = format!("body {} closes a loop with itself", quote_word(&first.0.text));
+            cx.report_error(&second.0.place, message, |d| d.add_help(LEAVE_OUT));
             return;
         }
         let number = self.robot.closing.len() + 1;
-        let said = element.node.has_attribute("name").then(|| name(element.node, "name", cx)).flatten();
+        let said = element
+            .node
+            .has_attribute("name")
+            .then(|| read_name_attribute(element.node, "name", cx))
+            .flatten();
         let mut named = said.unwrap_or_else(|| Name {
             text: format!("{}{number}", element.node.tag_name().name()),
-            place: place(element.node, cx),
+            place: element_position(element.node, cx),
         });
-        named.text = unused(&named.text, |name| self.joint_names.contains(name));
+        named.text = unused_name(&named.text, |name| self.joint_names.contains(name));
         self.joint_names.insert(named.text.clone());
         let [parent, child] = [first, second].map(|(body, pose)| {
             let origin = origin(&pose, &body.place);
-            Endpoint { at: origin.position(), rotated: origin.rotated(), body }
+            Endpoint { at: origin.nonzero_position(), rotated: origin.nonzero_rotations(), body }
         });
         self.robot.closing.push(bare_joint(named, kind, parent, child));
     }
@@ -187,18 +203,18 @@ impl<'a> Reader<'a> {
     fn ends(&self, element: &Element<'a>, kind: JointKind, cx: &mut Cx<'_>) -> Option<[(Name, Pose); 2]> {
         if element.node.has_attribute("site1") {
             let mut end = |attribute: &str| {
-                let site = name(element.node, attribute, cx)?;
+                let site = read_name_attribute(element.node, attribute, cx)?;
                 let found = self.find_site(&site, cx)?;
                 Some((Name { text: found.body, place: site.place }, found.pose))
             };
             return Some([end("site1")?, end("site2")?]);
         }
         let mut end = |attribute: &str| {
-            let zero = Name { text: GROUND.to_string(), place: place(element.node, cx) };
+            let zero = Name { text: GROUND.to_string(), place: element_position(element.node, cx) };
             if attribute == "body2" && !element.node.has_attribute(attribute) {
                 return Some((zero, Pose::ZERO));
             }
-            let mut body = name(element.node, attribute, cx)?;
+            let mut body = read_name_attribute(element.node, attribute, cx)?;
             if body.text == super::body::WORLD {
                 return Some((Name { text: GROUND.to_string(), ..body }, Pose::ZERO));
             }
@@ -209,19 +225,19 @@ impl<'a> Reader<'a> {
             }
             let Some(pose) = self.poses.get(&body.text) else {
                 let known = self.poses.keys().map(String::as_str);
-                let message = format!("unknown body {}", quote(&body.text));
-                cx.error(&body.place, message, |d| d.suggest(&body.text, known));
+                let message = format!("unknown body {}", quote_word(&body.text));
+                cx.report_error(&body.place, message, |d| d.suggest_name(&body.text, known));
                 return None;
             };
             Some((body, *pose))
         };
         let [(first, outer), (second, inner)] = [end("body1")?, end("body2")?];
         // Pose of the first body relative to the second, in the configuration of the file.
-        let between = inner.back().then(&outer);
+        let between = inner.inverse_pose().compose_with(&outer);
         let anchor = element.numbers("anchor", cx).map_or([0.0; 3], |anchor| anchor.value);
         if kind == JointKind::Ball {
             let at = Pose { at: anchor, ..Pose::ZERO };
-            return Some([(first, at), (second, Pose { at: between.then(&at).at, ..Pose::ZERO })]);
+            return Some([(first, at), (second, Pose { at: between.compose_with(&at).at, ..Pose::ZERO })]);
         }
         let said = element.numbers::<7>("relpose", cx).map(|said| said.value);
         // `relpose` is the pose of the second body's anchor relative to the first body. Without it, the
@@ -232,7 +248,7 @@ impl<'a> Reader<'a> {
                 let pose = Pose { at: [x, y, z], axes: of_quaternion(quat.map(|x| x / size)) };
                 (pose, Pose { at: anchor, ..Pose::ZERO })
             }
-            None => (between.back(), Pose::ZERO),
+            None => (between.inverse_pose(), Pose::ZERO),
         };
         Some([(first, pose), (second, own)])
     }
@@ -251,6 +267,6 @@ fn terms_of(
     tendons: &[Tendon],
     cx: &mut Cx<'_>,
 ) -> Option<Vec<(Name, f64)>> {
-    let tendon = name(element.node, attribute, cx)?;
+    let tendon = read_name_attribute(element.node, attribute, cx)?;
     Tendon::terms_of(&tendon, tendons, LEAVE_OUT, cx).filter(|terms| !terms.is_empty())
 }

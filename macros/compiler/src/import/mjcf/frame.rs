@@ -7,7 +7,8 @@ use crate::import::context::Cx;
 use crate::import::element::check_radians;
 use crate::import::imported::Placed;
 use crate::import::pose::{
-    IDENTITY, Matrix, Pose, add, axis_rotation, cross, dot, length, of_quaternion, of_z, product, scale,
+    IDENTITY, Matrix, Pose, add, axis_rotation, cross, dot, length, matrix_product, of_quaternion, of_z,
+    scale_vector,
 };
 
 /// Attributes that specify an orientation. An element may have at most one of them.
@@ -25,7 +26,7 @@ pub(super) fn read_axes(element: &Element<'_>, settings: &Settings, cx: &mut Cx<
     let said: Vec<&str> = ORIENTATIONS.into_iter().filter(|name| node.has_attribute(*name)).collect();
     let [one] = said.as_slice() else {
         let message = format!("an orientation is given once, but here are `{}`", said.join("` and `"));
-        cx.error(&element.place(said.first().copied().unwrap_or_default(), cx), message, |d| d);
+        cx.report_error(&element.place(said.first().copied().unwrap_or_default(), cx), message, |d| d);
         return IDENTITY;
     };
     read_one(one, element, settings, cx).unwrap_or(IDENTITY)
@@ -45,7 +46,7 @@ fn read_one(which: &str, element: &Element<'_>, settings: &Settings, cx: &mut Cx
             let size = length([x, y, z]);
             check_length(size, "an axis", &found, cx)?;
             check_turns(&[angle], &found.place, settings, cx);
-            Some(axis_rotation(scale([x, y, z], 1.0 / size), settings.angle(angle)))
+            Some(axis_rotation(scale_vector([x, y, z], 1.0 / size), settings.angle(angle)))
         }
         "euler" => {
             let found = element.numbers::<3>("euler", cx)?;
@@ -59,7 +60,11 @@ fn read_one(which: &str, element: &Element<'_>, settings: &Settings, cx: &mut Cx
                 let turn = axis_rotation(unit, settings.angle(angle));
                 // Rotations about moving axes are multiplied from the right, those about
                 // fixed axes from the left.
-                if axis.is_ascii_lowercase() { product(&whole, &turn) } else { product(&turn, &whole) }
+                if axis.is_ascii_lowercase() {
+                    matrix_product(&whole, &turn)
+                } else {
+                    matrix_product(&turn, &whole)
+                }
             }))
         }
         "xyaxes" => {
@@ -67,18 +72,18 @@ fn read_one(which: &str, element: &Element<'_>, settings: &Settings, cx: &mut Cx
             let [a, b, c, d, e, f] = found.value;
             let size = length([a, b, c]);
             check_length(size, "the x axis", &found, cx)?;
-            let x = scale([a, b, c], 1.0 / size);
-            let y = add([d, e, f], scale(x, -dot(x, [d, e, f])));
+            let x = scale_vector([a, b, c], 1.0 / size);
+            let y = add([d, e, f], scale_vector(x, -dot(x, [d, e, f])));
             let size = length(y);
             check_length(size, "the y axis, orthogonalised against x,", &found, cx)?;
-            let y = scale(y, 1.0 / size);
+            let y = scale_vector(y, 1.0 / size);
             Some(crate::import::pose::transpose(&[x, y, cross(x, y)]))
         }
         _ => {
             let z = element.numbers::<3>("zaxis", cx)?;
             let size = length(z.value);
             check_length(size, "the z axis", &z, cx)?;
-            Some(of_z(scale(z.value, 1.0 / size)))
+            Some(of_z(scale_vector(z.value, 1.0 / size)))
         }
     }
 }
@@ -101,7 +106,7 @@ fn check_length<const N: usize>(
     cx: &mut Cx<'_>,
 ) -> Option<()> {
     if size < 1e-14 || !size.is_finite() {
-        cx.error(&found.place, format!("{what} of length {size} has no direction"), |d| d);
+        cx.report_error(&found.place, format!("{what} of length {size} has no direction"), |d| d);
         return None;
     }
     Some(())

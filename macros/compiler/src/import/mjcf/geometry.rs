@@ -4,10 +4,10 @@ use super::defaults::{Defaults, Element};
 use super::frame::read_pose;
 use super::mesh::Meshes;
 use super::settings::{Settings, Source};
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, check_attributes, numbers, place, tag};
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{Node, check_attributes, element_position, quoted_tag, read_numbers_attribute};
 use crate::import::pose::{
-    IDENTITY, Matrix, Pose, Vector, add, dot, length, of_z, principal, rotated_tensor, scale,
+    IDENTITY, Matrix, Pose, Vector, add, dot, eigen_decomposition, length, of_z, rotated_tensor, scale_vector,
 };
 use std::f64::consts::PI;
 
@@ -35,7 +35,7 @@ impl Mass {
     /// relative to the reference frame.
     pub(super) fn placed(&self, pose: &Pose) -> Mass {
         Mass {
-            com: add(pose.at, crate::import::pose::apply(&pose.axes, self.com)),
+            com: add(pose.at, crate::import::pose::matrix_times_vector(&pose.axes, self.com)),
             inertia: rotated_tensor(&pose.axes, &self.inertia),
             ..*self
         }
@@ -51,11 +51,13 @@ pub(super) fn sum(parts: &[Mass]) -> Option<Mass> {
     if mass <= 0.0 {
         return None;
     }
-    let com =
-        scale(parts.iter().fold([0.0; 3], |sum, part| add(sum, scale(part.com, part.mass))), 1.0 / mass);
+    let com = scale_vector(
+        parts.iter().fold([0.0; 3], |sum, part| add(sum, scale_vector(part.com, part.mass))),
+        1.0 / mass,
+    );
     let mut inertia = [[0.0; 3]; 3];
     for part in parts {
-        let r = add(part.com, scale(com, -1.0));
+        let r = add(part.com, scale_vector(com, -1.0));
         for (i, row) in inertia.iter_mut().enumerate() {
             for (j, entry) in row.iter_mut().enumerate() {
                 let unit = if i == j { dot(r, r) } else { 0.0 };
@@ -102,14 +104,14 @@ fn bounded(found: Option<Mass>, pose: &Pose, settings: &Settings) -> Option<Mass
     // For a body without mass, MuJoCo puts this mass at the body's position relative to its parent.
     let zero = Mass { mass: 0.0, com: pose.at, inertia: [[0.0; 3]; 3] };
     let found = found.unwrap_or(zero);
-    let (moments, axes) = principal(&found.inertia);
+    let (moments, axes) = eigen_decomposition(&found.inertia);
     let mut moments = moments.map(|moment| moment.max(settings.least_inertia));
     let [a, b, c] = moments;
     if settings.balance && (a + b < c || a + c < b || b + c < a) {
         moments = [(a + b + c) / 3.0; 3];
     }
     let bounded = Mass { mass: found.mass.max(settings.least_mass), ..found };
-    Some(match moments == [a, b, c] && moments == principal(&found.inertia).0 {
+    Some(match moments == [a, b, c] && moments == eigen_decomposition(&found.inertia).0 {
         true => bounded,
         false => Mass { inertia: rotated_tensor(&axes, &diagonal(moments)), ..bounded },
     })
@@ -133,19 +135,19 @@ fn read_inertial(
     let element = defaults.element(node, &[], 0, cx);
     let mass = element.number("mass", cx)?.value;
     let Pose { at: com, axes } = read_pose(&element, settings, cx);
-    if let Some(full) = numbers::<6>(node, "fullinertia", cx) {
+    if let Some(full) = read_numbers_attribute::<6>(node, "fullinertia", cx) {
         if node.has_attribute("diaginertia") {
-            cx.error(&full.place, "`fullinertia` and `diaginertia` of one body", |d| {
-                d.help("remove one of the two")
+            cx.report_error(&full.place, "`fullinertia` and `diaginertia` of one body", |d| {
+                d.add_help("remove one of the two")
             });
         } else if axes != IDENTITY {
             let help = "MuJoCo takes the axes of `fullinertia` for those of the body";
-            cx.error(&full.place, "`fullinertia` with an orientation", |d| d.help(help));
+            cx.report_error(&full.place, "`fullinertia` with an orientation", |d| d.add_help(help));
         }
         let [xx, yy, zz, xy, xz, yz] = full.value;
         return Some(Mass { mass, com, inertia: [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]] });
     }
-    let moments = numbers(node, "diaginertia", cx).map_or([0.0; 3], |found| found.value);
+    let moments = read_numbers_attribute(node, "diaginertia", cx).map_or([0.0; 3], |found| found.value);
     Some(Mass { mass, com, inertia: rotated_tensor(&axes, &diagonal(moments)) })
 }
 
@@ -180,7 +182,7 @@ fn of_shape<'a>(
     let (pose, size) = dimensions(kind, shape, settings, cx)?;
     let (volume, moments) = solid(kind, size);
     let mass = said.unwrap_or(density * volume);
-    let inertia = diagonal(scale(moments, mass));
+    let inertia = diagonal(scale_vector(moments, mass));
     Some(Mass { mass, com: [0.0; 3], inertia }.placed(&pose))
 }
 
@@ -208,8 +210,8 @@ pub(super) fn dimensions(
         "box" | "ellipsoid" => &[x, y, z],
         _ => {
             let known = ["sphere", "capsule", "cylinder", "ellipsoid", "box", "mesh", "plane", "hfield"];
-            let message = format!("unknown shape {}", quote(kind));
-            cx.error(&shape.place("type", cx), message, |d| d.suggest(kind, known));
+            let message = format!("unknown shape {}", quote_word(kind));
+            cx.report_error(&shape.place("type", cx), message, |d| d.suggest_name(kind, known));
             return None;
         }
     };
@@ -218,7 +220,9 @@ pub(super) fn dimensions(
             "a `{kind}` of size `{}` has no volume",
             used.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")
         );
-        cx.error(&shape.place("size", cx), message, |d| d.help("expected half lengths and radii above zero"));
+        cx.report_error(&shape.place("size", cx), message, |d| {
+            d.add_help("expected half lengths and radii above zero")
+        });
         return None;
     }
     Some((pose, [x, y, z]))
@@ -234,34 +238,38 @@ pub(super) fn extent(
         return Some((read_pose(shape, settings, cx), None));
     };
     if let Some(node) = shape.node_with("pos") {
-        let message = format!("`fromto` and `pos` of one {}", tag(shape.node));
+        let message = format!("`fromto` and `pos` of one {}", quoted_tag(shape.node));
         let at = node.attribute_node("pos").map_or(node.range().start, |pos| pos.range_value().start);
-        cx.error(&cx.place(at), message, |d| d.help("remove one of the two"));
+        cx.report_error(&cx.source_position(at), message, |d| d.add_help("remove one of the two"));
     }
     let kind = shape.text("type").unwrap_or("sphere");
     if !["capsule", "cylinder", "ellipsoid", "box"].contains(&kind) {
         let message = format!("`fromto` of a `{kind}`, which has no length");
-        cx.error(&ends.place, message, |d| d.help("expected `capsule`, `cylinder`, `ellipsoid` or `box`"));
+        cx.report_error(&ends.place, message, |d| {
+            d.add_help("expected `capsule`, `cylinder`, `ellipsoid` or `box`")
+        });
     }
     let [a, b, c, d, e, f] = ends.value;
     let along = [a - d, b - e, c - f];
     let size = length(along);
     if size < 1e-14 {
-        cx.error(&ends.place, "`fromto` from a point to itself", |d| d.help("expected two points"));
+        cx.report_error(&ends.place, "`fromto` from a point to itself", |d| {
+            d.add_help("expected two points")
+        });
         return None;
     }
-    let at = scale(add([a, b, c], [d, e, f]), 0.5);
-    Some((Pose { at, axes: of_z(scale(along, 1.0 / size)) }, Some(size / 2.0)))
+    let at = scale_vector(add([a, b, c], [d, e, f]), 0.5);
+    Some((Pose { at, axes: of_z(scale_vector(along, 1.0 / size)) }, Some(size / 2.0)))
 }
 
 /// Returns the volume and the moments of inertia per unit mass of a solid with these half lengths.
 fn solid(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
     let round = |xx: f64, zz: f64| [xx, xx, zz];
     match kind {
-        "sphere" => (4.0 / 3.0 * PI * x.powi(3), [0.4 * x * x; 3]),
+        "sphere" => (4.0 / 3.0 * PI * x * x * x, [0.4 * x * x; 3]),
         "capsule" => {
             let height = 2.0 * z;
-            let (ball, tube) = (4.0 / 3.0 * PI * x.powi(3), PI * x * x * height);
+            let (ball, tube) = (4.0 / 3.0 * PI * x * x * x, PI * x * x * height);
             let volume = ball + tube;
             let (ball, tube) = (ball / volume, tube / volume);
             let across = tube * (3.0 * x * x + height * height) / 12.0;
@@ -274,11 +282,11 @@ fn solid(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
         }
         "ellipsoid" => {
             let moments = [y * y + z * z, x * x + z * z, x * x + y * y];
-            (4.0 / 3.0 * PI * x * y * z, scale(moments, 0.2))
+            (4.0 / 3.0 * PI * x * y * z, scale_vector(moments, 0.2))
         }
         _ => {
             let moments = [y * y + z * z, x * x + z * z, x * x + y * y];
-            (8.0 * x * y * z, scale(moments, 1.0 / 3.0))
+            (8.0 * x * y * z, scale_vector(moments, 1.0 / 3.0))
         }
     }
 }
@@ -286,7 +294,7 @@ fn solid(kind: &str, [x, y, z]: Vector) -> (f64, Vector) {
 /// Reports a shape whose mass properties cannot be computed.
 fn refuse(shape: &Element<'_>, what: &str, cx: &mut Cx<'_>) -> Option<Mass> {
     let message = format!("the mass properties of {what} are not computed");
-    cx.error(&place(shape.node, cx), message, |d| d.help(NEEDS_INERTIAL));
+    cx.report_error(&element_position(shape.node, cx), message, |d| d.add_help(NEEDS_INERTIAL));
     None
 }
 

@@ -5,9 +5,9 @@
 //! may be included only once, so the composed text is not longer than all files together.
 
 use crate::diag::Diagnostics;
-use crate::import::context::{Cx, position, quote};
-use crate::import::element::{Node, check_attributes, name};
-use crate::import::whole::{MAX_DEPTH, MAX_FILES, Read, Whole, plain, report_circle, report_many};
+use crate::import::context::{Cx, format_position, quote_word};
+use crate::import::element::{Node, check_attributes, read_name_attribute};
+use crate::import::whole::{MAX_DEPTH, MAX_FILES, Read, Whole, canonical_path, report_circle, report_many};
 use crate::import::{file, xml};
 use crate::syntax::{FileFormat, Name};
 use std::cell::OnceCell;
@@ -31,7 +31,7 @@ pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnost
     let mut steps = scan(&whole.files, 0, name, true, 0, cx)?;
     while let Some(step) = steps.pop() {
         match step {
-            Step::Copy { file, from, to } => whole.copy(file, from, to, name, cx)?,
+            Step::Copy { file, from, to } => whole.append_file_bytes(file, from, to, name, cx)?,
             Step::Leave => {
                 open.pop();
             }
@@ -70,9 +70,10 @@ fn report_again(
         return;
     }
     let shown = files.get(known).map_or("", |read| read.shown.as_str());
-    let first = places.get(known).map(|by| position(&by.place)).unwrap_or_default();
-    cx.error(at.place.clone(), format!("{} is included twice", quote(shown)))
-        .help(format!("the first time is at {first}; MJCF takes a file once: copy it under another name"));
+    let first = places.get(known).map(|by| format_position(&by.place)).unwrap_or_default();
+    cx.report_error(at.place.clone(), format!("{} is included twice", quote_word(shown))).add_help(format!(
+        "the first time is at {first}; MJCF takes a file once: copy it under another name"
+    ));
 }
 
 /// Returns the steps that expand a file, last first: the whole file if `entire`, otherwise the contents of
@@ -93,7 +94,7 @@ fn scan(
     let root = document.root_element();
     if declared.get().is_some() {
         let message = "prefixes of names are not declared";
-        cx.error(&cx.place(root.range().start), message, |d| d.help("MJCF has none"));
+        cx.report_error(&cx.source_position(root.range().start), message, |d| d.add_help("MJCF has none"));
         return None;
     }
     let mut at = if entire { 0 } else { root.first_child().map_or(0, |child| child.range().start) };
@@ -104,14 +105,14 @@ fn scan(
     let mut steps = Vec::new();
     for node in root.descendants().filter(|node| is_include(*node)) {
         check_attributes(node, &["file"], &[], cx);
-        let written = self::name(node, "file", cx)?;
+        let written = read_name_attribute(node, "file", cx)?;
         steps.push(Step::Copy { file, from: at, to: node.range().start });
         steps.push(Step::Include { by: file, at: written, depth: depth + 1 });
         at = node.range().end;
     }
     steps.push(Step::Copy { file, from: at, to: end });
     steps.reverse();
-    (!cx.failed()).then_some(steps)
+    (!cx.has_errors()).then_some(steps)
 }
 
 fn is_include(node: Node<'_>) -> bool {
@@ -133,6 +134,6 @@ fn find(files: &[Read], by: usize, at: &Name, cx: &mut Diagnostics) -> Option<Re
     };
     let name = Name { text: shown.clone(), place: at.place.clone() };
     let text = file::read_named(&path, &name, FileFormat::Mjcf, cx)?;
-    let text = xml::cleaned(&text).into_owned();
-    Some(Read { text, shown, path: plain(&path) })
+    let text = xml::clean_xml_text(&text).into_owned();
+    Some(Read { text, shown, path: canonical_path(&path) })
 }

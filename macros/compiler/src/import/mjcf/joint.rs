@@ -2,11 +2,11 @@
 
 use super::defaults::Element;
 use super::reader::Reader;
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, name, place};
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{Node, element_position, read_name_attribute};
 use crate::import::imported::Placed;
-use crate::import::pose::{Pose, Vector, add, apply, length, scale};
-use crate::import::robot::{FileLimits, unused};
+use crate::import::pose::{Pose, Vector, add, length, matrix_times_vector, scale_vector};
+use crate::import::robot::{FileLimits, unused_name};
 use crate::syntax::{Drive, DriveLaw, DriveOn, Expr, JointKind, LimitOption, Name};
 
 /// MJCF's names of the joint types.
@@ -62,20 +62,21 @@ impl<'a> Reader<'a> {
     ) -> Option<BodyJoint> {
         let (word, kind) = if free { ("free", JointKind::Free) } else { read_type(element, cx)? };
         let name = self.joint_name(element.node, word, body, cx);
-        let alone = kind.rotates().is_some();
+        let alone = kind.rotates_about_one_axis().is_some();
         let zero = |at: &str, cx: &Cx<'_>| Placed { value: [0.0; 3], place: element.place(at, cx) };
         let mut anchor = element.numbers("pos", cx).unwrap_or(zero("pos", cx));
-        anchor.value = add(outer.at, apply(&outer.axes, anchor.value));
+        anchor.value = add(outer.at, matrix_times_vector(&outer.axes, anchor.value));
         let mut axis = element.numbers("axis", cx).unwrap_or(zero("axis", cx));
         if element.node_with("axis").is_none() {
             axis.value = [0.0, 0.0, 1.0];
         }
         let size = length(axis.value);
         if alone && size < 1e-14 {
-            cx.error(&axis.place, "axis of zero length has no direction", |d| d);
+            cx.report_error(&axis.place, "axis of zero length has no direction", |d| d);
             return None;
         }
-        axis.value = apply(&outer.axes, scale(axis.value, if alone { 1.0 / size } else { 1.0 }));
+        axis.value =
+            matrix_times_vector(&outer.axes, scale_vector(axis.value, if alone { 1.0 / size } else { 1.0 }));
         let turns = kind == JointKind::Pin;
         let angle = |reader: &Self, value: f64| if turns { reader.settings.angle(value) } else { value };
         let value = |reader: &Self, attribute: &str, cx: &mut Cx<'_>| {
@@ -111,10 +112,10 @@ impl<'a> Reader<'a> {
 
     /// Returns the name of a joint. The default is composed of the names of the body and the joint type.
     fn joint_name(&mut self, node: Node<'_>, word: &str, body: &Name, cx: &mut Cx<'_>) -> Name {
-        let found = node.attribute("name").and_then(|_| name(node, "name", cx));
+        let found = node.attribute("name").and_then(|_| read_name_attribute(node, "name", cx));
         let name = found.unwrap_or_else(|| Name {
-            text: unused(&format!("{}_{word}", body.text), |name| self.joint_names.contains(name)),
-            place: place(node, cx),
+            text: unused_name(&format!("{}_{word}", body.text), |name| self.joint_names.contains(name)),
+            place: element_position(node, cx),
         });
         self.joint_names.insert(name.text.clone());
         name
@@ -160,8 +161,8 @@ impl<'a> Reader<'a> {
             (Some(false), _) | (None, None) => return None,
             (None, Some(found)) if !self.settings.autolimits => {
                 let message = format!("`{range}` without `{limited}` has no effect");
-                cx.error(&found.place, message, |d| {
-                    d.help(format!(
+                cx.report_error(&found.place, message, |d| {
+                    d.add_help(format!(
                         "write `{limited}=\"true\"` or `\"false\"`, or remove `autolimits=\"false\"`"
                     ))
                 });
@@ -171,12 +172,12 @@ impl<'a> Reader<'a> {
         }
         let Some(Placed { value: [low, high], place }) = found else {
             let message = format!("`{limited}=\"true\"` without `{range}`");
-            cx.error(&element.place(limited, cx), message, |d| d);
+            cx.report_error(&element.place(limited, cx), message, |d| d);
             return None;
         };
         if low >= high {
             let message = format!("`{range}` from {low} to {high}, which is not above it");
-            cx.error(&place, message, |d| d.help(crate::import::robot::IGNORE_LIMITS));
+            cx.report_error(&place, message, |d| d.add_help(crate::import::robot::IGNORE_LIMITS));
             return None;
         }
         Some([low, high].map(|value| Placed { value, place: place.clone() }))
@@ -196,36 +197,37 @@ impl<'a> Reader<'a> {
 
     fn armature(&mut self, element: &Element<'a>, joint: &BodyJoint, cx: &mut Cx<'_>) {
         let Some(armature) = element.nonzero("armature", cx) else { return };
-        if joint.kind.rotates().is_some() {
+        if joint.kind.rotates_about_one_axis().is_some() {
             if armature.value < 0.0 {
-                cx.error(&armature.place, format!("negative armature `{}`", armature.value), |d| d);
+                cx.report_error(&armature.place, format!("negative armature `{}`", armature.value), |d| d);
             }
             self.drive(joint, DriveLaw::Inerter(armature.value));
             return;
         }
         let message = format!("`armature` of a `{}` joint is not supported", joint.word);
-        cx.error(&armature.place, message, |d| {
-            d.help("it adds to the mass matrix as no body does: write `armature=\"0\"` into the joint")
+        cx.report_error(&armature.place, message, |d| {
+            d.add_help("it adds to the mass matrix as no body does: write `armature=\"0\"` into the joint")
         });
     }
 
     fn refuse_time_constants(&self, element: &Element<'a>, cx: &mut Cx<'_>) {
         if let Some(pair) = element.numbers::<2>("springdamper", cx).filter(|pair| pair.value != [0.0; 2]) {
             let message = "`springdamper` is not supported";
-            cx.error(&pair.place, message, |d| {
-                d.help("write `stiffness` and `damping`").help(IGNORE_PASSIVE)
+            cx.report_error(&pair.place, message, |d| {
+                d.add_help("write `stiffness` and `damping`").add_help(IGNORE_PASSIVE)
             });
         }
     }
 
     fn spring(&mut self, element: &Element<'a>, joint: &BodyJoint, rest: f64, cx: &mut Cx<'_>) {
         refuse_yield(element, cx);
-        let Some(stiffness) = element.linear("stiffness", IGNORE_PASSIVE, cx) else { return };
-        if joint.kind.rotates().is_some() {
-            self.drive(joint, DriveLaw::Spring { stiffness: stiffness.value, free: rest });
-        } else {
+        if joint.kind.rotates_about_one_axis().is_some() {
+            if let Some(stiffness) = element.polynomial("stiffness", cx) {
+                self.drive(joint, DriveLaw::spring(stiffness.value, rest));
+            }
+        } else if let Some(stiffness) = element.linear("stiffness", IGNORE_PASSIVE, cx) {
             let message = format!("`stiffness` of a `{}` joint is not supported", joint.word);
-            cx.error(&stiffness.place, message, |d| d.help(IGNORE_PASSIVE));
+            cx.report_error(&stiffness.place, message, |d| d.add_help(IGNORE_PASSIVE));
         }
     }
 
@@ -236,6 +238,14 @@ impl<'a> Reader<'a> {
             if !acts {
                 continue;
             }
+            if is_damping
+                && joint.kind.rotates_about_one_axis().is_some()
+                && let Some(found) = element.polynomial(which, cx)
+                && found.value[1..] != [0.0; 2]
+            {
+                self.drive(joint, DriveLaw::damper(found.value));
+                continue;
+            }
             let found = match is_damping {
                 true => element.linear(which, IGNORE_PASSIVE, cx),
                 false => element.nonzero(which, cx),
@@ -243,16 +253,16 @@ impl<'a> Reader<'a> {
             let Some(found) = found else { continue };
             if found.value < 0.0 {
                 let message = format!("negative {which} `{}`", found.value);
-                cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+                cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
             }
-            let value = || Some(Expr::number(found.value, &found.place));
-            match (joint.kind.rotates(), is_damping) {
+            let value = || Some(Expr::number_at(found.value, &found.place));
+            match (joint.kind.rotates_about_one_axis(), is_damping) {
                 (Some(_), true) => joint.damping = value(),
                 (Some(_), false) => joint.friction = value(),
                 (None, true) => joint.spread = Some(found),
                 (None, false) => {
                     let message = format!("`{which}` of a `{}` joint is not supported", joint.word);
-                    cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+                    cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
                 }
             }
         }
@@ -268,7 +278,7 @@ impl<'a> Reader<'a> {
 pub(super) fn refuse_yield(element: &Element<'_>, cx: &mut Cx<'_>) {
     if let Some(found) = element.nonzero("springyield", cx) {
         let message = "`springyield` is not supported: a spring that yields has a state of its own";
-        cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+        cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
     }
 }
 
@@ -281,8 +291,10 @@ fn read_type(element: &Element<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, Jo
     let word = element.text("type").unwrap_or("hinge");
     let known = TYPES.iter().find(|(known, _)| *known == word);
     if known.is_none() {
-        let message = format!("unknown joint type {}", quote(word));
-        cx.error(&element.place("type", cx), message, |d| d.suggest(word, TYPES.map(|(word, _)| word)));
+        let message = format!("unknown joint type {}", quote_word(word));
+        cx.report_error(&element.place("type", cx), message, |d| {
+            d.suggest_name(word, TYPES.map(|(word, _)| word))
+        });
     }
     known.copied()
 }

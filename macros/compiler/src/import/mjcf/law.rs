@@ -1,161 +1,204 @@
-//! Attributes of an actuator and of its defaults → gain and bias.
-//!
-//! Each class of defaults stores one record of actuator parameters, which its elements modify in the order of
-//! the file (MuJoCo 4.0, *Modeling*, "Shortcuts"). A shortcut starts with its own default values or with
-//! those of the nearest class whose record it can interpret: a record last written by the same shortcut, or
-//! by `<general>` with a constant gain. `<general>` modifies the record of its class.
+//! Parameters of an actuator → its force, with the states of its activation.
 
-use super::defaults::{Element, some};
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, number};
-use crate::import::imported::Placed;
+use super::activation::{ActuatorLaw, ActuatorNames, CONTROLS, OTHER_INPUTS, TINY, controls, refuse_limit};
+use super::dc_motor;
+use super::defaults::Element;
+use super::muscle;
+use super::record::{Record, read_record};
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{Node, element_position};
 
-/// Force of an actuator: `gain · u + bias · (1, length, rate)`.
-pub(super) struct Force {
-    pub(super) gain: f64,
-    pub(super) bias: [f64; 3],
+/// Force of an actuator.
+pub(super) enum Force {
+    /// Force `gain · u + bias · (1, length, rate)`.
+    Affine {
+        /// Factor of the input.
+        gain: f64,
+        /// Constant, and factors of length and rate.
+        bias: [f64; 3],
+    },
+    /// Any other force.
+    Law(ActuatorLaw),
 }
 
-pub(super) const OTHER_INPUTS: &str =
-    "to ignore the actuators of the file, write `#[mechanism(…, inputs = joints)]`, or `none`";
-
-/// Parameters of an actuator without attributes.
-const PLAIN: Record<'static> = Record {
-    written: "general",
-    dynamics: "none",
-    gain_kind: "fixed",
-    bias_kind: "none",
-    gain: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    bias: [0.0; 10],
-};
-
-/// Parameters of an actuator as MuJoCo stores them.
-#[derive(Clone, Copy)]
-struct Record<'a> {
-    /// Name of the element that wrote the record last.
-    written: &'a str,
-    dynamics: &'a str,
-    gain_kind: &'a str,
-    bias_kind: &'a str,
-    gain: [f64; 10],
-    bias: [f64; 10],
-}
-
-/// Returns gain and bias of an actuator with its defaults. `classes` contains the defaults from the outermost
-/// class to the actuator's own. Reports actuators that are not affine in input, length and rate, and returns
-/// `None` for them.
+/// Reads the force of an actuator with its defaults. `classes` contains the defaults from the outermost class
+/// to the actuator's own. Reports actuators that are not supported, and returns `None` for them.
 pub(super) fn read_force<'a>(
     actuator: &Element<'a>,
     classes: &[Vec<Node<'a>>],
+    named: &ActuatorNames<'_>,
     cx: &mut Cx<'_>,
 ) -> Option<Force> {
-    let mut records = vec![PLAIN];
-    for class in classes {
-        records.extend(records.last().copied());
-        for node in class {
-            write(&mut records, *node, cx);
-        }
+    let record = read_record(actuator, classes, cx);
+    if !check(actuator, &record, cx) {
+        return None;
     }
-    records.extend(records.last().copied());
-    write(&mut records, actuator.node, cx);
-    let record = records.last().copied().unwrap_or(PLAIN);
-    let node = actuator.node;
-    let mut refuse = |attribute: &str, message: String, help: &'static str| {
-        cx.error(&actuator.place(attribute, cx), message, |d| d.help(help));
-    };
     let [g0, g1, g2, ..] = record.gain;
     let [b0, b1, b2, ..] = record.bias;
-    let mut good = true;
-    if record.dynamics != "none" {
-        let (attribute, message) = match node.has_attribute("timeconst") {
-            true => ("timeconst", "`timeconst` is not supported".to_string()),
-            false => ("dyntype", format!("`dyntype` {} is not supported", quote(record.dynamics))),
-        };
-        refuse(attribute, message, OTHER_INPUTS);
-        good = false;
+    let plain = record.gain_kind == "fixed" || (record.gain_kind == "affine" && g1 == 0.0 && g2 == 0.0);
+    if record.dynamics == "none" && plain && ["none", "affine"].contains(&record.bias_kind) {
+        let bias = if record.bias_kind == "affine" { [b0, b1, b2] } else { [0.0; 3] };
+        return Some(Force::Affine { gain: g0, bias });
     }
+    let mut law = ActuatorLaw::new(named, &element_position(actuator.node, cx));
+    match record.gain_kind {
+        "dcmotor" => dc_motor::write(&mut law, actuator, &record, named, cx)?,
+        "pid" => pid(&mut law, actuator, &record, named, cx)?,
+        _ => general(&mut law, actuator, &record, named, cx)?,
+    }
+    Some(Force::Law(law))
+}
+
+/// Reports types that are not supported, and damping that depends on the inertia.
+fn check(actuator: &Element<'_>, record: &Record<'_>, cx: &mut Cx<'_>) -> bool {
+    let mut good = true;
+    let mut refuse = |attribute: &str, message: String, help: &'static str| {
+        cx.report_error(&actuator.place(attribute, cx), message, |d| d.add_help(help));
+        good = false;
+    };
+    let unknown =
+        |attribute: &str, word: &str| format!("`{attribute}` {} is not supported", quote_word(word));
     for (attribute, word, known) in [
-        ("gaintype", record.gain_kind, ["fixed", "affine"]),
-        ("biastype", record.bias_kind, ["none", "affine"]),
+        (
+            "dyntype",
+            record.dynamics,
+            &["none", "integrator", "filter", "filterexact", "muscle", "pid", "dcmotor"][..],
+        ),
+        ("gaintype", record.gain_kind, &["fixed", "affine", "muscle", "pid", "dcmotor"][..]),
+        ("biastype", record.bias_kind, &["none", "affine", "muscle", "dcmotor"][..]),
     ] {
         if !known.contains(&word) {
-            refuse(attribute, format!("`{attribute}` {} is not supported", quote(word)), OTHER_INPUTS);
-            good = false;
+            refuse(attribute, unknown(attribute, word), OTHER_INPUTS);
         }
     }
-    if record.gain_kind == "affine" && (g1 != 0.0 || g2 != 0.0) {
-        refuse("gainprm", "a gain that depends on the motion is not supported".to_string(), OTHER_INPUTS);
-        good = false;
-    }
-    let affine = record.bias_kind == "affine";
-    if affine && record.gain_kind == "fixed" && g0 == -b1 && b2 > 0.0 {
-        refuse("dampratio", "`dampratio` is not supported".to_string(), "write `kv`");
-        good = false;
-    }
-    good.then_some(Force { gain: g0, bias: if affine { [b0, b1, b2] } else { [0.0; 3] } })
-}
-
-/// Writes the attributes of an actuator or of its defaults to the last record. The preceding records belong
-/// to the parent classes.
-fn write<'a>(records: &mut [Record<'a>], node: Node<'a>, cx: &mut Cx<'_>) {
-    let kind = node.tag_name().name();
-    let readable = |record: &&Record<'a>| {
-        record.written == kind || (record.written == "general" && record.gain_kind == "fixed")
-    };
-    let usual = records.iter().rev().find(readable).copied().unwrap_or(PLAIN);
-    let Some(record) = records.last_mut() else { return };
-    let mut said = |attribute: &str| number(node, attribute, cx).map(|found| found.value);
-    let law = |dynamics, gain_kind, gain, bias_kind, bias: [f64; 3]| Record {
-        written: kind,
-        dynamics,
-        gain_kind,
-        bias_kind,
-        gain: std::array::from_fn(|k| if k == 0 { gain } else { 0.0 }),
-        bias: std::array::from_fn(|k| bias.get(k).copied().unwrap_or(0.0)),
-    };
-    *record = match kind {
-        "general" => {
-            record.write_general(node, cx);
-            return;
-        }
-        "motor" => law("none", "fixed", 1.0, "none", [0.0; 3]),
-        "position" | "intvelocity" => {
-            let stiffness = said("kp").unwrap_or(usual.gain[0]);
-            let damping = said("kv").map(|kv| -kv).or_else(|| said("dampratio")).unwrap_or(usual.bias[2]);
-            let filtered = said("timeconst").map_or(usual.dynamics == "filterexact", |lag| lag != 0.0);
-            let dynamics = match (kind, filtered) {
-                ("intvelocity", _) => "integrator",
-                (_, true) => "filterexact",
-                _ => "none",
+    for (word, three) in [("dcmotor", true), ("pid", false)] {
+        let kinds = [record.gain_kind, record.dynamics, record.bias_kind];
+        let matching = kinds[0] == word
+            && if three {
+                kinds == [word; 3]
+            } else {
+                [word, "none"].contains(&kinds[1]) && kinds[2] == "affine"
             };
-            law(dynamics, "fixed", stiffness, "affine", [0.0, -stiffness, damping])
+        if kinds.contains(&word) && !matching {
+            refuse(
+                "gaintype",
+                format!("`{word}` with other types"),
+                "write the element `<dcmotor>` or `<pid>`",
+            );
         }
-        "velocity" => {
-            let gain = said("kv").unwrap_or(usual.gain[0]);
-            law("none", "fixed", gain, "affine", [0.0, 0.0, -gain])
-        }
-        "damper" => {
-            let mut record = law("none", "affine", 0.0, "none", [0.0; 3]);
-            record.gain[2] = said("kv").map_or(usual.gain[2], |kv| -kv);
-            record
-        }
-        "cylinder" => law("filter", "fixed", 1.0, "affine", [0.0; 3]),
-        "muscle" => law("muscle", "muscle", 1.0, "muscle", [0.0; 3]),
-        "adhesion" => law("none", "fixed", said("gain").unwrap_or(usual.gain[0]), "none", [0.0; 3]),
-        "orientation" => law("none", "so3", 1.0, "affine", [0.0; 3]),
-        "dcmotor" => law("dcmotor", "dcmotor", 1.0, "dcmotor", [0.0; 3]),
-        _ => law("none", kind, 1.0, "affine", [0.0; 3]),
-    };
+    }
+    let [g0, ..] = record.gain;
+    let [_, b1, b2, ..] = record.bias;
+    let servo = record.gain_kind == "fixed" && g0 == -b1;
+    if record.bias_kind == "affine" && (servo || record.gain_kind == "pid") && b2 > 0.0 {
+        refuse("dampratio", "`dampratio` is not supported".to_string(), "write `kv`");
+    }
+    good
 }
 
-impl<'a> Record<'a> {
-    fn write_general(&mut self, node: Node<'a>, cx: &mut Cx<'_>) {
-        let word = |attribute: &str, usual: &'a str| node.attribute(attribute).map_or(usual, str::trim);
-        (self.written, self.dynamics) = ("general", word("dyntype", self.dynamics));
-        (self.gain_kind, self.bias_kind) =
-            (word("gaintype", self.gain_kind), word("biastype", self.bias_kind));
-        let value = |found: Option<Placed<[f64; 10]>>, usual| found.map_or(usual, |found| found.value);
-        self.gain = value(some(node, "gainprm", self.gain, cx), self.gain);
-        self.bias = value(some(node, "biasprm", self.bias, cx), self.bias);
+/// Writes the force `gain · w + bias` with an optional state `w` in the place of the input.
+fn general(
+    law: &mut ActuatorLaw,
+    actuator: &Element<'_>,
+    record: &Record<'_>,
+    named: &ActuatorNames<'_>,
+    cx: &mut Cx<'_>,
+) -> Option<()> {
+    let muscle = match [record.dynamics, record.gain_kind, record.bias_kind].contains(&"muscle") {
+        true => Some(muscle::Muscle::read(actuator, record, cx)?),
+        false => None,
+    };
+    let servo = record.gain[0] == -record.bias[1];
+    let unit = match record.dynamics {
+        _ if muscle.is_some() => "1",
+        "integrator" if servo && named.length == "rad" => "rad/s",
+        "integrator" if servo => "m/s",
+        _ if servo => named.length,
+        _ => "any",
+    };
+    let input = law.input("", unit, named);
+    let state = law.state("activation", named);
+    let lag = record.dynprm[0].max(TINY);
+    let rate = match record.dynamics {
+        "integrator" => Some(input.clone()),
+        "filter" | "filterexact" => Some((input.clone() - state.clone()) / law.number(lag)),
+        "muscle" => Some(muscle::activation_rate(law, input.clone(), state.clone(), record)),
+        _ => None,
+    };
+    let value = if rate.is_some() { state } else { input };
+    if let Some(rate) = rate {
+        let unit = match unit {
+            "rad/s" => "rad",
+            "m/s" => "m",
+            other => other,
+        };
+        law.add_state("activation", "Activation", unit, rate, named);
     }
+    let gain = match (record.gain_kind, &muscle) {
+        ("muscle", Some(muscle)) => muscle.gain(law),
+        ("affine", _) => law.affine(&record.gain),
+        _ => law.number(record.gain[0]),
+    };
+    law.force = gain * value;
+    match (record.bias_kind, &muscle) {
+        ("muscle", Some(muscle)) => law.force = law.force.clone() + muscle.bias(law),
+        ("affine", _) => law.force = law.force.clone() + law.affine(&record.bias),
+        _ => {}
+    }
+    Some(())
+}
+
+/// Writes the force of a PID controller: `kp (pos − length) + kv (vel − rate) + ff + ki z` with
+/// `ż = pos − length`.
+fn pid(
+    law: &mut ActuatorLaw,
+    actuator: &Element<'_>,
+    record: &Record<'_>,
+    named: &ActuatorNames<'_>,
+    cx: &mut Cx<'_>,
+) -> Option<()> {
+    let has_states = record.dynamics == "pid";
+    let integral = if has_states { record.gain[0] } else { 0.0 };
+    if has_states {
+        refuse_limit(actuator, "slewmax", "`slewmax`", record.dynprm[1], cx)?;
+    }
+    if integral > 0.0 {
+        refuse_limit(actuator, "imax", "`imax`", record.dynprm[0], cx)?;
+    }
+    let controls = controls(actuator, "pos vel", &CONTROLS[..3], cx)?;
+    let [_, proportional, damping, ..] = record.bias;
+    let mut force = law.affine(&record.bias);
+    let mut error = -law.length();
+    let single = controls.len() == 1;
+    for word in &controls {
+        let rad = named.length == "rad";
+        let unit = match *word {
+            "pos" => named.length,
+            "vel" if rad => "rad/s",
+            "vel" => "m/s",
+            _ if rad => "N·m",
+            _ => "N",
+        };
+        let input = law.input(if single { "" } else { word }, unit, named);
+        match *word {
+            "pos" => {
+                error = input.clone() - law.length();
+                force = force - input * proportional;
+            }
+            "vel" => force = force - input * damping,
+            _ => force = force + input,
+        }
+    }
+    if integral > 0.0 {
+        if !controls.contains(&"pos") {
+            let message = "`ki` without the input `pos`";
+            cx.report_error(&actuator.place("ki", cx), message, |d| d.add_help("write `input=\"pos vel\"`"));
+            return None;
+        }
+        force = force + law.state("integral", named) * integral;
+        let unit = if named.length == "rad" { "rad·s" } else { "m·s" };
+        law.add_state("integral", "Integral of the error", unit, error, named);
+    }
+    law.force = force;
+    Some(())
 }

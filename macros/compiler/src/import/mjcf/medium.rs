@@ -12,8 +12,8 @@ use super::reader::Reader;
 use super::spatial::Spot;
 use crate::diag::Place;
 use crate::import::context::Cx;
-use crate::import::element::place;
-use crate::import::pose::{Pose, principal, transpose};
+use crate::import::element::element_position;
+use crate::import::pose::{Pose, eigen_decomposition, transpose};
 use crate::syntax::{BinaryOp, Expr, ExprKind, GROUND, Name};
 use std::f64::consts::PI;
 
@@ -31,21 +31,23 @@ impl Reader<'_> {
                 _ => {
                     let message =
                         format!("the `{which}` of a medium that bodies move through is not supported");
-                    cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+                    cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
                 }
             }
             at = Some(found.place.clone());
         }
         if density < 0.0 || viscosity < 0.0 {
             let message = format!("a medium of the density {density} and the viscosity {viscosity}");
-            cx.error(&at.clone().unwrap_or(self.options.path.place.clone()), message, |d| {
-                d.help("expected numbers that are not negative").help(IGNORE_PASSIVE)
+            cx.report_error(&at.clone().unwrap_or(self.options.path.place.clone()), message, |d| {
+                d.add_help("expected numbers that are not negative").add_help(IGNORE_PASSIVE)
             });
             return;
         }
         let shaped = self.shaped.take();
         if let Some(shaped) = shaped {
-            cx.error(&shaped, "`fluidshape` in a medium is not supported", |d| d.help(IGNORE_PASSIVE));
+            cx.report_error(&shaped, "`fluidshape` in a medium is not supported", |d| {
+                d.add_help(IGNORE_PASSIVE)
+            });
         }
         let Some(at) = at else { return };
         let masses = self.robot.links.iter().zip(&self.masses);
@@ -63,7 +65,7 @@ impl Reader<'_> {
     /// Records a shape with an individual fluid model, which is not supported.
     pub(super) fn note_shaped(&mut self, shape: &super::defaults::Element<'_>, cx: &Cx<'_>) {
         if shape.text("fluidshape").is_some_and(|word| word != "none") {
-            self.shaped.get_or_insert(place(shape.node, cx));
+            self.shaped.get_or_insert(element_position(shape.node, cx));
         }
     }
 }
@@ -71,34 +73,38 @@ impl Reader<'_> {
 /// Returns the Rayleigh dissipation function of the drag on a body: half of the dissipated power of linear
 /// terms plus a third of that of quadratic terms.
 fn braked(link: &str, mass: &Mass, [density, viscosity]: [f64; 2], at: &Place) -> Expr {
-    let (moments, axes) = principal(&mass.inertia);
+    let (moments, axes) = eigen_decomposition(&mass.inertia);
     let sum: f64 = moments.iter().sum();
     let edges = moments.map(|moment| ((sum - 2.0 * moment).max(0.0) / mass.mass * 6.0).sqrt());
     let mean = edges.iter().sum::<f64>() / 3.0;
     let name = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
     let spot = Spot { body: link.to_string(), pose: Pose { at: mass.com, ..Pose::ZERO } };
-    let slash = |a, b| Expr::binary(BinaryOp::Div, a, b);
+    let slash = |a, b| Expr::binary_operation(BinaryOp::Div, a, b);
     let path = slash(slash(spot.expression(at), name(GROUND)), name(GROUND));
-    let v = Expr::call("v", vec![path], at);
-    let omega = Expr::call("omega", vec![slash(name(link), name(GROUND))], at);
-    let times = |factor: f64, e: Expr| Expr::binary(BinaryOp::Mul, Expr::number(factor, at), e);
+    let v = Expr::function_call_at("v", vec![path], at);
+    let omega = Expr::function_call_at("omega", vec![slash(name(link), name(GROUND))], at);
+    let times = |factor: f64, e: Expr| Expr::binary_operation(BinaryOp::Mul, Expr::number_at(factor, at), e);
     let mut terms = Vec::new();
     if viscosity > 0.0 {
-        for (factor, of) in [(1.5 * PI * mean, &v), (0.5 * PI * mean.powi(3), &omega)] {
-            terms.push(times(factor * viscosity, Expr::call("dot", vec![of.clone(), of.clone()], at)));
+        for (factor, of) in [(1.5 * PI * mean, &v), (0.5 * PI * mean * mean * mean, &omega)] {
+            terms.push(times(
+                factor * viscosity,
+                Expr::function_call_at("dot", vec![of.clone(), of.clone()], at),
+            ));
         }
     }
     if density > 0.0 {
         for (k, axis) in transpose(&axes).into_iter().enumerate() {
             let [a, b, c] = [edges[k], edges[(k + 1) % 3], edges[(k + 2) % 3]];
-            for (factor, of) in [(b * c / 6.0, &v), (a * (b.powi(4) + c.powi(4)) / 192.0, &omega)] {
-                let x = Expr::call("dot", vec![of.clone(), spot.vector_expression(axis, at)], at);
-                let square = Expr::binary(BinaryOp::Mul, x.clone(), x.clone());
-                let cube = Expr::binary(BinaryOp::Mul, Expr::call("abs", vec![x], at), square);
+            for (factor, of) in [(b * c / 6.0, &v), (a * (b * b * b * b + c * c * c * c) / 192.0, &omega)] {
+                let x = Expr::function_call_at("dot", vec![of.clone(), spot.vector_expression(axis, at)], at);
+                let square = Expr::binary_operation(BinaryOp::Mul, x.clone(), x.clone());
+                let cube =
+                    Expr::binary_operation(BinaryOp::Mul, Expr::function_call_at("abs", vec![x], at), square);
                 terms.push(times(factor * density, cube));
             }
         }
     }
-    let sum = terms.into_iter().reduce(|a, b| Expr::binary(BinaryOp::Add, a, b));
-    sum.unwrap_or_else(|| Expr::number(0.0, at))
+    let sum = terms.into_iter().reduce(|a, b| Expr::binary_operation(BinaryOp::Add, a, b));
+    sum.unwrap_or_else(|| Expr::number_at(0.0, at))
 }

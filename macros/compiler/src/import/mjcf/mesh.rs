@@ -8,10 +8,12 @@
 use super::defaults::{Defaults, Element};
 use super::geometry::Mass;
 use super::settings::Settings;
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, elements, name, place};
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
 use crate::import::mesh::{self, Triangle};
-use crate::import::pose::{Matrix, Vector, add, apply, cross, dot, length, of_quaternion, scale, transpose};
+use crate::import::pose::{
+    Matrix, Vector, add, cross, dot, length, matrix_times_vector, of_quaternion, scale_vector, transpose,
+};
 use crate::syntax::{Mesh, MeshVertices, Name};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -40,7 +42,8 @@ impl<'a> Meshes<'a> {
         defaults: &Defaults<'a>,
         cx: &mut Cx<'_>,
     ) -> Meshes<'a> {
-        let assets = elements(root).filter(|node| node.tag_name().name() == "asset").flat_map(elements);
+        let assets =
+            child_elements(root).filter(|node| node.tag_name().name() == "asset").flat_map(child_elements);
         let mut known = BTreeMap::new();
         for node in assets.filter(|node| node.tag_name().name() == "mesh") {
             let element = defaults.element(node, &["mesh"], 0, cx);
@@ -72,14 +75,18 @@ impl<'a> Meshes<'a> {
     /// Returns the name of a shape's mesh, and the mesh.
     fn element(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<(String, Element<'a>)> {
         let Some(mesh) = shape.name("mesh", cx) else {
-            cx.error(&place(shape.node, cx), "a shape of type `mesh` without `mesh`", |d| d);
+            cx.report_error(
+                &element_position(shape.node, cx),
+                "a shape of type `mesh` without `mesh`",
+                |d| d,
+            );
             return None;
         };
         let found = self.known.get(&mesh.text).cloned();
         if found.is_none() {
             let known = self.known.keys().map(String::as_str);
-            cx.error(&mesh.place, format!("unknown mesh {}", quote(&mesh.text)), |d| {
-                d.suggest(&mesh.text, known)
+            cx.report_error(&mesh.place, format!("unknown mesh {}", quote_word(&mesh.text)), |d| {
+                d.suggest_name(&mesh.text, known)
             });
         }
         found.map(|element| (mesh.text, element))
@@ -90,9 +97,9 @@ impl<'a> Meshes<'a> {
     pub(super) fn vertices(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<MeshVertices> {
         let (mesh, element) = self.element(shape, cx)?;
         let (linear, offset) = placement(&element, cx);
-        let place = place(element.node, cx);
+        let place = element_position(element.node, cx);
         if element.node.has_attribute("file") {
-            let name = name(element.node, "file", cx)?;
+            let name = read_name_attribute(element.node, "file", cx)?;
             return Some(MeshVertices {
                 paths: vec![self.path(&name)],
                 name,
@@ -108,7 +115,7 @@ impl<'a> Meshes<'a> {
         let numbers: Option<Vec<f64>> =
             element.text("vertex")?.split_ascii_whitespace().map(|word| word.parse().ok()).collect();
         let Some(numbers) = numbers.filter(|numbers| numbers.len() % 3 == 0) else {
-            cx.error(&place, "expected three numbers for each vertex", |d| d);
+            cx.report_error(&place, "expected three numbers for each vertex", |d| d);
             return None;
         };
         let written = numbers.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
@@ -137,27 +144,29 @@ impl<'a> Meshes<'a> {
             None | Some("legacy") => false,
             Some("exact") => true,
             Some(other) => {
-                let message = format!("`inertia` {} of a mesh is not supported", quote(other));
+                let message = format!("`inertia` {} of a mesh is not supported", quote_word(other));
                 let help =
                     "expected `legacy` or `exact`, or an `<inertial>` in the bodies that have the mesh";
-                cx.error(&element.place("inertia", cx), message, |d| d.help(help));
+                cx.report_error(&element.place("inertia", cx), message, |d| d.add_help(help));
                 return None;
             }
         };
         if element.node.attribute("file").is_none() {
             let message = "the mass of a mesh without `file` is not computed";
-            cx.error(&place(element.node, cx), message, |d| d.help(super::geometry::NEEDS_INERTIAL));
+            cx.report_error(&element_position(element.node, cx), message, |d| {
+                d.add_help(super::geometry::NEEDS_INERTIAL)
+            });
             return None;
         }
-        let file = name(element.node, "file", cx)?;
+        let file = read_name_attribute(element.node, "file", cx)?;
         let path = self.path(&file);
         let mut triangles = read(&path, &file, cx)?;
         self.files.push(path);
         transform(element, &mut triangles, cx);
         let found = solid(&triangles, exact);
         if found.is_none() {
-            let message = format!("mesh {} has no volume", quote(&file.text));
-            cx.error(&file.place, message, |d| d.help(super::geometry::NEEDS_INERTIAL));
+            let message = format!("mesh {} has no volume", quote_word(&file.text));
+            cx.report_error(&file.place, message, |d| d.add_help(super::geometry::NEEDS_INERTIAL));
         }
         found
     }
@@ -170,15 +179,15 @@ fn placement(element: &Element<'_>, cx: &mut Cx<'_>) -> (Matrix, Vector) {
     let quat = element.numbers::<4>("refquat", cx).map_or([1.0, 0.0, 0.0, 0.0], |found| found.value);
     let size = quat.iter().map(|x| x * x).sum::<f64>().sqrt();
     let axes: Matrix = transpose(&of_quaternion(quat.map(|x| x / size)));
-    let linear: Matrix = std::array::from_fn(|k| scale(axes[k], factors[k]));
-    (linear, scale(apply(&linear, from), -1.0))
+    let linear: Matrix = std::array::from_fn(|k| scale_vector(axes[k], factors[k]));
+    (linear, scale_vector(matrix_times_vector(&linear, from), -1.0))
 }
 
 /// Applies `refpos`, `refquat` and `scale`.
 fn transform(element: &Element<'_>, triangles: &mut [Triangle], cx: &mut Cx<'_>) {
     let (linear, offset) = placement(element, cx);
     for corner in triangles.iter_mut().flatten() {
-        *corner = add(apply(&linear, *corner), offset);
+        *corner = add(matrix_times_vector(&linear, *corner), offset);
     }
     // A reflection reverses the orientation of the triangles.
     if dot(linear[0], cross(linear[1], linear[2])) < 0.0 {
@@ -191,28 +200,28 @@ fn solid(triangles: &[Triangle], exact: bool) -> Option<Mass> {
     let count = |volume: f64| if exact { volume } else { volume.abs() };
     let (mut area, mut middle) = (0.0, [0.0; 3]);
     for [a, b, c] in triangles {
-        let one = length(cross(add(*b, scale(*a, -1.0)), add(*c, scale(*a, -1.0)))) / 2.0;
+        let one = length(cross(add(*b, scale_vector(*a, -1.0)), add(*c, scale_vector(*a, -1.0)))) / 2.0;
         area += one;
-        middle = add(middle, scale(add(add(*a, *b), *c), one / 3.0));
+        middle = add(middle, scale_vector(add(add(*a, *b), *c), one / 3.0));
     }
     if area < NOTHING || !area.is_finite() {
         return None;
     }
-    let middle = scale(middle, 1.0 / area);
+    let middle = scale_vector(middle, 1.0 / area);
     let (mut volume, mut com) = (0.0, [0.0; 3]);
     for triangle in triangles {
-        let [a, b, c] = triangle.map(|corner| add(corner, scale(middle, -1.0)));
+        let [a, b, c] = triangle.map(|corner| add(corner, scale_vector(middle, -1.0)));
         let one = count(dot(a, cross(b, c)) / 6.0);
         volume += one;
-        com = add(com, scale(add(add(a, b), c), one / 4.0));
+        com = add(com, scale_vector(add(add(a, b), c), one / 4.0));
     }
     if volume < NOTHING || !volume.is_finite() {
         return None;
     }
-    let com = add(middle, scale(com, 1.0 / volume));
+    let com = add(middle, scale_vector(com, 1.0 / volume));
     let (mut mass, mut products) = (0.0, [[0.0; 3]; 3]);
     for triangle in triangles {
-        let corners = triangle.map(|corner| add(corner, scale(com, -1.0)));
+        let corners = triangle.map(|corner| add(corner, scale_vector(com, -1.0)));
         let [a, b, c] = corners;
         let one = count(dot(a, cross(b, c)) / 6.0);
         mass += one;
@@ -235,7 +244,7 @@ fn solid(triangles: &[Triangle], exact: bool) -> Option<Mass> {
 impl Mass {
     /// Rescales the body to another mass.
     pub(super) fn of_mass(&self, mass: f64) -> Mass {
-        Mass { mass, com: self.com, inertia: self.inertia.map(|row| scale(row, mass / self.mass)) }
+        Mass { mass, com: self.com, inertia: self.inertia.map(|row| scale_vector(row, mass / self.mass)) }
     }
 }
 
@@ -244,11 +253,11 @@ fn read(path: &Path, name: &Name, cx: &mut Cx<'_>) -> Option<Vec<Triangle>> {
     match mesh::read(path, &name.text) {
         Ok(triangles) => Some(triangles),
         Err(message) => {
-            cx.error(&name.place, message, |d| match path.is_file() {
+            cx.report_error(&name.place, message, |d| match path.is_file() {
                 true => d,
-                false => {
-                    d.help(format!("looked for `{}`", path.display())).help(super::geometry::NEEDS_INERTIAL)
-                }
+                false => d
+                    .add_help(format!("looked for `{}`", path.display()))
+                    .add_help(super::geometry::NEEDS_INERTIAL),
             });
             None
         }

@@ -3,9 +3,9 @@
 //! Contents of the file that affect the equations of motion without contacts are imported or reported as
 //! errors. Other contents are skipped and listed in the generated documentation.
 
-use super::context::{Cx, quote};
-use super::element::{Node, elements, place, tag};
-use super::whole::imported;
+use super::context::{Cx, quote_word};
+use super::element::{Node, child_elements, element_position, quoted_tag};
+use super::whole::import_composed_text;
 use crate::diag::Diagnostics;
 use crate::import::imported::Imported;
 use crate::import::robot::{self, Order};
@@ -17,11 +17,14 @@ use settings::Settings;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+mod activation;
 mod actuator;
 mod body;
 mod contact;
+mod dc_motor;
 mod defaults;
 mod equality;
+mod formula;
 mod frame;
 mod geometry;
 mod include;
@@ -29,7 +32,9 @@ mod joint;
 mod law;
 mod medium;
 mod mesh;
+mod muscle;
 mod reader;
+mod record;
 mod rest;
 pub(in crate::import) mod schema;
 mod settings;
@@ -38,6 +43,7 @@ mod spatial;
 mod tendon;
 mod touch;
 mod visual;
+mod winding;
 
 /// Sections without influence on the motion, with the text that the generated documentation lists for each.
 const ASIDE: [(&str, &str); 3] =
@@ -52,7 +58,9 @@ pub(super) fn import(
 ) -> Option<Imported> {
     let whole = include::read_whole(text, path, &options.path, cx)?;
     let folder = path.parent().unwrap_or(path);
-    imported(whole, &options.path, FileFormat::Mjcf, cx, |root, cx| read(root, folder, options, cx))
+    import_composed_text(whole, &options.path, FileFormat::Mjcf, cx, |root, cx| {
+        read(root, folder, options, cx)
+    })
 }
 
 fn read(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
@@ -60,11 +68,11 @@ fn read(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -
         return None;
     }
     schema::check(root, cx);
-    if let Some(node) = elements(root).find(|node| node.tag_name().name() == "deformable")
-        && elements(node).next().is_some()
+    if let Some(node) = child_elements(root).find(|node| node.tag_name().name() == "deformable")
+        && child_elements(node).next().is_some()
     {
-        cx.error(&place(node, cx), "deformable bodies are not supported", |d| {
-            d.help("remove `<deformable>`")
+        cx.report_error(&element_position(node, cx), "deformable bodies are not supported", |d| {
+            d.add_help("remove `<deformable>`")
         });
     }
     let settings = Settings::read(root, cx);
@@ -80,11 +88,11 @@ fn read(root: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -
     reader.equalities(root, &tendons, cx);
     reader.actuators(root, &tendons, cx);
     for (section, what) in ASIDE {
-        let nodes = elements(root).filter(|node| node.tag_name().name() == section);
-        reader.count(what, nodes.map(|node| elements(node).count()).sum());
+        let nodes = child_elements(root).filter(|node| node.tag_name().name() == section);
+        reader.count(what, nodes.map(|node| child_elements(node).count()).sum());
     }
     let gravity = &reader.settings.gravity;
-    reader.robot.gravity = Some(Expr::vector(gravity.value, &gravity.place));
+    reader.robot.gravity = Some(Expr::vector_at(gravity.value, &gravity.place));
     reader.robot.left_out = left_out(&reader);
     finish(reader, options, cx)
 }
@@ -94,11 +102,12 @@ fn finish(reader: Reader<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<
     let mut robot = reader.robot;
     robot::check_locks(&robot.joints, &options.lock, cx);
     check_finite(&robot, cx);
-    if cx.failed() {
+    if cx.has_errors() {
         return None;
     }
     if let Some(tolerance) = options.snap {
-        robot.snapped = robot.joints.iter_mut().flat_map(|joint| robot::snap(joint, tolerance)).collect();
+        robot.snapped =
+            robot.joints.iter_mut().flat_map(|joint| robot::snap_joint_frame(joint, tolerance)).collect();
     }
     let motions = robot::resolve_motions(&robot.joints, &options.lock, cx)?;
     let links: BTreeMap<&str, usize> =
@@ -114,26 +123,27 @@ fn finish(reader: Reader<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<
     robot::make_fields(&mut imported, &standing, options, cx);
     imported.joints.extend(closing);
     imported.files = files;
-    (!cx.failed()).then_some(imported)
+    (!cx.has_errors()).then_some(imported)
 }
 
 /// Reports overflow of products whose factors are finite.
 fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
-    let literals = |e: &Expr| e.parts().into_iter().filter_map(Expr::literal).all(f64::is_finite);
+    let literals =
+        |e: &Expr| e.subexpressions().into_iter().filter_map(Expr::literal_number).all(f64::is_finite);
     for link in &robot.links {
         if ![&link.mass, &link.com, &link.inertia].into_iter().flatten().all(literals) {
             let message = format!(
                 "body {} is too large, too heavy or too far away for floating-point numbers",
-                quote(&link.name.text)
+                quote_word(&link.name.text)
             );
-            cx.error(&link.name.place, message, |d| d);
+            cx.report_error(&link.name.place, message, |d| d);
         }
     }
     for joint in &robot.joints {
         if !joint.origin.xyz.value.iter().chain(&joint.origin.rpy.value).all(|x| x.is_finite()) {
             let message =
-                format!("joint {} is too far away for floating-point numbers", quote(&joint.name.text));
-            cx.error(&joint.name.place, message, |d| d);
+                format!("joint {} is too far away for floating-point numbers", quote_word(&joint.name.text));
+            cx.report_error(&joint.name.place, message, |d| d);
         }
     }
     for joint in &robot.joints {
@@ -141,26 +151,26 @@ fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
         if !follows.into_iter().chain(joint.held).all(f64::is_finite) {
             let message = format!(
                 "the value that joint {} follows is too large for floating-point numbers",
-                quote(&joint.name.text)
+                quote_word(&joint.name.text)
             );
-            cx.error(&joint.name.place, message, |d| d);
+            cx.report_error(&joint.name.place, message, |d| d);
         }
     }
     for constraint in &robot.constraints {
         if ![Some(&constraint.value), constraint.other.as_ref()].into_iter().flatten().all(literals) {
             let message = format!(
                 "the coupling {} is too large for floating-point numbers",
-                quote(&constraint.name.text)
+                quote_word(&constraint.name.text)
             );
-            cx.error(&constraint.name.place, message, |d| d);
+            cx.report_error(&constraint.name.place, message, |d| d);
         }
     }
     for drive in &robot.drives {
         let law = match drive.law {
             DriveLaw::Spring { stiffness, free } => stiffness.is_finite() && free.is_finite(),
-            DriveLaw::Slack { stiffness, range } => {
-                stiffness.is_finite() && range.into_iter().all(f64::is_finite)
-            }
+            DriveLaw::Slack { stiffness, range } => stiffness.into_iter().chain(range).all(f64::is_finite),
+            DriveLaw::PolynomialDamper(damping) => damping.into_iter().all(f64::is_finite),
+            DriveLaw::Expression { ref force, .. } => literals(force),
             DriveLaw::Damper(x) | DriveLaw::Friction(x) | DriveLaw::Inerter(x) | DriveLaw::Push(x) => {
                 x.is_finite()
             }
@@ -172,9 +182,11 @@ fn check_finite(robot: &robot::Robot, cx: &mut Cx<'_>) {
             DriveOn::Wrench(wrench) => wrench.force.into_iter().chain(wrench.torque).all(f64::is_finite),
         };
         if !law || !on {
-            let message =
-                format!("a force of {} is too large for floating-point numbers", quote(&drive.name.text));
-            cx.error(&drive.name.place, message, |d| d);
+            let message = format!(
+                "a force of {} is too large for floating-point numbers",
+                quote_word(&drive.name.text)
+            );
+            cx.report_error(&drive.name.place, message, |d| d);
         }
     }
 }
@@ -198,12 +210,12 @@ fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
     if name == "mujoco" {
         return true;
     }
-    let message = format!("expected `<mujoco>`, found {}", tag(node));
-    cx.error(&place(node, cx), message, |d| match name {
-        "robot" => d.help("this is a URDF file: write `urdf = \"…\"` instead of `mjcf = \"…\"`"),
-        "sdf" => d.help("this is an SDF file: write `sdf = \"…\"` instead of `mjcf = \"…\"`"),
-        "mujocoinclude" => d.help("this is a part of a model: name the file that includes it"),
-        _ => d.suggest(name, ["mujoco"]),
+    let message = format!("expected `<mujoco>`, found {}", quoted_tag(node));
+    cx.report_error(&element_position(node, cx), message, |d| match name {
+        "robot" => d.add_help("this is a URDF file: write `urdf = \"…\"` instead of `mjcf = \"…\"`"),
+        "sdf" => d.add_help("this is an SDF file: write `sdf = \"…\"` instead of `mjcf = \"…\"`"),
+        "mujocoinclude" => d.add_help("this is a part of a model: name the file that includes it"),
+        _ => d.suggest_name(name, ["mujoco"]),
     });
     false
 }

@@ -7,7 +7,7 @@ use super::settings::Settings;
 use super::touch::{CollisionShape, Plane};
 use crate::diag::Place;
 use crate::import::imported::Placed;
-use crate::import::pose::{Pose, roll_pitch_yaw, scale};
+use crate::import::pose::{Pose, roll_pitch_yaw, scale_vector};
 use crate::import::robot::{Origin, Robot};
 use crate::syntax::{Body, Expr, ExprKind, FileOptions, Name};
 use std::collections::{BTreeMap, BTreeSet};
@@ -114,7 +114,7 @@ impl<'a> Reader<'a> {
         for (link, mass) in self.robot.links.iter_mut().zip(&self.masses) {
             if let Some(mass) = mass {
                 let place = link.mass.as_ref().map_or(link.name.place.clone(), |mass| mass.place.clone());
-                let inertia = mass.inertia.map(|row| scale(row, factor));
+                let inertia = mass.inertia.map(|row| scale_vector(row, factor));
                 give(link, &Mass { mass: mass.mass * factor, inertia, ..*mass }, &place);
             }
         }
@@ -123,13 +123,13 @@ impl<'a> Reader<'a> {
 
 /// Sets the mass properties of a link.
 pub(super) fn give(link: &mut Body, mass: &Mass, place: &Place) {
-    link.mass = Some(Expr::number(mass.mass, place));
-    link.com = (mass.com != [0.0; 3]).then(|| Expr::vector(mass.com, place));
+    link.mass = Some(Expr::number_at(mass.mass, place));
+    link.com = (mass.com != [0.0; 3]).then(|| Expr::vector_at(mass.com, place));
     let rows: Vec<Expr> = (0..3)
         .map(|i| {
             // The two triangles of the matrix may differ by rounding errors.
             let entry = |j: usize| if i <= j { mass.inertia[i][j] } else { mass.inertia[j][i] };
-            Expr::vector(std::array::from_fn(entry), place)
+            Expr::vector_at(std::array::from_fn(entry), place)
         })
         .collect();
     let zero = mass.inertia.iter().flatten().all(|entry| *entry == 0.0);

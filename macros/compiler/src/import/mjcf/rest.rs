@@ -3,7 +3,7 @@
 
 use super::reader::Reader;
 use super::spatial::Poses;
-use crate::import::pose::{Pose, axis_rotation, product, scale};
+use crate::import::pose::{Pose, axis_rotation, matrix_product, scale_vector};
 use crate::import::robot::Origin;
 use crate::syntax::{GROUND, JointKind};
 
@@ -16,17 +16,17 @@ impl Reader<'_> {
         for joint in &self.robot.joints {
             let rest = self.rests.get(&joint.name.text).copied().unwrap_or(0.0);
             let axis = joint.axis.value;
-            let motion = match joint.kind.rotates() {
+            let motion = match joint.kind.rotates_about_one_axis() {
                 Some(true) => Pose { axes: axis_rotation(axis, rest), ..Pose::ZERO },
-                Some(false) => Pose { at: scale(axis, rest), ..Pose::ZERO },
+                Some(false) => Pose { at: scale_vector(axis, rest), ..Pose::ZERO },
                 None => Pose::ZERO,
             };
             let parent = poses.get(&joint.parent.text).copied().unwrap_or(Pose::ZERO);
-            let back = Pose { at: scale(joint.anchor, -1.0), ..Pose::ZERO };
+            let back = Pose { at: scale_vector(joint.anchor, -1.0), ..Pose::ZERO };
             let pose = if joint.kind == JointKind::Free {
                 self.poses.get(&joint.child.text).copied().unwrap_or(Pose::ZERO)
             } else {
-                parent.then(&pose_of(&joint.origin)).then(&motion).then(&back)
+                parent.compose_with(&pose_of(&joint.origin)).compose_with(&motion).compose_with(&back)
             };
             poses.insert(joint.child.text.clone(), pose);
         }
@@ -38,6 +38,6 @@ fn pose_of(origin: &Origin) -> Pose {
     let [roll, pitch, yaw] = origin.rpy.value;
     let turn = |axis, angle| axis_rotation(axis, angle);
     let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
-    let axes = product(&product(&turn(z, yaw), &turn(y, pitch)), &turn(x, roll));
+    let axes = matrix_product(&matrix_product(&turn(z, yaw), &turn(y, pitch)), &turn(x, roll));
     Pose { at: origin.xyz.value, axes }
 }

@@ -1,8 +1,8 @@
 //! Schema of the elements and attributes of MJCF, and the check of files against it.
 
-use super::super::context::{Cx, quote};
-use super::super::element::{Node, elements, name, place, tag};
-use crate::diag::nearest;
+use super::super::context::{Cx, quote_word};
+use super::super::element::{Node, child_elements, element_position, quoted_tag, read_name_attribute};
+use crate::diag::nearest_candidate;
 use crate::import::robot::check_unique;
 use crate::syntax::Name;
 use std::collections::BTreeMap;
@@ -101,24 +101,24 @@ equality/weld: active anchor body1 body2 class name relpose site1 site2 | @soft 
 equality/joint: active class joint1 joint2 name polycoef | @soft
 equality/tendon: active class name polycoef tendon1 tendon2 | @soft
 actuator: |
-actuator/general: @end @motor biasprm biastype body class dyntype gainprm gaintype inheritrange name | \
-    @still actdim actearly actlimited actrange dynprm ffrange input velrange
+actuator/general: @end @motor biasprm biastype body class dynprm dyntype gainprm gaintype inheritrange \
+    input lengthrange name | @still actdim actearly actlimited actrange ffrange velrange
 actuator/motor: @end @motor class name | @still
 actuator/position: @end @motor class dampratio inheritrange kp kv name timeconst | @still
 actuator/velocity: @end @motor class kv name | @still
 actuator/intvelocity: @end @motor class dampratio kp kv name | @still actlimited actrange inheritrange
 actuator/damper: @end @motor class kv name | @still
 actuator/cylinder: @end @motor area bias class diameter name timeconst | @still
-actuator/muscle: @end @motor class force fpmax fvmax lmax lmin name range scale vmax | @still tausmooth \
-    timeconst
+actuator/muscle: @end @motor class force fpmax fvmax lengthrange lmax lmin name range scale tausmooth \
+    timeconst vmax | @still
 actuator/adhesion: body class ctrlrange delay forcelimited forcerange gain group name | ctrllimited \
     interp nsample user
 actuator/orientation: class group joint name refsite site | ctrlrange dampratio delay forcelimited \
     forcerange input interp kp kv nsample user
-actuator/pid: @end @motor class name | @still dampratio ffrange imax inheritrange input ki kp kv \
-    posrange slewmax velrange
-actuator/dcmotor: @end @motor class name | @still cogging controller inductance input lugre motorconst \
-    nominal resistance saturation thermal
+actuator/pid: @end @motor class dampratio imax input ki kp kv name slewmax | @still ffrange inheritrange \
+    posrange velrange
+actuator/dcmotor: @end @motor class cogging controller inductance input lugre motorconst name nominal \
+    resistance saturation thermal | @still
 sensor: |
 sensor/touch,accelerometer,velocimeter,gyro,force,torque,magnetometer,camprojection,rangefinder,jointpos,jointvel: \
     | @sensed data
@@ -142,7 +142,7 @@ keyframe/key: | act ctrl mpos mquat name plastic qpos qvel time
 ";
 
 /// Elements that are rejected or skipped with all their contents.
-const WHOLE: [&str; 10] = [
+pub(in crate::import) const WHOLE: [&str; 10] = [
     "composite",
     "flexcomp",
     "replicate",
@@ -198,7 +198,7 @@ pub(super) fn check(root: Node<'_>, cx: &mut Cx<'_>) {
     while let Some(node) = open.pop() {
         check_attributes(node, &schema, cx);
         let mut children = Vec::new();
-        for child in elements(node) {
+        for child in child_elements(node) {
             let name = child.tag_name().name();
             if WHOLE.contains(&name) {
                 continue;
@@ -226,7 +226,7 @@ fn check_names(root: Node<'_>, cx: &mut Cx<'_>) {
                 || (node.tag_name().name() == kind && ["worldbody", "body", "frame"].contains(&parent))
         };
         let named = root.descendants().filter(|node| node.has_attribute("name") && is_kind(node));
-        let names: Vec<Name> = named.filter_map(|node| name(node, "name", cx)).collect();
+        let names: Vec<Name> = named.filter_map(|node| read_name_attribute(node, "name", cx)).collect();
         check_unique(names.iter(), kind, cx);
     }
 }
@@ -272,10 +272,12 @@ fn check_attributes(node: Node<'_>, schema: &BTreeMap<String, Attributes>, cx: &
             continue;
         }
         let absent: Vec<&str> = known.iter().copied().filter(|name| !node.has_attribute(*name)).collect();
-        let message = format!("unknown attribute {} of {}", quote(attribute.name()), tag(node));
-        cx.error(&cx.place(attribute.range().start), message, |d| match nearest(attribute.name(), &absent) {
-            Some(best) => d.help(format!("did you mean `{best}`?")),
-            None => d.help("MuJoCo 4.0 does not know it either: remove it"),
+        let message = format!("unknown attribute {} of {}", quote_word(attribute.name()), quoted_tag(node));
+        cx.report_error(&cx.source_position(attribute.range().start), message, |d| {
+            match nearest_candidate(attribute.name(), &absent) {
+                Some(best) => d.add_help(format!("did you mean `{best}`?")),
+                None => d.add_help("MuJoCo 4.0 does not know it either: remove it"),
+            }
         });
     }
 }
@@ -287,9 +289,9 @@ fn report_element(node: Node<'_>, parent: &str, schema: &BTreeMap<String, Attrib
         _ => known.strip_prefix(parent),
     });
     let siblings: Vec<&str> = siblings.collect();
-    let message = format!("unknown element {}", tag(node));
-    cx.error(&place(node, cx), message, |d| match nearest(name, &siblings) {
-        Some(best) => d.help(format!("did you mean `<{best}>`?")),
-        None => d.help("MuJoCo 4.0 does not know it here either: remove it"),
+    let message = format!("unknown element {}", quoted_tag(node));
+    cx.report_error(&element_position(node, cx), message, |d| match nearest_candidate(name, &siblings) {
+        Some(best) => d.add_help(format!("did you mean `<{best}>`?")),
+        None => d.add_help("MuJoCo 4.0 does not know it here either: remove it"),
     });
 }

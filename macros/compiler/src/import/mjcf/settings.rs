@@ -1,8 +1,10 @@
 //! `<compiler>` and `<option>`: settings for the interpretation of the file.
 
 use super::defaults::{choice, some};
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, elements, number, numbers, place};
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{
+    Node, child_elements, element_position, read_number_attribute, read_numbers_attribute,
+};
 use crate::import::imported::Placed;
 
 /// Source of mass properties.
@@ -83,7 +85,7 @@ impl Settings {
             least_inertia: 0.0,
             total_mass: None,
             meshes: String::new(),
-            gravity: Placed { value: [0.0, 0.0, -9.81], place: place(root, cx) },
+            gravity: Placed { value: [0.0, 0.0, -9.81], place: element_position(root, cx) },
             gravitates: true,
             medium: Vec::new(),
             springs: true,
@@ -99,7 +101,7 @@ impl Settings {
             align_free: false,
             strip_paths: false,
         };
-        for node in elements(root) {
+        for node in child_elements(root) {
             match node.tag_name().name() {
                 "compiler" => all.read_compiler(node, cx),
                 "option" => all.read_option(node, cx),
@@ -121,9 +123,9 @@ impl Settings {
         let mut unknown = |attribute: &str, expected: &str| {
             let value = node.attribute_node(attribute);
             let at = value.map_or(node.range().start, |value| value.range_value().start);
-            let found = quote(node.attribute(attribute).unwrap_or_default());
+            let found = quote_word(node.attribute(attribute).unwrap_or_default());
             let message = format!("unknown `{attribute}` {found}");
-            cx.error(&cx.place(at), message, |d| d.help(format!("expected {expected}")));
+            cx.report_error(&cx.source_position(at), message, |d| d.add_help(format!("expected {expected}")));
         };
         match word("angle") {
             Some("radian") => self.degrees = false,
@@ -160,17 +162,17 @@ impl Settings {
         self.balance = choice(node, "balanceinertia", cx).unwrap_or(self.balance);
         self.align_free = choice(node, "alignfree", cx).unwrap_or(self.align_free);
         self.strip_paths = choice(node, "strippath", cx).unwrap_or(self.strip_paths);
-        if let Some(groups) = numbers(node, "inertiagrouprange", cx) {
+        if let Some(groups) = read_numbers_attribute(node, "inertiagrouprange", cx) {
             self.groups = groups.value;
         }
         let mut set = |attribute: &str, to: &mut f64| {
-            if let Some(found) = number(node, attribute, cx) {
+            if let Some(found) = read_number_attribute(node, attribute, cx) {
                 *to = found.value;
             }
         };
         set("boundmass", &mut self.least_mass);
         set("boundinertia", &mut self.least_inertia);
-        self.total_mass = number(node, "settotalmass", cx)
+        self.total_mass = read_number_attribute(node, "settotalmass", cx)
             .map(|mass| mass.value)
             .or(self.total_mass)
             .filter(|mass| *mass > 0.0);
@@ -183,7 +185,7 @@ impl Settings {
     }
 
     fn read_option(&mut self, node: Node<'_>, cx: &mut Cx<'_>) {
-        if let Some(gravity) = numbers(node, "gravity", cx) {
+        if let Some(gravity) = read_numbers_attribute(node, "gravity", cx) {
             self.gravity = gravity;
         }
         for which in ["density", "viscosity", "wind"] {
@@ -194,17 +196,19 @@ impl Settings {
             }
         }
         if let Some(found) = node.attribute_node("actuatorgroupdisable") {
-            let place = cx.place(found.range_value().start);
+            let place = cx.source_position(found.range_value().start);
             let groups = found.value().split_ascii_whitespace().map(|word| word.parse::<u8>().ok());
             match groups.map(|group| group.filter(|group| *group <= 30).map(f64::from)).collect() {
                 Some(groups) => self.disabled_groups = groups,
                 None => {
-                    let message = format!("`actuatorgroupdisable` is {}", quote(found.value()));
-                    cx.error(&place, message, |d| d.help("expected numbers of groups from 0 to 30"));
+                    let message = format!("`actuatorgroupdisable` is {}", quote_word(found.value()));
+                    cx.report_error(&place, message, |d| {
+                        d.add_help("expected numbers of groups from 0 to 30")
+                    });
                 }
             }
         }
-        for flag in elements(node).filter(|child| child.tag_name().name() == "flag") {
+        for flag in child_elements(node).filter(|child| child.tag_name().name() == "flag") {
             self.read_flag(flag, cx);
         }
     }

@@ -1,12 +1,12 @@
 //! Actuators on sites: a force and a torque in the axes of the site, or in the axes of a reference site,
 //! which receives the reaction.
 
+use super::activation::OTHER_INPUTS;
 use super::defaults::Element;
-use super::law::OTHER_INPUTS;
 use super::reader::Reader;
 use super::spatial::Spot;
-use crate::import::context::{Cx, quote};
-use crate::import::pose::{Vector, apply};
+use crate::import::context::{Cx, quote_word};
+use crate::import::pose::{Vector, matrix_times_vector};
 use crate::syntax::{BinaryOp, DriveOn, Expr, ExprKind, GROUND, Name, Wrench};
 
 impl<'a> Reader<'a> {
@@ -26,30 +26,36 @@ impl<'a> Reader<'a> {
         let turns = force == [0.0; 3];
         let at = &site.place;
         let Some(other) = element.name("refsite", cx) else {
-            let in_body = |vector| apply(&spot.pose.axes, vector);
+            let in_body = |vector| matrix_times_vector(&spot.pose.axes, vector);
             let (force, torque) = (in_body(force), in_body(torque));
             let wrench = Wrench { on: spot.expression(at), force, torque, against: None };
             return Some((DriveOn::Wrench(wrench), turns));
         };
         let against = self.find_site(&other, cx)?;
         if !self.carries(&against.body, &spot.body) {
-            let message =
-                format!("a `refsite` that does not carry the site {} is not supported", quote(&site.text));
-            cx.error(&other.place, message, |d| d.help(OTHER_INPUTS));
+            let message = format!(
+                "a `refsite` that does not carry the site {} is not supported",
+                quote_word(&site.text)
+            );
+            cx.report_error(&other.place, message, |d| d.add_help(OTHER_INPUTS));
             return None;
         }
         if servo && torque != [0.0; 3] {
             let message = "a servo on the orientation of a site is not supported";
-            cx.error(&element.place("gear", cx), message, |d| d.help(OTHER_INPUTS));
+            cx.report_error(&element.place("gear", cx), message, |d| d.add_help(OTHER_INPUTS));
             return None;
         }
-        let in_body = |vector| apply(&against.pose.axes, vector);
+        let in_body = |vector| matrix_times_vector(&against.pose.axes, vector);
         let (force, torque) = (in_body(force), in_body(torque));
         if torque == [0.0; 3] {
-            let path = Expr::binary(BinaryOp::Div, spot.expression(at), against.expression(at));
-            let path = Expr::call("r", vec![path], at);
+            let path = Expr::binary_operation(BinaryOp::Div, spot.expression(at), against.expression(at));
+            let path = Expr::function_call_at("r", vec![path], at);
             return Some((
-                DriveOn::Length(Expr::call("dot", vec![path, against.vector_expression(force, at)], at)),
+                DriveOn::Length(Expr::function_call_at(
+                    "dot",
+                    vec![path, against.vector_expression(force, at)],
+                    at,
+                )),
                 turns,
             ));
         }
@@ -79,7 +85,10 @@ impl Spot {
             Expr { kind: ExprKind::Field(Box::new(body), name), place: at.clone() }
         };
         let terms = (0..3).filter(|k| vector[*k] != 0.0);
-        let terms = terms.map(|k| Expr::binary(BinaryOp::Mul, Expr::number(vector[k], at), axis(k)));
-        terms.reduce(|a, b| Expr::binary(BinaryOp::Add, a, b)).unwrap_or_else(|| Expr::vector([0.0; 3], at))
+        let terms =
+            terms.map(|k| Expr::binary_operation(BinaryOp::Mul, Expr::number_at(vector[k], at), axis(k)));
+        terms
+            .reduce(|a, b| Expr::binary_operation(BinaryOp::Add, a, b))
+            .unwrap_or_else(|| Expr::vector_at([0.0; 3], at))
     }
 }

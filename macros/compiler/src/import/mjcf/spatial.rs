@@ -9,9 +9,12 @@ use super::defaults::Element;
 use super::geometry::dimensions;
 use super::reader::Reader;
 use crate::diag::Place;
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, check_attributes, elements, name, number, place, tag};
-use crate::import::pose::{Pose, Vector, add, apply, cross, dot, length, scale};
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{
+    Node, check_attributes, child_elements, element_position, quoted_tag, read_name_attribute,
+    read_number_attribute,
+};
+use crate::import::pose::{Pose, Vector, add, cross, dot, length, matrix_times_vector, scale_vector};
 use crate::syntax::{BinaryOp, Expr, ExprKind, Name};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -73,11 +76,11 @@ impl<'a> Reader<'a> {
         let (mut pieces, mut last, mut pending, mut share) = (Vec::new(), None::<Spot>, None, 1.0);
         let mut refused = None;
         check_path(node, cx)?;
-        for child in elements(node) {
+        for child in child_elements(node) {
             match child.tag_name().name() {
                 "site" => {
                     check_attributes(child, &["site"], &[], cx);
-                    let next = self.find_site(&name(child, "site", cx)?, cx)?;
+                    let next = self.find_site(&read_name_attribute(child, "site", cx)?, cx)?;
                     if let Some(first) = last.replace(next.clone()) {
                         pieces.push(Piece { ends: [first, next], around: pending.take(), share });
                     }
@@ -97,18 +100,22 @@ impl<'a> Reader<'a> {
                     if pending.is_some() {
                         return unfinished(child, cx);
                     }
-                    let divisor = number(child, "divisor", cx)?;
+                    let divisor = read_number_attribute(child, "divisor", cx)?;
                     if divisor.value <= 0.0 {
                         let message = format!("a pulley with the divisor {}", divisor.value);
-                        cx.error(&divisor.place, message, |d| d.help("expected a number above zero"));
+                        cx.report_error(&divisor.place, message, |d| {
+                            d.add_help("expected a number above zero")
+                        });
                         return None;
                     }
                     (share, last) = (1.0 / divisor.value, None);
                 }
                 _ => {
-                    let message = format!("unknown element {}", tag(child));
+                    let message = format!("unknown element {}", quoted_tag(child));
                     let known = ["site", "geom", "pulley"];
-                    cx.error(&place(child, cx), message, |d| d.suggest(child.tag_name().name(), known));
+                    cx.report_error(&element_position(child, cx), message, |d| {
+                        d.suggest_name(child.tag_name().name(), known)
+                    });
                     return None;
                 }
             }
@@ -116,7 +123,7 @@ impl<'a> Reader<'a> {
         if pending.is_some() {
             return unfinished(node, cx);
         }
-        let mut path = Path { pieces, place: place(node, cx) };
+        let mut path = Path { pieces, place: element_position(node, cx) };
         for piece in &mut path.pieces {
             refused = refused.or(self.choose_side(piece, &path.place));
         }
@@ -128,8 +135,8 @@ impl<'a> Reader<'a> {
         let found = self.poses_of_sites.get(&site.text);
         if found.is_none() {
             let known = self.poses_of_sites.keys().map(String::as_str);
-            let message = format!("unknown site {}", quote(&site.text));
-            cx.error(&site.place, message, |d| d.suggest(&site.text, known));
+            let message = format!("unknown site {}", quote_word(&site.text));
+            cx.report_error(&site.place, message, |d| d.suggest_name(&site.text, known));
         }
         found.map(|(body, pose)| Spot { body: body.clone(), pose: *pose })
     }
@@ -138,37 +145,44 @@ impl<'a> Reader<'a> {
     /// `Way::Turning` temporarily contains the polar angle of that site; `choose_side` replaces it by the
     /// direction.
     fn surface(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Option<Result<Around, Refusal>> {
-        let said = name(node, "geom", cx)?;
+        let said = read_name_attribute(node, "geom", cx)?;
         let Some((body, shape, outer)) = self.named_shapes.get(&said.text) else {
             let known = self.named_shapes.keys().map(String::as_str);
-            let message = format!("unknown geom {}", quote(&said.text));
-            cx.error(&said.place, message, |d| d.suggest(&said.text, known));
+            let message = format!("unknown geom {}", quote_word(&said.text));
+            cx.report_error(&said.place, message, |d| d.suggest_name(&said.text, known));
             return None;
         };
         let kind = shape.text("type").unwrap_or("sphere");
         if !["sphere", "cylinder"].contains(&kind) {
-            let message =
-                format!("a tendon wraps around spheres and cylinders, but {} is neither", quote(&said.text));
-            cx.error(&said.place, message, |d| d);
+            let message = format!(
+                "a tendon wraps around spheres and cylinders, but {} is neither",
+                quote_word(&said.text)
+            );
+            cx.report_error(&said.place, message, |d| d);
             return None;
         }
         let (pose, [radius, ..]) = dimensions(kind, shape, &self.settings, cx)?;
-        let frame = Spot { body: body.clone(), pose: outer.then(&pose) };
-        let Some(side) = node.has_attribute("sidesite").then(|| name(node, "sidesite", cx)).flatten() else {
+        let frame = Spot { body: body.clone(), pose: outer.compose_with(&pose) };
+        let Some(side) =
+            node.has_attribute("sidesite").then(|| read_name_attribute(node, "sidesite", cx)).flatten()
+        else {
             let way = if kind == "sphere" { CablePath::Ball } else { CablePath::Shorter };
             return Some(Ok(Around { frame, radius, way }));
         };
         let spot = self.find_site(&side, cx)?;
         let refusal = |message: String| Some(Err(Refusal { place: side.place.clone(), message }));
         if kind == "sphere" {
-            return refusal(format!("the side on which a tendon passes the sphere {}", quote(&said.text)));
+            return refusal(format!(
+                "the side on which a tendon passes the sphere {}",
+                quote_word(&said.text)
+            ));
         }
         let [x, y, z] = self.seen_from(&frame, &spot);
         if length([x, y, z]) < radius {
-            return refusal(format!("a tendon that runs inside of the cylinder {}", quote(&said.text)));
+            return refusal(format!("a tendon that runs inside of the cylinder {}", quote_word(&said.text)));
         }
         // Polar angle of the side, until the ends of the segment are known.
-        Some(Ok(Around { frame, radius, way: CablePath::Turning(y.atan2(x)) }))
+        Some(Ok(Around { frame, radius, way: CablePath::Turning(libm::atan2(y, x)) }))
     }
 
     /// Returns the position of a spot relative to a frame, in the configuration of the file.
@@ -183,13 +197,13 @@ impl<'a> Reader<'a> {
             return None;
         };
         let [a, b] = [&piece.ends[0], &piece.ends[1]].map(|end| self.seen_from(frame, end));
-        let [far_a, far_b] = [a, b].map(|[x, y, _]| x.hypot(y));
+        let [far_a, far_b] = [a, b].map(|[x, y, _]| libm::hypot(x, y));
         if far_a < *radius || far_b < *radius {
             let message = "a tendon that begins inside of a cylinder in the pose of the file".to_string();
             return Some(Refusal { place: place.clone(), message });
         }
-        let angle = |[x, y, _]: Vector| y.atan2(x);
-        let shortest = |angle: f64| angle.sin().atan2(angle.cos());
+        let angle = |[x, y, _]: Vector| libm::atan2(y, x);
+        let shortest = |angle: f64| libm::atan2(libm::sin(angle), libm::cos(angle));
         let winding = shortest(*side - angle(a)) + shortest(angle(b) - *side);
         *side = if winding >= 0.0 { 1.0 } else { -1.0 };
         None
@@ -208,14 +222,14 @@ impl<'a> Reader<'a> {
 
 /// Returns the position of a spot relative to a frame for given poses of the bodies.
 fn seen(poses: &Poses, frame: &Spot, spot: &Spot) -> Vector {
-    let world = |spot: &Spot| poses.get(&spot.body).map_or(spot.pose, |body| body.then(&spot.pose));
-    world(frame).back().then(&world(spot)).at
+    let world = |spot: &Spot| poses.get(&spot.body).map_or(spot.pose, |body| body.compose_with(&spot.pose));
+    world(frame).inverse_pose().compose_with(&world(spot)).at
 }
 
 /// Reports what adds no length to a path, as MuJoCo does: sites without a neighbour on their part of the
 /// path, pulleys that no site follows, and a path without elements.
 fn check_path(node: Node<'_>, cx: &mut Cx<'_>) -> Option<()> {
-    let parts: Vec<Node<'_>> = elements(node).collect();
+    let parts: Vec<Node<'_>> = child_elements(node).collect();
     let is_end = |part: Option<&Node<'_>>| part.is_none_or(|part| part.tag_name().name() == "pulley");
     let is_alone = |k: &usize| match parts[*k].tag_name().name() {
         "site" => is_end(k.checked_sub(1).and_then(|k| parts.get(k))) && is_end(parts.get(k + 1)),
@@ -224,15 +238,17 @@ fn check_path(node: Node<'_>, cx: &mut Cx<'_>) -> Option<()> {
     };
     let found = (0..parts.len()).find(is_alone).map(|k| parts[k]);
     let Some(found) = found.or(parts.is_empty().then_some(node)) else { return Some(()) };
-    let message = format!("{} adds nothing to the length of the tendon", tag(found));
-    cx.error(&place(found, cx), message, |d| d.help("a tendon and each part behind a pulley has two sites"));
+    let message = format!("{} adds nothing to the length of the tendon", quoted_tag(found));
+    cx.report_error(&element_position(found, cx), message, |d| {
+        d.add_help("a tendon and each part behind a pulley has two sites")
+    });
     None
 }
 
 /// Reports a surface in a path that is not between two sites.
 fn unfinished<T>(node: Node<'_>, cx: &mut Cx<'_>) -> Option<T> {
-    cx.error(&place(node, cx), "a tendon runs around a shape between two sites", |d| {
-        d.help("write `<site/>`, `<geom/>`, `<site/>`")
+    cx.report_error(&element_position(node, cx), "a tendon runs around a shape between two sites", |d| {
+        d.add_help("write `<site/>`, `<geom/>`, `<site/>`")
     });
     None
 }
@@ -248,10 +264,11 @@ impl Path {
         let at = &self.place;
         let sum = self.pieces.iter().map(|piece| {
             let whole = piece.expression(at);
-            let share = || Expr::number(piece.share, at);
-            if piece.share == 1.0 { whole } else { Expr::binary(BinaryOp::Mul, share(), whole) }
+            let share = || Expr::number_at(piece.share, at);
+            if piece.share == 1.0 { whole } else { Expr::binary_operation(BinaryOp::Mul, share(), whole) }
         });
-        sum.reduce(|a, b| Expr::binary(BinaryOp::Add, a, b)).unwrap_or_else(|| Expr::number(0.0, at))
+        sum.reduce(|a, b| Expr::binary_operation(BinaryOp::Add, a, b))
+            .unwrap_or_else(|| Expr::number_at(0.0, at))
     }
 }
 
@@ -266,22 +283,25 @@ impl Piece {
 
     fn expression(&self, at: &Place) -> Expr {
         let [a, b] = [&self.ends[0], &self.ends[1]].map(|end| end.expression(at));
-        let ends = || Expr::binary(BinaryOp::Div, a.clone(), b.clone());
+        let ends = || Expr::binary_operation(BinaryOp::Div, a.clone(), b.clone());
         let Some(around) = &self.around else {
-            return Expr::call("norm", vec![Expr::call("r", vec![ends()], at)], at);
+            return Expr::function_call_at("norm", vec![Expr::function_call_at("r", vec![ends()], at)], at);
         };
         let cable = |word: &str, mut arguments: Vec<Expr>| {
-            arguments.insert(0, Expr::number(around.radius, at));
-            let surface = Expr::method(around.frame.expression(at), word, arguments);
-            Expr::call("cable", vec![ends(), surface], at)
+            arguments.insert(0, Expr::number_at(around.radius, at));
+            let surface = Expr::method_call(around.frame.expression(at), word, arguments);
+            Expr::function_call_at("cable", vec![ends(), surface], at)
         };
-        let axis = |sign: f64| Expr::vector(apply(&around.frame.pose.axes, [0.0, 0.0, sign]), at);
+        let axis =
+            |sign: f64| Expr::vector_at(matrix_times_vector(&around.frame.pose.axes, [0.0, 0.0, sign]), at);
         match around.way {
             CablePath::Ball => cable("sphere", Vec::new()),
             CablePath::Turning(sign) => cable("cylinder", vec![axis(sign)]),
-            CablePath::Shorter => {
-                Expr::call("min", [1.0, -1.0].map(|sign| cable("cylinder", vec![axis(sign)])).into(), at)
-            }
+            CablePath::Shorter => Expr::function_call_at(
+                "min",
+                [1.0, -1.0].map(|sign| cable("cylinder", vec![axis(sign)])).into(),
+                at,
+            ),
         }
     }
 }
@@ -293,16 +313,16 @@ impl Around {
         let flat = |[x, y, _]: Vector| [x, y, 0.0];
         let round = |a: Vector, b: Vector, angle: f64| {
             let tangents = [a, b].map(|p| (dot(p, p) - self.radius * self.radius).max(0.0).sqrt());
-            let touched = tangents.iter().fold(angle, |angle, t| angle - t.atan2(self.radius));
-            let straight = length(add(a, scale(b, -1.0)));
+            let touched = tangents.iter().fold(angle, |angle, t| angle - libm::atan2(*t, self.radius));
+            let straight = length(add(a, scale_vector(b, -1.0)));
             if touched > 0.0 { tangents[0] + tangents[1] + self.radius * touched } else { straight }
         };
         let turning = |sign: f64| {
-            let angle = (-sign * cross(a, b)[2]).atan2(-dot(flat(a), flat(b))) + PI;
-            round(flat(a), flat(b), angle).hypot(a[2] - b[2])
+            let angle = libm::atan2(-sign * cross(a, b)[2], -dot(flat(a), flat(b))) + PI;
+            libm::hypot(round(flat(a), flat(b), angle), a[2] - b[2])
         };
         match self.way {
-            CablePath::Ball => round(a, b, length(cross(a, b)).atan2(dot(a, b))),
+            CablePath::Ball => round(a, b, libm::atan2(length(cross(a, b)), dot(a, b))),
             CablePath::Turning(sign) => turning(sign),
             CablePath::Shorter => turning(1.0).min(turning(-1.0)),
         }
@@ -316,6 +336,6 @@ impl Spot {
         if self.pose.at == [0.0; 3] {
             return body;
         }
-        Expr::method(body, "at", vec![Expr::vector(self.pose.at, at)])
+        Expr::method_call(body, "at", vec![Expr::vector_at(self.pose.at, at)])
     }
 }

@@ -4,8 +4,11 @@ use super::defaults::{Element, some};
 use super::joint::{IGNORE_PASSIVE, refuse_yield};
 use super::reader::Reader;
 use super::spatial::Refusal;
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, check_attributes, elements, name, number, place, tag};
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{
+    Node, check_attributes, child_elements, element_position, quoted_tag, read_name_attribute,
+    read_number_attribute,
+};
 use crate::import::robot::has_coordinate;
 use crate::syntax::{Drive, DriveLaw, DriveOn, Name};
 use std::collections::BTreeSet;
@@ -21,8 +24,8 @@ impl Tendon {
         let found = tendons.iter().find(|known| known.name.text == name.text);
         if found.is_none() {
             let known = tendons.iter().map(|known| known.name.text.as_str());
-            let message = format!("unknown tendon {}", quote(&name.text));
-            cx.error(&name.place, message, |d| d.suggest(&name.text, known));
+            let message = format!("unknown tendon {}", quote_word(&name.text));
+            cx.report_error(&name.place, message, |d| d.suggest_name(&name.text, known));
         }
         found
     }
@@ -38,8 +41,8 @@ impl Tendon {
         match &Tendon::find(name, tendons, cx)?.path {
             Ok(DriveOn::Sum(terms)) => Some(terms.clone()),
             _ => {
-                let message = format!("tendon {} is spatial and cannot be coupled", quote(&name.text));
-                cx.error(&name.place, message, |d| d.help(help));
+                let message = format!("tendon {} is spatial and cannot be coupled", quote_word(&name.text));
+                cx.report_error(&name.place, message, |d| d.add_help(help));
                 None
             }
         }
@@ -65,7 +68,9 @@ fn taken_over<'t>(
     match path {
         Ok(on) => Some(on),
         Err(refusal) => {
-            cx.error(&refusal.place, format!("{} is not supported", refusal.message), |d| d.help(help));
+            cx.report_error(&refusal.place, format!("{} is not supported", refusal.message), |d| {
+                d.add_help(help)
+            });
             None
         }
     }
@@ -74,8 +79,8 @@ fn taken_over<'t>(
 impl<'a> Reader<'a> {
     /// Reads all tendons with their springs and dampers.
     pub(super) fn tendons(&mut self, root: Node<'a>, cx: &mut Cx<'_>) -> Vec<Tendon> {
-        let groups = elements(root).filter(|node| node.tag_name().name() == "tendon");
-        let nodes: Vec<Node<'a>> = groups.flat_map(elements).collect();
+        let groups = child_elements(root).filter(|node| node.tag_name().name() == "tendon");
+        let nodes: Vec<Node<'a>> = groups.flat_map(child_elements).collect();
         nodes.into_iter().filter_map(|node| self.tendon(node, cx)).collect()
     }
 
@@ -87,8 +92,9 @@ impl<'a> Reader<'a> {
             _ => return None,
         };
         let element = self.defaults.element(node, &["tendon"], 0, cx);
-        let said = node.has_attribute("name").then(|| name(node, "name", cx)).flatten();
-        let named = said.unwrap_or_else(|| Name { text: "tendon".to_string(), place: place(node, cx) });
+        let said = node.has_attribute("name").then(|| read_name_attribute(node, "name", cx)).flatten();
+        let named =
+            said.unwrap_or_else(|| Name { text: "tendon".to_string(), place: element_position(node, cx) });
         let (path, rest) = if fixed {
             let terms = self.terms(node, cx);
             let rest_position = |joint: &Name| self.rests.get(&joint.text).copied().unwrap_or(0.0);
@@ -109,18 +115,18 @@ impl<'a> Reader<'a> {
         let mut laws = Vec::new();
         if let Some(found) = element.nonzero("armature", cx) {
             if found.value < 0.0 {
-                cx.error(&found.place, format!("negative armature `{}`", found.value), |d| d);
+                cx.report_error(&found.place, format!("negative armature `{}`", found.value), |d| d);
             }
             laws.push((DriveLaw::Inerter(found.value), "write `armature=\"0\"` into the tendon"));
         }
         if self.springs {
             refuse_yield(&element, cx);
-            let stiffness = element.linear("stiffness", IGNORE_PASSIVE, cx);
+            let stiffness = element.polynomial("stiffness", cx);
             laws.extend(stiffness.map(|k| (spring(k.value, &element, rest, cx), IGNORE_PASSIVE)));
         }
         if self.dampers {
-            let damping = element.linear("damping", IGNORE_PASSIVE, cx);
-            laws.extend(damping.map(|found| (DriveLaw::Damper(found.value), IGNORE_PASSIVE)));
+            let damping = element.polynomial("damping", cx);
+            laws.extend(damping.map(|found| (DriveLaw::damper(found.value), IGNORE_PASSIVE)));
         }
         if self.friction {
             let loss = element.nonzero("frictionloss", cx);
@@ -130,27 +136,30 @@ impl<'a> Reader<'a> {
             && let Some(on) = taken_over(&path, help, cx)
         {
             let drive = |law| Drive { name: named.clone(), on: on.clone(), law };
-            self.robot.drives.extend(laws.iter().map(|(law, _)| drive(*law)));
+            self.robot.drives.extend(laws.iter().map(|(law, _)| drive(law.clone())));
         }
         Some(Tendon { name: named, path })
     }
 
     fn terms(&self, node: Node<'a>, cx: &mut Cx<'_>) -> Vec<(Name, f64)> {
         let (mut terms, mut known) = (Vec::new(), BTreeSet::new());
-        if elements(node).next().is_none() {
-            let message = format!("{} without a joint", tag(node));
-            cx.error(&place(node, cx), message, |d| d.help("expected `<joint joint=\"…\" coef=\"…\"/>`"));
+        if child_elements(node).next().is_none() {
+            let message = format!("{} without a joint", quoted_tag(node));
+            cx.report_error(&element_position(node, cx), message, |d| {
+                d.add_help("expected `<joint joint=\"…\" coef=\"…\"/>`")
+            });
         }
-        for child in elements(node) {
+        for child in child_elements(node) {
             check_attributes(child, &["joint", "coef"], &[], cx);
-            let joint = name(child, "joint", cx).filter(|joint| self.check_joint(joint, "pull on", cx));
+            let joint = read_name_attribute(child, "joint", cx)
+                .filter(|joint| self.check_joint(joint, "pull on", cx));
             if let Some(joint) = &joint
                 && !known.insert(joint.text.clone())
             {
-                let message = format!("joint {} occurs twice in one tendon", quote(&joint.text));
-                cx.error(&joint.place, message, |d| d.help("add its two coefficients"));
+                let message = format!("joint {} occurs twice in one tendon", quote_word(&joint.text));
+                cx.report_error(&joint.place, message, |d| d.add_help("add its two coefficients"));
             }
-            let weight = number(child, "coef", cx).map(|weight| weight.value);
+            let weight = read_number_attribute(child, "coef", cx).map(|weight| weight.value);
             terms.extend(joint.zip(weight).filter(|(_, weight)| *weight != 0.0));
         }
         terms
@@ -161,17 +170,17 @@ impl<'a> Reader<'a> {
         let Some(found) = self.robot.joints.iter().find(|known| known.name.text == joint.text) else {
             let known = self.robot.joints.iter().filter(|joint| has_coordinate(joint.kind));
             let known: Vec<&str> = known.map(|joint| joint.name.text.as_str()).collect();
-            let message = format!("unknown joint {}", quote(&joint.text));
-            cx.error(&joint.place, message, |d| d.suggest(&joint.text, known.iter().copied()));
+            let message = format!("unknown joint {}", quote_word(&joint.text));
+            cx.report_error(&joint.place, message, |d| d.suggest_name(&joint.text, known.iter().copied()));
             return false;
         };
         if !found.has_coordinate() {
             let message = format!(
                 "joint {} is `{}`: a joint with several coordinates cannot {verb}",
-                quote(&joint.text),
+                quote_word(&joint.text),
                 found.word
             );
-            cx.error(&joint.place, message, |d| d.help("expected a `hinge` or a `slide`"));
+            cx.report_error(&joint.place, message, |d| d.add_help("expected a `hinge` or a `slide`"));
             return false;
         }
         true
@@ -181,7 +190,7 @@ impl<'a> Reader<'a> {
 /// Reads the spring of a tendon. The attribute `springlength` specifies its free length or a range of free
 /// lengths; −1 means that neither is specified. In this case the free length is that in the configuration in
 /// which all joint springs are relaxed.
-fn spring(stiffness: f64, element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> DriveLaw {
+fn spring(stiffness: [f64; 3], element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> DriveLaw {
     const NONE: f64 = -1.0;
     // A single length is the range of two equal ones, even if the defaults have two different ones.
     let found =
@@ -190,13 +199,13 @@ fn spring(stiffness: f64, element: &Element<'_>, rest: f64, cx: &mut Cx<'_>) -> 
     let high = if high.is_nan() { low } else { high };
     if let Some(found) = found.filter(|_| high < low) {
         let message = format!("`springlength` from {low} to {high}, which is below it");
-        cx.error(&found.place, message, |d| {
-            d.help("expected one length, or two from the smaller to the larger")
+        cx.report_error(&found.place, message, |d| {
+            d.add_help("expected one length, or two from the smaller to the larger")
         });
     }
     match [low, high] {
-        [NONE, NONE] => DriveLaw::Spring { stiffness, free: rest },
+        [NONE, NONE] => DriveLaw::spring(stiffness, rest),
         [low, high] if low < high => DriveLaw::Slack { stiffness, range: [low, high] },
-        [low, _] => DriveLaw::Spring { stiffness, free: low },
+        [low, _] => DriveLaw::spring(stiffness, low),
     }
 }

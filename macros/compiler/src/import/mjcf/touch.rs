@@ -3,7 +3,7 @@
 use super::defaults::Element;
 use crate::diag::Place;
 use crate::import::context::Cx;
-use crate::import::pose::{Pose, apply};
+use crate::import::pose::{Pose, matrix_times_vector};
 use crate::syntax::{Contact, Expr, ExprKind, GROUND, Key, Name, WrittenArguments};
 use std::cmp::Ordering;
 
@@ -43,9 +43,11 @@ impl Law {
         for which in ["adhesion", "surfacevel"] {
             let found = shape.some(which, [0.0; 6], cx);
             if let Some(found) = found.filter(|found| found.value != [0.0; 6]) {
-                cx.error(&found.place, format!("`{which}` of a colliding shape is not supported"), |d| {
-                    d.help("to ignore the contacts of the file, remove `contacts = file`")
-                });
+                cx.report_error(
+                    &found.place,
+                    format!("`{which}` of a colliding shape is not supported"),
+                    |d| d.add_help("to ignore the contacts of the file, remove `contacts = file`"),
+                );
             }
         }
         let mut of =
@@ -91,16 +93,16 @@ impl CollisionShape {
         let at = &self.place;
         let as_name = |text: &str| Name { text: text.to_string(), place: at.clone() };
         let body = |text: &str| Expr { kind: ExprKind::Name(text.to_string()), place: at.clone() };
-        let method = |of: Expr, word: &str, argument: Expr| Expr::method(of, word, vec![argument]);
-        let normal = Expr::vector(apply(&plane.pose.axes, [0.0, 0.0, 1.0]), at);
-        let point = method(body(GROUND), "at", Expr::vector(plane.pose.at, at));
-        let coefficient = |number: f64| (number != 0.0).then(|| Expr::number(number, at));
+        let method = |of: Expr, word: &str, argument: Expr| Expr::method_call(of, word, vec![argument]);
+        let normal = Expr::vector_at(matrix_times_vector(&plane.pose.axes, [0.0, 0.0, 1.0]), at);
+        let point = method(body(GROUND), "at", Expr::vector_at(plane.pose.at, at));
+        let coefficient = |number: f64| (number != 0.0).then(|| Expr::number_at(number, at));
         let keys = [Key::Friction, Key::TorsionalFriction, Key::RollingFriction];
         let values = self.law.friction_with(&plane.law).map(coefficient);
         let given = keys.into_iter().zip(values).filter_map(|(key, value)| Some((key, value?)));
         Contact {
             name: as_name(&name),
-            first: method(body(link), "collision", Expr::number(self.number as f64, at)),
+            first: method(body(link), "collision", Expr::number_at(self.number as f64, at)),
             second: method(point, "plane", normal),
             arguments: WrittenArguments(given.collect()),
             of_file: true,

@@ -4,7 +4,7 @@ use super::body::Shaped;
 use super::defaults::Element;
 use super::reader::{Reader, origin};
 use crate::import::context::Cx;
-use crate::import::element::place;
+use crate::import::element::element_position;
 use crate::import::pose::Pose;
 use crate::import::robot::FileVisual;
 use crate::syntax::{Mesh, Shape};
@@ -24,8 +24,8 @@ impl<'a> Reader<'a> {
         let seen = if seen.is_empty() { shapes.iter().collect() } else { seen };
         for (shape, outer) in seen {
             let Some((kind, mesh, pose)) = self.visual(shape, cx) else { continue };
-            let at = place(shape.node, cx);
-            let part = FileVisual { origin: origin(&outer.then(&pose), &at), shape: kind, mesh };
+            let at = element_position(shape.node, cx);
+            let part = FileVisual { origin: origin(&outer.compose_with(&pose), &at), shape: kind, mesh };
             self.robot.visuals.push((link, part));
         }
     }

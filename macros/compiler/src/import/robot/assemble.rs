@@ -5,10 +5,10 @@ use super::couplings;
 use super::drives;
 use super::joint::FileJoint;
 use super::motion::Motion;
-use super::names::unused;
+use super::names::unused_name;
 use super::parts::Robot;
 use super::tree::Order;
-use crate::import::context::{Cx, quote};
+use crate::import::context::{Cx, quote_word};
 use crate::import::imported::Imported;
 use crate::syntax::{
     Base, Body, Endpoint, Expr, FileOptions, GROUND, InputOption, Joint, JointKind, LimitOption, Name,
@@ -57,6 +57,14 @@ pub(in crate::import) fn assemble(
         bodies.extend(links[*child].take());
         joints.extend(given[*joint].take().map(|(joint, motion)| build_joint(joint, motion, options, cx)));
     }
+    let (fields, rates) = robot
+        .states
+        .into_iter()
+        .map(|(field, rate)| {
+            let name = field.ident.clone();
+            (field, (name, rate))
+        })
+        .unzip();
     // The order has all of them.
     links.iter().flatten().for_each(|link| cx.report_lost(&link.name));
     given.iter().flatten().for_each(|(joint, _)| cx.report_lost(&joint.name));
@@ -69,7 +77,8 @@ pub(in crate::import) fn assemble(
         contacts: robot.contacts,
         gravity: robot.gravity,
         limits,
-        fields: Vec::new(),
+        fields,
+        rates,
         is_ground,
         collisions,
         visuals,
@@ -84,7 +93,7 @@ fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
     let link = &robot.links[root].name;
     let names_in_robot =
         || robot.joints.iter().map(|j| &j.name.text).chain(robot.links.iter().map(|l| &l.name.text));
-    let text = unused(ROOT_JOINT, |text| names_in_robot().any(|name| name == text));
+    let text = unused_name(ROOT_JOINT, |text| names_in_robot().any(|name| name == text));
     let name_at_link = |text: &str| Name { text: text.to_string(), place: link.place.clone() };
     let kind = match base {
         Base::Fixed => JointKind::Weld,
@@ -92,7 +101,7 @@ fn root_joint(robot: &Robot, root: usize, base: Base) -> Joint {
     };
     let mut ground = end_at(name_at_link(GROUND));
     if let Some(origin) = robot.root.as_ref().filter(|_| base == Base::Fixed) {
-        (ground.at, ground.rotated) = (origin.position(), origin.rotated());
+        (ground.at, ground.rotated) = (origin.nonzero_position(), origin.nonzero_rotations());
     }
     bare_joint(name_at_link(&text), kind, ground, end_at(link.clone()))
 }
@@ -104,7 +113,7 @@ pub(in crate::import) fn end_at(body: Name) -> Endpoint {
 
 /// Returns the endpoint of a joint on its child link.
 fn place_at(anchor: [f64; 3], given: &FileJoint) -> Endpoint {
-    let at = (anchor != [0.0; 3]).then(|| Expr::vector(anchor, &given.origin.xyz.place));
+    let at = (anchor != [0.0; 3]).then(|| Expr::vector_at(anchor, &given.origin.xyz.place));
     Endpoint { at, ..end_at(given.child.clone()) }
 }
 
@@ -129,7 +138,11 @@ pub(in crate::import) fn bare_joint(name: Name, kind: JointKind, parent: Endpoin
 
 /// Returns the endpoint of a joint on its parent link.
 fn parent_of(given: &FileJoint) -> Endpoint {
-    Endpoint { body: given.parent.clone(), at: given.origin.position(), rotated: given.origin.rotated() }
+    Endpoint {
+        body: given.parent.clone(),
+        at: given.origin.nonzero_position(),
+        rotated: given.origin.nonzero_rotations(),
+    }
 }
 
 fn build_joint(given: FileJoint, motion: Motion, options: &FileOptions, cx: &mut Cx<'_>) -> Joint {
@@ -153,7 +166,7 @@ pub(in crate::import) fn joint_of(given: FileJoint) -> Joint {
     let (parent, child) = (parent_of(&given), place_at(given.anchor, &given));
     let has_axis = given.has_axis();
     let mut joint = bare_joint(given.name, given.kind, parent, child);
-    let axis = Expr::vector(given.axis.value, &given.axis.place);
+    let axis = Expr::vector_at(given.axis.value, &given.axis.place);
     // A planar joint moves in the plane perpendicular to its axis.
     match given.kind.row().arguments {
         ["about", ..] if has_axis => joint.about.push(axis),
@@ -171,18 +184,18 @@ fn move_end(end: &mut Endpoint, given: &FileJoint, coordinate: f64, cx: &mut Cx<
     if coordinate == 0.0 {
         return;
     }
-    let axis = unit(given.axis.value);
-    match given.kind.rotates() {
+    let axis = unit_vector(given.axis.value);
+    match given.kind.rotates_about_one_axis() {
         Some(true) => end.rotated.push(turn_about(axis, coordinate, given)),
         Some(false) => {
-            let shift = given.origin.rotate(axis);
+            let shift = given.origin.rotate_vector(axis);
             let from = given.origin.xyz.value;
             let at = [0, 1, 2].map(|k| from[k] + coordinate * shift[k]);
             if !at.iter().all(|x| x.is_finite()) {
-                let message = format!("joint {} has an infinite position", quote(&given.name.text));
-                cx.error(&given.name.place, message, |d| d);
+                let message = format!("joint {} has an infinite position", quote_word(&given.name.text));
+                cx.report_error(&given.name.place, message, |d| d);
             }
-            end.at = (at != [0.0; 3]).then(|| Expr::vector(at, &given.origin.xyz.place));
+            end.at = (at != [0.0; 3]).then(|| Expr::vector_at(at, &given.origin.xyz.place));
         }
         None => {}
     }
@@ -197,16 +210,16 @@ fn turn_about(axis: [f64; 3], angle: f64, given: &FileJoint) -> Expr {
         [0.0, s, 0.0] => ("y", s),
         [0.0, 0.0, s] => ("z", s),
         _ => {
-            let arguments = vec![Expr::vector(axis, place), Expr::number(angle, place)];
-            return Expr::call("eigenaxis", arguments, place);
+            let arguments = vec![Expr::vector_at(axis, place), Expr::number_at(angle, place)];
+            return Expr::function_call_at("eigenaxis", arguments, place);
         }
     };
-    Expr::call(word, vec![Expr::number(sign * angle, place)], place)
+    Expr::function_call_at(word, vec![Expr::number_at(sign * angle, place)], place)
 }
 
 /// Normalises a vector. Scaling by the largest component first prevents overflow and underflow of the
 /// squares.
-pub(in crate::import) fn unit(vector: [f64; 3]) -> [f64; 3] {
+pub(in crate::import) fn unit_vector(vector: [f64; 3]) -> [f64; 3] {
     let largest = vector.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let scaled = vector.map(|x| x / largest);
     let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();

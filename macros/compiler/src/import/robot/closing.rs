@@ -2,7 +2,7 @@
 
 use super::assemble::joint_of;
 use super::parts::Robot;
-use crate::import::context::{Cx, quote};
+use crate::import::context::{Cx, quote_word};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Moves the joints that close loops from the tree to `robot.closing`. Of several joints with the same child
@@ -20,14 +20,14 @@ pub(in crate::import) fn close_loops(robot: &mut Robot, cx: &mut Cx<'_>) {
         if driven || joint.damping.is_some() || joint.friction.is_some() || joint.mimic.is_some() {
             let message = format!(
                 "joint {} closes a loop, and has forces or follows another joint",
-                quote(&joint.name.text)
+                quote_word(&joint.name.text)
             );
-            cx.error(&joint.name.place, message, |d| {
-                d.help("another joint of the loop can close it: write that joint last")
-                    .help("or ignore them: `#[mechanism(…, passive = ignore, mimic = independent)]`")
+            cx.report_error(&joint.name.place, message, |d| {
+                d.add_help("another joint of the loop can close it: write that joint last")
+                    .add_help("or ignore them: `#[mechanism(…, passive = ignore, mimic = independent)]`")
             });
         }
-        if joint.limits.bounds() {
+        if joint.limits.has_limits() {
             robot.left_out.push(format!("limits of {}, which closes a loop", joint.name.text));
         }
         robot.closing.push(joint_of(joint));

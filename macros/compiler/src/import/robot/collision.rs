@@ -19,7 +19,7 @@ pub(in crate::import) struct FileCollision {
 impl FileCollision {
     /// Attaches the shape to the link with this name.
     pub(in crate::import) fn attached_to(&self, link: &Name) -> Collision {
-        let (at, rotated) = (self.origin.position(), self.origin.rotated());
+        let (at, rotated) = (self.origin.nonzero_position(), self.origin.nonzero_rotations());
         let on = Endpoint { body: link.clone(), at, rotated };
         let (shape, mesh) = (self.shape, self.mesh.clone());
         Collision { on, shape, mesh, hull: Vec::new(), place: self.place.clone() }

@@ -2,14 +2,14 @@
 //! coordinate contributes a constant to the length of an element.
 
 use super::joint::FileJoint;
-use super::motion::{Motion, frozen};
+use super::motion::{Motion, locked_coordinates};
 use crate::syntax::{Drive, DriveLaw, DriveOn};
 use std::collections::BTreeMap;
 
 /// Returns the elements that act on at least one moving joint. Inputs without a joint are preserved, because
 /// callers rely on the input's index.
 pub(super) fn resolve(drives: Vec<Drive>, joints: &[Option<(FileJoint, Motion)>]) -> Vec<Drive> {
-    let frozen = frozen(joints);
+    let frozen = locked_coordinates(joints);
     drives.into_iter().filter_map(|drive| without_locked(drive, &frozen)).collect()
 }
 
@@ -28,11 +28,15 @@ fn without_locked(mut drive: Drive, frozen: &BTreeMap<&str, f64>) -> Option<Driv
     match &mut drive.law {
         DriveLaw::Spring { free, .. } => *free -= offset,
         DriveLaw::Slack { range, .. } => range.iter_mut().for_each(|end| *end -= offset),
+        DriveLaw::Expression { offset: constant, .. } => *constant = offset,
         DriveLaw::Damper(_)
+        | DriveLaw::PolynomialDamper(_)
         | DriveLaw::Friction(_)
         | DriveLaw::Inerter(_)
         | DriveLaw::Push(_)
         | DriveLaw::Input(_) => {}
     }
-    (!terms.is_empty() || matches!(drive.law, DriveLaw::Input(_))).then_some(drive)
+    // The rates of states may contain the length of an element that acts on nothing.
+    let is_kept = matches!(drive.law, DriveLaw::Input(_) | DriveLaw::Expression { .. });
+    (!terms.is_empty() || is_kept).then_some(drive)
 }

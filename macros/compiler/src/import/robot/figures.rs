@@ -1,11 +1,13 @@
 //! Conversion of values of a file to fields of the mechanism, for the option `parameters`. Each value is
 //! replaced by a reference to its field.
 
-use super::names::unused;
+use super::names::unused_name;
 use crate::diag::Place;
-use crate::import::context::{Cx, quote};
+use crate::import::context::{Cx, quote_word};
 use crate::import::imported::Imported;
-use crate::import::pose::{IDENTITY, Matrix, Vector, axis_rotation, product, roll_pitch_yaw, transpose};
+use crate::import::pose::{
+    IDENTITY, Matrix, Vector, axis_rotation, matrix_product, roll_pitch_yaw, transpose,
+};
 use crate::syntax::file_parameters::{
     DAMPING, FRICTION, FileField, FileFieldKind, FileParameters, INERTIAL, PLACEMENT,
 };
@@ -22,14 +24,14 @@ pub(in crate::import) fn make_fields(
     let Imported { bodies, joints, fields, .. } = imported;
     for figures in &options.parameters {
         if figures.word.text == INERTIAL {
-            inertials(bodies, standing, figures, (fields, options.format.body()), cx);
+            add_inertial_fields(bodies, standing, figures, (fields, options.format.body_term()), cx);
         } else {
-            of_joints(joints, figures, (fields, options.format.body()), cx);
+            of_joints(joints, figures, (fields, options.format.body_term()), cx);
         }
     }
 }
 
-fn inertials(
+fn add_inertial_fields(
     bodies: &mut [Body],
     standing: &[String],
     figures: &FileParameters,
@@ -38,7 +40,7 @@ fn inertials(
 ) {
     let is_fixed_to_ground = |body: &Body| standing.contains(&body.name.text);
     let names: Vec<String> = bodies.iter().map(|body| body.name.text.clone()).collect();
-    let chosen = chosen(figures, &names, link, cx);
+    let chosen = requested_names(figures, &names, link, cx);
     let mut found = false;
     for body in bodies {
         let Some(name) = chosen.iter().find(|name| name.text == body.name.text) else { continue };
@@ -51,13 +53,13 @@ fn inertials(
         };
         if let Some(missing) = missing {
             if figures.of.is_some() {
-                let message = format!("{link} {} {missing}", quote(&name.text));
-                cx.error(&name.place, message, |d| d.help("remove it from `parameters`"));
+                let message = format!("{link} {} {missing}", quote_word(&name.text));
+                cx.report_error(&name.place, message, |d| d.add_help("remove it from `parameters`"));
             }
             continue;
         }
         found = true;
-        let Some(values) = properties(body) else {
+        let Some(values) = mass_properties(body) else {
             cx.report_lost(&body.name);
             continue;
         };
@@ -80,7 +82,9 @@ fn inertials(
     }
     if !found && figures.of.is_none() {
         let message = format!("no {link} that moves has mass properties in the file");
-        cx.error(&figures.word.place, message, |d| d.help(format!("leave `{INERTIAL}` out of `parameters`")));
+        cx.report_error(&figures.word.place, message, |d| {
+            d.add_help(format!("leave `{INERTIAL}` out of `parameters`"))
+        });
     }
 }
 
@@ -99,15 +103,17 @@ fn of_joints(
         _ => matches!(joint.kind, JointKind::Pin | JointKind::Sleeve),
     };
     let names: Vec<String> = joints.iter().map(|joint| joint.name.text.clone()).collect();
-    let chosen = chosen(figures, &names, "joint", cx);
+    let chosen = requested_names(figures, &names, "joint", cx);
     for joint in joints {
         let Some(name) = chosen.iter().find(|name| name.text == joint.name.text) else { continue };
         if !is_supported_joint(joint) {
             if figures.of.is_some() {
-                let message = format!("joint {} has no {word}", quote(&name.text));
-                cx.error(&name.place, message, |d| match word {
-                    PLACEMENT => d.help("it connects the root of the file to the ground"),
-                    _ => d.help("a joint that moves along or about one axis has one, unless it is locked"),
+                let message = format!("joint {} has no {word}", quote_word(&name.text));
+                cx.report_error(&name.place, message, |d| match word {
+                    PLACEMENT => d.add_help("it connects the root of the file to the ground"),
+                    _ => {
+                        d.add_help("a joint that moves along or about one axis has one, unless it is locked")
+                    }
                 });
             }
             continue;
@@ -115,7 +121,7 @@ fn of_joints(
         let of = &joint.name.text;
         let describe_joint_parameter = |what: &str| format!("{what} of the joint `{of}`.");
         if word == PLACEMENT {
-            let Some(values) = placement(joint) else {
+            let Some(values) = joint_placement(joint) else {
                 cx.report_lost(&joint.name);
                 continue;
             };
@@ -127,7 +133,7 @@ fn of_joints(
             joint.parent.at = Some(expression_at_name(ExprKind::Array(e[..3].to_vec())));
             let turns = [("z", 5), ("y", 4), ("x", 3)];
             joint.parent.rotated =
-                turns.map(|(axis, k)| Expr::call(axis, vec![e[k].clone()], &name.place)).to_vec();
+                turns.map(|(axis, k)| Expr::function_call_at(axis, vec![e[k].clone()], &name.place)).to_vec();
             continue;
         }
         let turns = joint.kind == JointKind::Pin;
@@ -138,7 +144,7 @@ fn of_joints(
             _ => (&mut joint.friction, "Dry friction", "N"),
         };
         debug_assert!([DAMPING, FRICTION].contains(&word));
-        let Some(value) = slot.as_ref().map_or(Some(0.0), Expr::literal) else {
+        let Some(value) = slot.as_ref().map_or(Some(0.0), Expr::literal_number) else {
             cx.report_lost(&joint.name);
             continue;
         };
@@ -157,19 +163,19 @@ fn of_joints(
 
 /// Returns the requested links or joints, or all of them if none are named. Reports unknown and repeated
 /// names.
-fn chosen(figures: &FileParameters, known: &[String], what: &str, cx: &mut Cx<'_>) -> Vec<Name> {
+fn requested_names(figures: &FileParameters, known: &[String], what: &str, cx: &mut Cx<'_>) -> Vec<Name> {
     let Some(of) = &figures.of else {
         let name_at_option = |text: &String| Name { text: text.clone(), place: figures.word.place.clone() };
         return known.iter().map(name_at_option).collect();
     };
     for (k, name) in of.iter().enumerate() {
         if !known.contains(&name.text) {
-            let message = format!("unknown {what} {} in `parameters`", quote(&name.text));
+            let message = format!("unknown {what} {} in `parameters`", quote_word(&name.text));
             let known = known.iter().map(String::as_str);
-            cx.error(&name.place, message, |d| d.suggest(&name.text, known));
+            cx.report_error(&name.place, message, |d| d.suggest_name(&name.text, known));
         } else if of[..k].iter().any(|other| other.text == name.text) {
-            let message = format!("{what} {} is given twice", quote(&name.text));
-            cx.error(&name.place, message, |d| d.help("remove one of the two"));
+            let message = format!("{what} {} is given twice", quote_word(&name.text));
+            cx.report_error(&name.place, message, |d| d.add_help("remove one of the two"));
         }
     }
     of.clone()
@@ -185,76 +191,83 @@ fn add(
     place: &Place,
     fields: &mut Vec<FileField>,
 ) -> Vec<Expr> {
+    let ident =
+        unused_name(&identifier(of, word, "link"), |name| fields.iter().any(|field| field.ident == name));
+    let field = FileField { ident, kind, of: of.to_string(), about, values, units };
+    let name_expression = |text| Expr { kind: ExprKind::Name(text), place: place.clone() };
+    let expressions = field.member_accesses().into_iter().map(name_expression).collect();
+    fields.push(field);
+    expressions
+}
+
+/// Returns an identifier from a name of a file and a word. The `kind` of the named element distinguishes it
+/// from numbers and keywords.
+pub(in crate::import) fn identifier(of: &str, word: &str, kind: &str) -> String {
     let identifier_character = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let mut name: String = of.chars().map(identifier_character).collect();
     if !word.is_empty() {
         name = format!("{name}_{word}");
     }
     if name.starts_with(|c: char| c.is_ascii_digit()) || name.trim_matches('_').is_empty() {
-        name = format!("link_{name}");
+        name = format!("{kind}_{name}");
     }
     if syn::parse_str::<syn::Ident>(&name).is_err() {
-        name = format!("{name}_link");
+        name = format!("{name}_{kind}");
     }
-    let ident = unused(&name, |name| fields.iter().any(|field| field.ident == name));
-    let field = FileField { ident, kind, of: of.to_string(), about, values, units };
-    let name_expression = |text| Expr { kind: ExprKind::Name(text), place: place.clone() };
-    let expressions = field.members().into_iter().map(name_expression).collect();
-    fields.push(field);
-    expressions
+    name
 }
 
 /// Returns mass, centre of mass and the entries xx, xy, xz, yy, yz, zz of the inertia about it, in link axes.
-fn properties(body: &Body) -> Option<Vec<f64>> {
-    let mass = body.mass.as_ref().map_or(Some(0.0), Expr::literal)?;
-    let com = body.com.as_ref().map_or(Some([0.0; 3]), numbers)?;
-    let inertia = body.inertia.as_ref().map_or(Some([[0.0; 3]; 3]), matrix)?;
+fn mass_properties(body: &Body) -> Option<Vec<f64>> {
+    let mass = body.mass.as_ref().map_or(Some(0.0), Expr::literal_number)?;
+    let com = body.com.as_ref().map_or(Some([0.0; 3]), vector_components)?;
+    let inertia = body.inertia.as_ref().map_or(Some([[0.0; 3]; 3]), inertia_matrix)?;
     let entries = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|(i, j)| inertia[i][j]);
     Some([mass].into_iter().chain(com).chain(entries).collect())
 }
 
 /// Returns the three numbers of a vector, if all components are numbers.
-fn numbers(e: &Expr) -> Option<Vector> {
+fn vector_components(e: &Expr) -> Option<Vector> {
     let ExprKind::Array(items) = &e.kind else { return None };
-    let numbers: Option<Vec<f64>> = items.iter().map(Expr::literal).collect();
+    let numbers: Option<Vec<f64>> = items.iter().map(Expr::literal_number).collect();
     numbers?.try_into().ok()
 }
 
 /// Returns the inertia matrix of the file as numbers, including rotations about successive axes.
-fn matrix(e: &Expr) -> Option<Matrix> {
+fn inertia_matrix(e: &Expr) -> Option<Matrix> {
     match &e.kind {
         ExprKind::Array(rows) => {
-            let rows: Option<Vec<Vector>> = rows.iter().map(numbers).collect();
+            let rows: Option<Vec<Vector>> = rows.iter().map(vector_components).collect();
             rows?.try_into().ok()
         }
         ExprKind::Method(inner, _, rotations) => {
-            let axes = rotation(rotations)?;
-            Some(product(&product(&axes, &matrix(inner)?), &transpose(&axes)))
+            let axes = rotation_matrix(rotations)?;
+            Some(matrix_product(&matrix_product(&axes, &inertia_matrix(inner)?), &transpose(&axes)))
         }
         _ => None,
     }
 }
 
 /// Returns axis index and angle of a rotation about a coordinate axis; `None` for another axis.
-fn turn(e: &Expr) -> Option<(usize, f64)> {
+fn coordinate_rotation(e: &Expr) -> Option<(usize, f64)> {
     let ExprKind::Call(axis, arguments) = &e.kind else { return None };
     let axis = ["x", "y", "z"].iter().position(|known| *known == axis.text)?;
-    Some((axis, arguments.first()?.literal()?))
+    Some((axis, arguments.first()?.literal_number()?))
 }
 
 /// Returns the matrix of successive rotations about body-fixed axes.
-fn rotation(rotations: &[Expr]) -> Option<Matrix> {
-    rotations.iter().try_fold(IDENTITY, |whole, e| Some(product(&whole, &one_rotation(e)?)))
+fn rotation_matrix(rotations: &[Expr]) -> Option<Matrix> {
+    rotations.iter().try_fold(IDENTITY, |whole, e| Some(matrix_product(&whole, &one_rotation(e)?)))
 }
 
 /// Returns the matrix of one rotation: about a coordinate axis, or about a unit vector.
 fn one_rotation(e: &Expr) -> Option<Matrix> {
-    let Some((axis, angle)) = turn(e) else {
+    let Some((axis, angle)) = coordinate_rotation(e) else {
         let ExprKind::Call(_, arguments) = &e.kind else { return None };
         let [axis, angle] = arguments.as_slice() else { return None };
-        return Some(axis_rotation(numbers(axis)?, angle.literal()?));
+        return Some(axis_rotation(vector_components(axis)?, angle.literal_number()?));
     };
-    let (s, c) = angle.sin_cos();
+    let (s, c) = libm::sincos(angle);
     let (p, q) = ((axis + 1) % 3, (axis + 2) % 3);
     let mut m = [[0.0; 3]; 3];
     (m[axis][axis], m[p][p], m[q][q], m[p][q], m[q][p]) = (1.0, c, c, -s, s);
@@ -263,17 +276,17 @@ fn one_rotation(e: &Expr) -> Option<Matrix> {
 
 /// Returns position, roll, pitch and yaw of the frame of a joint. A joint that is held at a coordinate other
 /// than zero has one more rotation than its frame.
-fn placement(joint: &Joint) -> Option<Vec<f64>> {
+fn joint_placement(joint: &Joint) -> Option<Vec<f64>> {
     let rotations = &joint.parent.rotated;
-    let turns: Option<Vec<(usize, f64)>> = rotations.iter().map(turn).collect();
+    let turns: Option<Vec<(usize, f64)>> = rotations.iter().map(coordinate_rotation).collect();
     let rpy = match turns.filter(|turns| turns.windows(2).all(|pair| pair[0].0 > pair[1].0)) {
         // Yaw, pitch, roll, as the file has them.
         Some(turns) => turns.into_iter().fold([0.0; 3], |mut rpy, (axis, angle)| {
             rpy[axis] = angle;
             rpy
         }),
-        None => roll_pitch_yaw(&rotation(rotations)?),
+        None => roll_pitch_yaw(&rotation_matrix(rotations)?),
     };
-    let xyz = joint.parent.at.as_ref().map_or(Some([0.0; 3]), numbers)?;
+    let xyz = joint.parent.at.as_ref().map_or(Some([0.0; 3]), vector_components)?;
     Some(xyz.into_iter().chain(rpy).collect())
 }

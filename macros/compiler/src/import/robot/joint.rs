@@ -53,7 +53,7 @@ impl FileJoint {
 
 /// Returns whether joints of this type have exactly one coordinate, to which limits and locks refer.
 pub(in crate::import) fn has_coordinate(kind: JointKind) -> bool {
-    kind.rotates().is_some()
+    kind.rotates_about_one_axis().is_some()
 }
 
 /// Returns true if joints of this type move about or along an axis.

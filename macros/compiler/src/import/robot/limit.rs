@@ -22,7 +22,7 @@ pub(in crate::import) const IGNORE_LIMITS: &str =
 
 impl FileLimits {
     /// Returns whether any limit is specified.
-    pub(in crate::import) fn bounds(&self) -> bool {
+    pub(in crate::import) fn has_limits(&self) -> bool {
         [&self.lower, &self.upper, &self.velocity, &self.effort].into_iter().any(Option::is_some)
     }
 
@@ -31,7 +31,7 @@ impl FileLimits {
     /// range are stops with restitution 0.
     pub(in crate::import) fn of_joint(&self, joint: &Name, follows: bool, stops: bool) -> Option<Limit> {
         let expression =
-            |found: &Option<Placed<f64>>| found.as_ref().map(|f| Expr::number(f.value, &f.place));
+            |found: &Option<Placed<f64>>| found.as_ref().map(|f| Expr::number_at(f.value, &f.place));
         let bounds = [
             (Key::From, expression(&self.lower)),
             (Key::To, expression(&self.upper)),
@@ -44,7 +44,7 @@ impl FileLimits {
             return None;
         }
         if stops && (self.lower.is_some() || self.upper.is_some()) {
-            given.push((Key::Restitution, Expr::number(0.0, &joint.place)));
+            given.push((Key::Restitution, Expr::number_at(0.0, &joint.place)));
         }
         let on = Expr { kind: ExprKind::Name(joint.text.clone()), place: joint.place.clone() };
         Some(Limit { name: joint.clone(), on, arguments: WrittenArguments(given) })

@@ -2,7 +2,7 @@
 //! or is locked.
 
 use super::joint::FileJoint;
-use crate::import::context::{Cx, quote, quote_all};
+use crate::import::context::{Cx, quote_all, quote_word};
 use crate::syntax::{Mimic, Name};
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ pub(in crate::import) enum Motion {
 }
 
 /// Returns the coordinates of the locked joints by name.
-pub(in crate::import) fn frozen(joints: &[Option<(FileJoint, Motion)>]) -> BTreeMap<&str, f64> {
+pub(in crate::import) fn locked_coordinates(joints: &[Option<(FileJoint, Motion)>]) -> BTreeMap<&str, f64> {
     joints
         .iter()
         .flatten()
@@ -46,12 +46,12 @@ pub(in crate::import) fn resolve_motions(
         .collect();
     report_circles(joints, &leaders, cx);
     // Following the leaders terminates only if there are no cycles.
-    if cx.failed() {
+    if cx.has_errors() {
         return None;
     }
     let motions = (0..joints.len()).map(|k| match locked[k] {
         true => Motion::Frozen(joints[k].held.unwrap_or(0.0)),
-        false => follow(k, joints, &leaders, &locked, cx),
+        false => follow_leaders(k, joints, &leaders, &locked, cx),
     });
     Some(motions.collect())
 }
@@ -69,15 +69,15 @@ fn find_leader(
     let Some(leader) = index.get(mimic.joint.text.as_str()).copied() else {
         let names =
             joints.iter().filter(|other| other.has_coordinate()).map(|other| other.name.text.as_str());
-        let message = format!("unknown joint {}", quote(&mimic.joint.text));
-        cx.error(place, message, |d| d.suggest(&mimic.joint.text, names).help(MOVE_ALONE));
+        let message = format!("unknown joint {}", quote_word(&mimic.joint.text));
+        cx.report_error(place, message, |d| d.suggest_name(&mimic.joint.text, names).add_help(MOVE_ALONE));
         return None;
     };
     for (which, one) in [("follow", joint), ("be followed", &joints[leader])] {
         if !one.has_coordinate() {
-            let name = quote(&one.name.text);
+            let name = quote_word(&one.name.text);
             let message = format!("joint {name} is `{}` and cannot {which}", one.word);
-            cx.error(place, message, |d| d.help(MOVE_ALONE));
+            cx.report_error(place, message, |d| d.add_help(MOVE_ALONE));
             return None;
         }
     }
@@ -107,12 +107,12 @@ fn report_circles(joints: &[FileJoint], leaders: &[Option<usize>], cx: &mut Cx<'
             0 => format!("joint {names} follows itself"),
             _ => format!("joints {names} follow one another"),
         };
-        cx.error(&mimic.joint.place, message, |d| d.help(MOVE_ALONE));
+        cx.report_error(&mimic.joint.place, message, |d| d.add_help(MOVE_ALONE));
     }
 }
 
 /// Follows the chain of leaders to its end and composes the relations: `q = factor × q_leader + offset`.
-fn follow(
+fn follow_leaders(
     start: usize,
     joints: &[FileJoint],
     leaders: &[Option<usize>],
@@ -130,9 +130,9 @@ fn follow(
     if !f64::is_finite(factor) || !f64::is_finite(offset) {
         let message = format!(
             "joint {} follows with an infinite multiplier or offset",
-            quote(&joints[start].name.text)
+            quote_word(&joints[start].name.text)
         );
-        cx.error(&mimic.joint.place, message, |d| d);
+        cx.report_error(&mimic.joint.place, message, |d| d);
     }
     if locked[at] || factor == 0.0 {
         return Motion::Frozen(offset + factor * joints[at].held.unwrap_or(0.0));

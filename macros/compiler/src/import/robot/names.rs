@@ -3,13 +3,13 @@
 
 use super::joint::FileJoint;
 use super::parts::{Robot, bare_link};
-use crate::import::context::{Cx, position, quote};
+use crate::import::context::{Cx, format_position, quote_word};
 use crate::syntax::{Base, FileFormat, GROUND, Name};
 use std::collections::BTreeMap;
 
 /// Reports links that share a name, and joints that share a name.
 pub(in crate::import) fn check_names(robot: &Robot, format: FileFormat, cx: &mut Cx<'_>) {
-    check_unique(robot.links.iter().map(|link| &link.name), format.body(), cx);
+    check_unique(robot.links.iter().map(|link| &link.name), format.body_term(), cx);
     check_unique(robot.joints.iter().map(|joint| &joint.name), "joint", cx);
 }
 
@@ -33,7 +33,7 @@ pub(in crate::import) fn rename_ground(robot: &mut Robot, base: Base) {
     if base == Base::Fixed && !robot.joints.iter().any(|joint| joint.child.text == GROUND) {
         return;
     }
-    let other = unused("ground_link", |name| robot.links.iter().any(|link| link.name.text == name));
+    let other = unused_name("ground_link", |name| robot.links.iter().any(|link| link.name.text == name));
     let ends = robot.joints.iter_mut().flat_map(|joint| [&mut joint.parent, &mut joint.child]);
     let names = robot.links.iter_mut().map(|link| &mut link.name).chain(ends);
     for name in names.filter(|name| name.text == GROUND) {
@@ -42,7 +42,7 @@ pub(in crate::import) fn rename_ground(robot: &mut Robot, base: Base) {
 }
 
 /// Returns the name, with a number appended if it is taken.
-pub(in crate::import) fn unused(name: &str, is_taken: impl Fn(&str) -> bool) -> String {
+pub(in crate::import) fn unused_name(name: &str, is_taken: impl Fn(&str) -> bool) -> String {
     let mut text = name.to_string();
     for k in 2.. {
         if !is_taken(&text) {
@@ -62,8 +62,10 @@ pub(in crate::import) fn check_unique<'a>(
     let mut seen = BTreeMap::new();
     for name in names {
         if let Some(first) = seen.get(name.text.as_str()).copied() {
-            let message = format!("second {what} with the name {}", quote(&name.text));
-            cx.error(&name.place, message, |d| d.help(format!("the first is at {}", position(first))));
+            let message = format!("second {what} with the name {}", quote_word(&name.text));
+            cx.report_error(&name.place, message, |d| {
+                d.add_help(format!("the first is at {}", format_position(first)))
+            });
         } else {
             seen.insert(name.text.as_str(), &name.place);
         }
@@ -78,13 +80,13 @@ pub(in crate::import) fn check_ends(robot: &Robot, format: FileFormat, cx: &mut 
     for joint in &robot.joints {
         for end in [&joint.parent, &joint.child] {
             if !known.contains_key(end.text.as_str()) {
-                let message = format!("unknown link {}", quote(&end.text));
-                cx.error(&end.place, message, |d| d.suggest(&end.text, links.iter().copied()));
+                let message = format!("unknown link {}", quote_word(&end.text));
+                cx.report_error(&end.place, message, |d| d.suggest_name(&end.text, links.iter().copied()));
             }
         }
         if joint.parent.text == joint.child.text {
-            let message = format!("joint {} connects a link to itself", quote(&joint.name.text));
-            cx.error(&joint.child.place, message, |d| d);
+            let message = format!("joint {} connects a link to itself", quote_word(&joint.name.text));
+            cx.report_error(&joint.child.place, message, |d| d);
         } else if let Some(first) = parents.get(joint.child.text.as_str()) {
             // Repeated joint names are reported by `check_names`.
             if first.name.text == joint.name.text {
@@ -98,23 +100,28 @@ pub(in crate::import) fn check_ends(robot: &Robot, format: FileFormat, cx: &mut 
 }
 
 fn report_two_parents(first: &FileJoint, second: &FileJoint, format: FileFormat, cx: &mut Cx<'_>) {
-    let (link, a, b) = (quote(&second.child.text), quote(&first.name.text), quote(&second.name.text));
-    cx.error(&second.child.place, format!("link {link} is the child of two joints, {a} and {b}"), |d| {
-        d.help(format!("the first is at {}", position(&first.child.place)));
-        match format {
-            FileFormat::Urdf => {
-                d.help("if one of them closes a loop, write `#[mechanism(…, loops = close)]`")
+    let (link, a, b) =
+        (quote_word(&second.child.text), quote_word(&first.name.text), quote_word(&second.name.text));
+    cx.report_error(
+        &second.child.place,
+        format!("link {link} is the child of two joints, {a} and {b}"),
+        |d| {
+            d.add_help(format!("the first is at {}", format_position(&first.child.place)));
+            match format {
+                FileFormat::Urdf => {
+                    d.add_help("if one of them closes a loop, write `#[mechanism(…, loops = close)]`")
+                }
+                _ => d.add_help("the links of a file form a tree; it has no closed loops"),
             }
-            _ => d.help("the links of a file form a tree; it has no closed loops"),
-        }
-    });
+        },
+    );
 }
 
 /// Reports names in the option `lock` that no joint has.
 pub(in crate::import) fn check_locks(joints: &[FileJoint], locks: &[Name], cx: &mut Cx<'_>) {
     for lock in locks.iter().filter(|lock| joints.iter().all(|joint| joint.name.text != lock.text)) {
         let names = joints.iter().map(|joint| joint.name.text.as_str());
-        let message = format!("unknown joint {} in `lock`", quote(&lock.text));
-        cx.error(&lock.place, message, |d| d.suggest(&lock.text, names));
+        let message = format!("unknown joint {} in `lock`", quote_word(&lock.text));
+        cx.report_error(&lock.place, message, |d| d.suggest_name(&lock.text, names));
     }
 }

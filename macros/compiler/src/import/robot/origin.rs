@@ -13,28 +13,28 @@ pub(in crate::import) struct Origin {
 
 impl Origin {
     /// Returns the position, or `None` if it is zero.
-    pub(in crate::import) fn position(&self) -> Option<Expr> {
-        (self.xyz.value != [0.0; 3]).then(|| Expr::vector(self.xyz.value, &self.xyz.place))
+    pub(in crate::import) fn nonzero_position(&self) -> Option<Expr> {
+        (self.xyz.value != [0.0; 3]).then(|| Expr::vector_at(self.xyz.value, &self.xyz.place))
     }
 
     /// Returns the nonzero rotations about successive (moving) axes. Rotations about fixed axes equal
     /// rotations about moving axes in the opposite order: `R = R_z(yaw) R_y(pitch) R_x(roll)`.
-    pub(in crate::import) fn rotated(&self) -> Vec<Expr> {
+    pub(in crate::import) fn nonzero_rotations(&self) -> Vec<Expr> {
         let [roll, pitch, yaw] = self.rpy.value;
         let turns = [("z", yaw), ("y", pitch), ("x", roll)].into_iter().filter(|(_, angle)| *angle != 0.0);
-        turns.map(|(axis, angle)| turn(axis, angle, self)).collect()
+        turns.map(|(axis, angle)| rotation_expression(axis, angle, self)).collect()
     }
 
     /// Rotates a vector from the axes of this frame to those of its reference frame.
-    pub(in crate::import) fn rotate(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
-        let [(sr, cr), (sp, cp), (sy, cy)] = self.rpy.value.map(f64::sin_cos);
+    pub(in crate::import) fn rotate_vector(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let [(sr, cr), (sp, cp), (sy, cy)] = self.rpy.value.map(libm::sincos);
         let (y, z) = (cr * y - sr * z, sr * y + cr * z);
         let (x, z) = (cp * x + sp * z, cp * z - sp * x);
         [cy * x - sy * y, sy * x + cy * y, z]
     }
 }
 
-fn turn(axis: &str, angle: f64, origin: &Origin) -> Expr {
+fn rotation_expression(axis: &str, angle: f64, origin: &Origin) -> Expr {
     let place = &origin.rpy.place;
-    Expr::call(axis, vec![Expr::number(angle, place)], place)
+    Expr::function_call_at(axis, vec![Expr::number_at(angle, place)], place)
 }

@@ -4,6 +4,7 @@ use super::collision::FileCollision;
 use super::joint::FileJoint;
 use super::origin::Origin;
 use super::visual::FileVisual;
+use crate::syntax::file_parameters::FileField;
 use crate::syntax::{Body, Constraint, Contact, Drive, Expr, Joint, Name};
 
 /// Maximum number of links, and of joints, of one file.
@@ -30,6 +31,8 @@ pub(in crate::import) struct Robot {
     pub(in crate::import) visuals: Vec<(usize, FileVisual)>,
     /// Springs, dampers, rotors and motors on coordinates.
     pub(in crate::import) drives: Vec<Drive>,
+    /// States of first order, each with its field and its rate.
+    pub(in crate::import) states: Vec<(FileField, Expr)>,
     /// Rayleigh dissipation functions: damping of ball and free joints, and drag of the surrounding fluid.
     pub(in crate::import) dissipations: Vec<(Name, Expr)>,
     /// Gravitational acceleration, m/s²; `None` if the format does not specify one.

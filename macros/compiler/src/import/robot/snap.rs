@@ -2,14 +2,14 @@
 //! exporter's rounding. Values are rounded only if the user requests it, and each is reported, because
 //! rounding changes the robot.
 
-use super::assemble::unit;
+use super::assemble::unit_vector;
 use super::joint::FileJoint;
 use std::f64::consts::FRAC_PI_2;
 
 /// Rounds the frame and the axis of a joint. Angles within `tolerance` (rad) of a multiple of a right angle
 /// are rounded to it. Positions (m) and components of the unit axis within `tolerance` of zero become zero.
 /// Returns one line per changed value, with the value before and after.
-pub(in crate::import) fn snap(joint: &mut FileJoint, tolerance: f64) -> Vec<String> {
+pub(in crate::import) fn snap_joint_frame(joint: &mut FileJoint, tolerance: f64) -> Vec<String> {
     let mut found = Vec::new();
     let mut report = |entry: &str, from: f64, to: f64| {
         if from != to {
@@ -30,7 +30,7 @@ pub(in crate::import) fn snap(joint: &mut FileJoint, tolerance: f64) -> Vec<Stri
         }
     }
     if joint.has_axis() {
-        let of_unit = unit(joint.axis.value).into_iter().zip(["axis x", "axis y", "axis z"]);
+        let of_unit = unit_vector(joint.axis.value).into_iter().zip(["axis x", "axis y", "axis z"]);
         for (c, (part, entry)) in joint.axis.value.iter_mut().zip(of_unit) {
             if part.abs() <= tolerance {
                 report(entry, *c, 0.0);

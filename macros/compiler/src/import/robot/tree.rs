@@ -1,7 +1,7 @@
 //! Ordering of joints by the kinematic tree.
 
 use super::parts::Robot;
-use crate::import::context::{Cx, quote, quote_all};
+use crate::import::context::{Cx, quote_all, quote_word};
 use std::collections::BTreeMap;
 
 /// Root of the kinematic tree, and the joints in coordinate order.
@@ -43,7 +43,7 @@ fn find_root(robot: &Robot, above: &[Option<usize>], cx: &mut Cx<'_>) -> Option<
         let names = quote_all(all.map(|link| robot.links[link].name.text.as_str()));
         let message = format!("expected one link that is not the child of a joint, found {names}");
         let help = "every link but one needs a joint that has it as its child";
-        cx.error(&robot.links[second].name.place, message, |d| d.help(help));
+        cx.report_error(&robot.links[second].name.place, message, |d| d.add_help(help));
         return None;
     }
     Some(root)
@@ -81,8 +81,8 @@ fn report_cycle(
     let rest = std::iter::successors(parent_link(&link), parent_link).take_while(|l| *l != link);
     let links = std::iter::once(link).chain(rest).map(|l| robot.links[l].name.text.as_str());
     let message = format!("links {} form a cycle", quote_all(links));
-    let help = format!("joint {} closes the cycle; a tree has a root", quote(&joint.name.text));
-    cx.error(&joint.parent.place, message, |d| d.help(help));
+    let help = format!("joint {} closes the cycle; a tree has a root", quote_word(&joint.name.text));
+    cx.report_error(&joint.parent.place, message, |d| d.add_help(help));
 }
 
 /// Traverses the tree depth first. An explicit stack replaces recursion, because chains may be long.

@@ -16,7 +16,11 @@ pub(in crate::import) struct FileVisual {
 impl FileVisual {
     /// Attaches the shape to the link with this name.
     pub(in crate::import) fn attached_to(&self, link: &Name) -> Visual {
-        let on = Endpoint { body: link.clone(), at: self.origin.position(), rotated: self.origin.rotated() };
+        let on = Endpoint {
+            body: link.clone(),
+            at: self.origin.nonzero_position(),
+            rotated: self.origin.nonzero_rotations(),
+        };
         Visual { on, shape: self.shape, mesh: self.mesh.clone() }
     }
 }

@@ -3,12 +3,13 @@
 use super::scope::{Scope, WORLD};
 use super::version::is_before;
 use crate::diag::Place;
-use crate::import::context::{Cx, quote};
+use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Attribute, Node, check_plain, check_radians, content, contents, elements, place, report_second,
+    Attribute, Node, check_plain, check_radians, child_elements, element_position, read_numbers_content,
+    relevant_contents, report_second,
 };
 use crate::import::imported::Placed;
-use crate::import::pose::{IDENTITY, Pose, axis_rotation, of_quaternion, product, roll_pitch_yaw};
+use crate::import::pose::{IDENTITY, Pose, axis_rotation, matrix_product, of_quaternion, roll_pitch_yaw};
 use crate::import::robot::Origin;
 use crate::syntax::Name;
 use std::collections::BTreeMap;
@@ -42,35 +43,35 @@ const RELATIVE_TO: (u32, u32) = (1, 7);
 /// attribute, the pose is relative to `base`.
 pub(super) fn read_frame(node: Node<'_>, scope: &Scope, base: &str, cx: &mut Cx<'_>) -> Frame {
     let base_name = |at: Place| Name { text: base.to_string(), place: at };
-    let mut poses = elements(node).filter(|child| child.tag_name().name() == "pose");
+    let mut poses = child_elements(node).filter(|child| child.tag_name().name() == "pose");
     let Some(found) = poses.next() else {
-        return Frame { base: base_name(place(node, cx)), pose: Pose::ZERO, attached: None };
+        return Frame { base: base_name(element_position(node, cx)), pose: Pose::ZERO, attached: None };
     };
     if let Some(second) = poses.next() {
         report_second(second, Some(found), cx);
     }
     check_plain(found, &["relative_to", "rotation_format", "degrees", "frame"], cx);
-    let base = match reference(found, cx) {
+    let base = match reference_frame_attribute(found, cx) {
         Some(said) => {
             let name = said.value().trim();
             let text = own_frame(found, name, scope).unwrap_or_else(|| scope.whole_name(name));
-            Name { text, place: cx.place(said.range_value().start) }
+            Name { text, place: cx.source_position(said.range_value().start) }
         }
-        None => base_name(place(found, cx)),
+        None => base_name(element_position(found, cx)),
     };
-    let is_empty = contents(found).next().is_none();
+    let is_empty = relevant_contents(found).next().is_none();
     let pose = if is_empty { Pose::ZERO } else { read_pose(found, cx).unwrap_or(Pose::ZERO) };
     Frame { base, pose, attached: None }
 }
 
 /// Returns the attribute of a `<pose>` that names its reference frame.
-pub(super) fn reference<'a>(pose: Node<'a>, cx: &mut Cx<'_>) -> Option<Attribute<'a>> {
+pub(super) fn reference_frame_attribute<'a>(pose: Node<'a>, cx: &mut Cx<'_>) -> Option<Attribute<'a>> {
     let non_blank_attribute = |word| pose.attribute_node(word).filter(|said| !said.value().trim().is_empty());
     let old = non_blank_attribute("frame");
     if let Some(found) = old.filter(|_| !is_before(pose, RELATIVE_TO)) {
-        let at = cx.place(found.range().start);
-        cx.error(&at, "`frame` of a pose has another name since version 1.7 of SDF", |d| {
-            d.help(format!("write `relative_to=\"{}\"`", found.value().trim()))
+        let at = cx.source_position(found.range().start);
+        cx.report_error(&at, "`frame` of a pose has another name since version 1.7 of SDF", |d| {
+            d.add_help(format!("write `relative_to=\"{}\"`", found.value().trim()))
         });
     }
     old.or_else(|| non_blank_attribute("relative_to"))
@@ -90,7 +91,7 @@ pub(super) fn own_frames<'a>(owner: Node<'a>) -> impl Iterator<Item = Node<'a>> 
     let parts = owner.children().filter(|node| node.is_element());
     let inside = parts.filter(|part| matches!(part.tag_name().name(), "inertial" | "collision" | "visual"));
     let around = std::iter::once(owner).chain(inside);
-    around.flat_map(elements).filter(is_frame).filter(|frame| is_before(*frame, RELATIVE_TO))
+    around.flat_map(child_elements).filter(is_frame).filter(|frame| is_before(*frame, RELATIVE_TO))
 }
 
 /// Returns the full name of a frame that a link or a joint declares inside itself.
@@ -106,7 +107,12 @@ pub(super) fn pose_in(
     cx: &mut Cx<'_>,
 ) -> Option<Pose> {
     let frame = read_frame(node, scope, &link.text, cx);
-    Some(frames.resolve(link, cx)?.back().then(&frames.resolve(&frame.base, cx)?.then(&frame.pose)))
+    Some(
+        frames
+            .resolve(link, cx)?
+            .inverse_pose()
+            .compose_with(&frames.resolve(&frame.base, cx)?.compose_with(&frame.pose)),
+    )
 }
 
 /// Returns the pose of an element of a link relative to the link, as an [`Origin`].
@@ -116,7 +122,7 @@ pub(super) fn origin_in(
     frames: &Frames,
     cx: &mut Cx<'_>,
 ) -> Option<Origin> {
-    Some(origin(&pose_in(node, link, frames, cx)?, &place(node, cx)))
+    Some(origin_from_pose(&pose_in(node, link, frames, cx)?, &element_position(node, cx)))
 }
 
 const RADIANS: &str = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, \
@@ -124,16 +130,16 @@ const RADIANS: &str = "a pose is in radians: write the angle that is meant, or `
 
 fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
     if node.attribute("rotation_format") == Some("quat_xyzw") {
-        let [x, y, z, a, b, c, w] = content(node, cx)?.value;
+        let [x, y, z, a, b, c, w] = read_numbers_content(node, cx)?.value;
         let size = (a * a + b * b + c * c + w * w).sqrt();
         if size < 1e-14 || !size.is_finite() {
             let message = format!("a quaternion of length {size} has no direction");
-            cx.error(&place(node, cx), message, |d| d);
+            cx.report_error(&element_position(node, cx), message, |d| d);
             return None;
         }
         return Some(Pose { at: [x, y, z], axes: of_quaternion([w, a, b, c].map(|x| x / size)) });
     }
-    let found = content(node, cx)?;
+    let found = read_numbers_content(node, cx)?;
     let [x, y, z, roll, pitch, yaw] = found.value;
     let degrees = node.attribute("degrees").is_some_and(|word| matches!(word.trim(), "true" | "1"));
     if !degrees {
@@ -141,16 +147,16 @@ fn read_pose(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Pose> {
     }
     let angle_in_radians = |angle: f64| if degrees { angle.to_radians() } else { angle };
     let turns = [([0.0, 0.0, 1.0], yaw), ([0.0, 1.0, 0.0], pitch), ([1.0, 0.0, 0.0], roll)];
-    let axes = turns
-        .into_iter()
-        .fold(IDENTITY, |whole, (axis, turn)| product(&whole, &axis_rotation(axis, angle_in_radians(turn))));
+    let axes = turns.into_iter().fold(IDENTITY, |whole, (axis, turn)| {
+        matrix_product(&whole, &axis_rotation(axis, angle_in_radians(turn)))
+    });
     Some(Pose { at: [x, y, z], axes })
 }
 
 impl Frames {
     /// Returns the link that a frame is attached to, directly or through other frames, with the source
     /// position of `name`. Reports unknown names and cycles.
-    pub(super) fn carrier(&self, name: &Name, cx: &mut Cx<'_>) -> Option<Name> {
+    pub(super) fn link_of_frame(&self, name: &Name, cx: &mut Cx<'_>) -> Option<Name> {
         let mut at = name.clone();
         for _ in 0..MAX_DEPTH {
             if at.text == WORLD {
@@ -165,15 +171,15 @@ impl Frames {
                 None => return Some(Name { text: at.text, place: name.place.clone() }),
             }
         }
-        let message = format!("the frame {} is attached to itself", quote(&name.text));
-        cx.error(&at.place, message, |d| d);
+        let message = format!("the frame {} is attached to itself", quote_word(&name.text));
+        cx.report_error(&at.place, message, |d| d);
         None
     }
 
     fn report_unknown(&self, name: &Name, cx: &mut Cx<'_>) {
         let known = self.known.keys().map(String::as_str).filter(|known| !known.ends_with("__model__"));
-        let message = format!("unknown frame {}", quote(&name.text));
-        cx.error(&name.place, message, |d| d.suggest(&name.text, known));
+        let message = format!("unknown frame {}", quote_word(&name.text));
+        cx.report_error(&name.place, message, |d| d.suggest_name(&name.text, known));
     }
 
     /// Returns the pose of a frame relative to the world. Reports unknown names and cycles.
@@ -188,17 +194,17 @@ impl Frames {
                 self.report_unknown(&at, cx);
                 return None;
             };
-            pose = frame.pose.then(&pose);
+            pose = frame.pose.compose_with(&pose);
             at = frame.base.clone();
         }
-        let message = format!("the frame {} is placed relative to itself", quote(&name.text));
-        cx.error(&at.place, message, |d| d);
+        let message = format!("the frame {} is placed relative to itself", quote_word(&name.text));
+        cx.report_error(&at.place, message, |d| d);
         None
     }
 }
 
 /// Converts a pose to an [`Origin`].
-pub(super) fn origin(pose: &Pose, place: &Place) -> Origin {
+pub(super) fn origin_from_pose(pose: &Pose, place: &Place) -> Origin {
     let value_at_pose = |value| Placed { value, place: place.clone() };
     Origin { xyz: value_at_pose(pose.at.map(|x| x + 0.0)), rpy: value_at_pose(roll_pitch_yaw(&pose.axes)) }
 }

@@ -5,9 +5,11 @@
 
 use super::version;
 use crate::diag::Diagnostics;
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, check_attributes, contents, elements, place, report_second, word};
-use crate::import::whole::{MAX_DEPTH, MAX_FILES, Read, Whole, plain, report_circle, report_many};
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{
+    Node, check_attributes, child_elements, element_position, read_word, relevant_contents, report_second,
+};
+use crate::import::whole::{MAX_DEPTH, MAX_FILES, Read, Whole, canonical_path, report_circle, report_many};
 use crate::import::{file, xml};
 use crate::syntax::{FileFormat, Name};
 use std::cell::OnceCell;
@@ -49,22 +51,22 @@ pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnost
     let mut whole = Whole::new(text, path, name);
     let mut places = vec![name.clone()];
     let (mut open, mut count) = (vec![0], 0);
-    let mut steps = scan(&whole.files, 0, name, None, cx)?;
+    let mut steps = expansion_steps(&whole.files, 0, name, None, cx)?;
     while let Some(step) = steps.pop() {
         match step {
-            Step::Copy(file, range) => whole.copy(file, range.start, range.end, name, cx)?,
-            Step::Put(text, file, at) => whole.append(&text, (file, at), name, cx)?,
+            Step::Copy(file, range) => whole.append_file_bytes(file, range.start, range.end, name, cx)?,
+            Step::Put(text, file, at) => whole.append_text(&text, (file, at), name, cx)?,
             Step::Leave => {
                 open.pop();
             }
             Step::Include(include) => {
-                let found = find(&whole.files, &include, cx)?;
+                let found = find_included_file(&whole.files, &include, cx)?;
                 count += 1;
                 if include.depth > MAX_DEPTH || count > MAX_FILES {
                     report_many(include.depth, &include.uri, cx);
                     return None;
                 }
-                let known = whole.files.iter().position(|read| plain(&read.path) == found.path);
+                let known = whole.files.iter().position(|read| canonical_path(&read.path) == found.path);
                 if let Some(known) = known.filter(|known| open.contains(known)) {
                     report_circle(known, &open, &whole.files, &places, &include.uri, cx);
                     return None;
@@ -76,7 +78,7 @@ pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnost
                 }
                 open.push(file);
                 steps.push(Step::Leave);
-                steps.extend(scan(&whole.files, file, &include.uri, Some(&include), cx)?);
+                steps.extend(expansion_steps(&whole.files, file, &include.uri, Some(&include), cx)?);
             }
         }
     }
@@ -84,7 +86,7 @@ pub(super) fn read_whole(text: &str, path: &Path, name: &Name, cx: &mut Diagnost
 }
 
 /// Returns the steps that expand a file, last first: the whole file, or only its model for an `<include>`.
-fn scan(
+fn expansion_steps(
     files: &[Read],
     file: usize,
     name: &Name,
@@ -96,13 +98,13 @@ fn scan(
     let cx = &mut Cx::new(&read.text, &shown, cx);
     let declared = OnceCell::new();
     let document = xml::parse(&read.text, &declared, FileFormat::Sdf, cx)?;
-    version::check(document.root_element(), cx);
+    version::check_version(document.root_element(), cx);
     // Declarations of undeclared prefixes shift the bytes of the text, so pieces of it cannot be copied.
     if declared.get().is_some() {
         return match include {
             None => plain_copy(&document, file, read, cx),
             Some(_) => {
-                undeclared(document.root_element(), cx);
+                report_undeclared_prefixes(document.root_element(), cx);
                 None
             }
         };
@@ -145,7 +147,7 @@ fn scan(
         steps.push(Step::Put("</model>".to_string(), file, end));
     }
     steps.reverse();
-    (!cx.failed()).then_some(steps)
+    (!cx.has_errors()).then_some(steps)
 }
 
 /// Returns the single copy step of a file with undeclared prefixes. Reports an `<include>` in it.
@@ -158,15 +160,15 @@ fn plain_copy(
     let include =
         document.descendants().find(|node| node.is_element() && node.tag_name().name() == "include");
     if let Some(include) = include.filter(|include| !in_world(*include)) {
-        undeclared(include, cx);
+        report_undeclared_prefixes(include, cx);
         return None;
     }
     Some(vec![Step::Copy(file, 0..read.text.len())])
 }
 
-fn undeclared(node: Node<'_>, cx: &mut Cx<'_>) {
-    cx.error(&place(node, cx), "prefixes of names are not declared", |d| {
-        d.help(
+fn report_undeclared_prefixes(node: Node<'_>, cx: &mut Cx<'_>) {
+    cx.report_error(&element_position(node, cx), "prefixes of names are not declared", |d| {
+        d.add_help(
             "files that include others, or are included, declare them: `<sdf \
              xmlns:gz=\"http://gazebosim.org/schema\">`",
         )
@@ -207,16 +209,16 @@ fn open_model(steps: &mut Vec<Step>, model: Node<'_>, file: usize, include: &Inc
 
 /// Returns the only model of an included file, or reports that it has no model or several.
 fn only_model<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
-    let mut models = elements(root).filter(|node| node.tag_name().name() == "model");
+    let mut models = child_elements(root).filter(|node| node.tag_name().name() == "model");
     let found = models.next().filter(|_| root.tag_name().name() == "sdf");
     let second = models.next();
     if let (Some(model), None) = (found, second) {
         return Some(model);
     }
-    let at = place(second.unwrap_or(root), cx);
+    let at = element_position(second.unwrap_or(root), cx);
     let what = if second.is_some() { "several models" } else { "no model" };
-    cx.error(&at, format!("expected an SDF file with one model, found {what}"), |d| {
-        d.help("an included file is `<sdf version=\"…\"><model name=\"…\"> … </model></sdf>`")
+    cx.report_error(&at, format!("expected an SDF file with one model, found {what}"), |d| {
+        d.add_help("an included file is `<sdf version=\"…\"><model name=\"…\"> … </model></sdf>`")
     });
     None
 }
@@ -226,54 +228,60 @@ fn only_model<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Node<'a>> {
 fn read_include(node: Node<'_>, files: &[Read], by: usize, depth: usize, cx: &mut Cx<'_>) -> Option<Include> {
     check_attributes(node, &[], &["merge"], cx);
     if node.attribute("merge").is_some_and(|merge| matches!(merge.trim(), "true" | "1")) {
-        cx.error(&place(node, cx), "`merge` of an `<include>` is not supported", |d| {
-            d.help("write the expanded file: `gz sdf -p robot.sdf > whole.sdf`")
+        cx.report_error(&element_position(node, cx), "`merge` of an `<include>` is not supported", |d| {
+            d.add_help("write the expanded file: `gz sdf -p robot.sdf > whole.sdf`")
         });
         return None;
     }
     let mut uri = None;
     let (mut own_name, mut pose, mut plugins) = (None, None, Vec::new());
     let mut seen: BTreeMap<&str, Node<'_>> = BTreeMap::new();
-    for child in elements(node) {
-        let text_of_child = || contents(child).find(Node::is_text).map(trimmed);
+    for child in child_elements(node) {
+        let text_of_child = || relevant_contents(child).find(Node::is_text).map(trimmed_range);
         let kind = child.tag_name().name();
         if let Some(first) = seen.insert(kind, child).filter(|_| kind != "plugin") {
             report_second(child, Some(first), cx);
         }
         match kind {
-            "uri" => uri = word(child, cx),
+            "uri" => uri = read_word(child, cx),
             "name" => own_name = text_of_child(),
             "pose" => pose = Some(child.range()),
             "plugin" => plugins.push(child.range()),
-            "static" if word(child, cx).is_some_and(|word| matches!(word.text.as_str(), "true" | "1")) => {
+            "static"
+                if read_word(child, cx).is_some_and(|word| matches!(word.text.as_str(), "true" | "1")) =>
+            {
                 if in_world(node) {
                     return None;
                 }
-                cx.error(&place(child, cx), "the included model is static and cannot move", |d| {
-                    d.help("remove `<static>`")
-                });
+                cx.report_error(
+                    &element_position(child, cx),
+                    "the included model is static and cannot move",
+                    |d| d.add_help("remove `<static>`"),
+                );
             }
-            "placement_frame" => cx.error(&place(child, cx), "`placement_frame` is not supported", |d| {
-                d.help("give the `<include>` a `<pose>`")
-            }),
+            "placement_frame" => {
+                cx.report_error(&element_position(child, cx), "`placement_frame` is not supported", |d| {
+                    d.add_help("give the `<include>` a `<pose>`")
+                })
+            }
             _ => crate::import::element::check_element_name(child, &INCLUDE, cx),
         }
     }
     let Some(uri) = uri else {
-        cx.error(&place(node, cx), "`<include>` without a `<uri>`", |d| {
-            d.help("expected `<uri>model://…</uri>` or the path of a file")
+        cx.report_error(&element_position(node, cx), "`<include>` without a `<uri>`", |d| {
+            d.add_help("expected `<uri>model://…</uri>` or the path of a file")
         });
         return None;
     };
     let from = node.range().start;
-    if in_world(node) && candidates(files, by, &uri.text).iter().all(|(path, _)| !path.is_file()) {
+    if in_world(node) && include_candidates(files, by, &uri.text).iter().all(|(path, _)| !path.is_file()) {
         return None;
     }
     Some(Include { by, from, uri, name: own_name, pose, plugins, depth })
 }
 
 /// Returns the byte range of a text without surrounding whitespace.
-fn trimmed(text: Node<'_>) -> Range {
+fn trimmed_range(text: Node<'_>) -> Range {
     let (range, all) = (text.range(), text.text().unwrap_or_default());
     let before = all.len() - all.trim_start().len();
     let after = all.len() - all.trim_end().len();
@@ -283,7 +291,7 @@ fn trimmed(text: Node<'_>) -> Range {
 /// Returns the possible paths of an included file, each with the path for messages: relative to the including
 /// file or to the user's file, and one folder above each. For a folder, the path is that of its model, which
 /// is `model.sdf` unless `model.config` names another file.
-fn candidates(files: &[Read], by: usize, uri: &str) -> Vec<(PathBuf, String)> {
+fn include_candidates(files: &[Read], by: usize, uri: &str) -> Vec<(PathBuf, String)> {
     let rest = ["model://", "file://", "package://"].iter().find_map(|scheme| uri.strip_prefix(scheme));
     let named = rest.unwrap_or(uri);
     let mut found = Vec::new();
@@ -314,18 +322,25 @@ fn model_of(folder: &Path) -> String {
 }
 
 /// Finds and reads the file of an `<include>`.
-fn find(files: &[Read], include: &Include, cx: &mut Diagnostics) -> Option<Read> {
-    let all = candidates(files, include.by, &include.uri.text);
+fn find_included_file(files: &[Read], include: &Include, cx: &mut Diagnostics) -> Option<Read> {
+    let all = include_candidates(files, include.by, &include.uri.text);
     let there = all.iter().find(|(path, _)| path.is_file());
     if there.is_none() && include.uri.text.contains("://") {
         let first = all.first().map_or(String::new(), |(path, _)| path.display().to_string());
-        cx.error(include.uri.place.clone(), format!("{} is not next to the file", quote(&include.uri.text)))
-            .help(format!("looked for `{first}`, and one folder above"))
-            .help("or write the expanded file: `gz sdf -p robot.sdf > whole.sdf`");
+        cx.report_error(
+            include.uri.place.clone(),
+            format!("{} is not next to the file", quote_word(&include.uri.text)),
+        )
+        .add_help(format!("looked for `{first}`, and one folder above"))
+        .add_help("or write the expanded file: `gz sdf -p robot.sdf > whole.sdf`");
         return None;
     }
     let (path, shown) = there.or(all.first())?;
     let name = Name { text: shown.clone(), place: include.uri.place.clone() };
     let text = file::read_named(path, &name, FileFormat::Sdf, cx)?;
-    Some(Read { text: xml::cleaned(&text).into_owned(), shown: shown.clone(), path: plain(path) })
+    Some(Read {
+        text: xml::clean_xml_text(&text).into_owned(),
+        shown: shown.clone(),
+        path: canonical_path(path),
+    })
 }

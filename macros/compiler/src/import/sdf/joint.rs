@@ -1,16 +1,16 @@
 //! `<joint>` → [`FileJoint`]. A joint with two axes becomes two joints with a massless link between them.
 
-use super::frames::{Frames, origin};
+use super::frames::{Frames, origin_from_pose};
 use super::scope::Scope;
 use super::version::is_before;
-use crate::import::context::{Cx, quote};
+use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, check_plain, children, content, contents, elements, name, place, required, tag,
-    word,
+    Node, check_attributes, check_plain, child_elements, element_position, known_children, quoted_tag,
+    read_name_attribute, read_numbers_content, read_word, relevant_contents, required_child,
 };
 use crate::import::imported::Placed;
 use crate::import::misplaced;
-use crate::import::pose::{Pose, Vector, apply, length};
+use crate::import::pose::{Pose, Vector, length, matrix_times_vector};
 use crate::import::robot::{
     FileJoint, FileLimits, IGNORE_LIMITS, Origin, Robot, bare_link, has_axis, has_coordinate,
 };
@@ -48,9 +48,9 @@ const IN_JOINT: (u32, u32) = (1, 5);
 const EXPRESSED_IN: (u32, u32) = (1, 7);
 
 /// Returns the full name of the frame at one end of a joint.
-pub(super) fn end(node: Node<'_>, which: &str, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
-    let found = elements(node).find(|child| child.tag_name().name() == which)?;
-    let said = word(found, cx)?;
+pub(super) fn frame_at_joint_end(node: Node<'_>, which: &str, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
+    let found = child_elements(node).find(|child| child.tag_name().name() == which)?;
+    let said = read_word(found, cx)?;
     Some(Name { text: scope.whole_name(&said.text), ..said })
 }
 
@@ -64,23 +64,27 @@ pub(super) fn read_joint(
 ) -> Option<()> {
     check_attributes(node, &["name", "type"], &[], cx);
     let known = ["pose", "parent", "child", "axis", "axis2", "screw_thread_pitch", "thread_pitch"];
-    let [_, parent, child, axis, axis2, lead, old] = children(node, known, cx);
-    required(parent, node, "parent", &[], cx)?;
-    required(child, node, "child", &[], cx)?;
-    misplaced::check(node, &known, JOINT_HELP, cx);
+    let [_, parent, child, axis, axis2, lead, old] = known_children(node, known, cx);
+    required_child(parent, node, "parent", &[], cx)?;
+    required_child(child, node, "child", &[], cx)?;
+    misplaced::check_misplaced(node, &known, JOINT_HELP, cx);
     [parent, child].into_iter().flatten().for_each(|end| check_plain(end, &[], cx));
-    for empty in [parent, child].into_iter().flatten().filter(|end| contents(*end).next().is_none()) {
-        let message = format!("{} without a name", tag(empty));
-        cx.error(&place(empty, cx), message, |d| d.help("expected the name of a link or a frame"));
+    for empty in [parent, child].into_iter().flatten().filter(|end| relevant_contents(*end).next().is_none())
+    {
+        let message = format!("{} without a name", quoted_tag(empty));
+        cx.report_error(&element_position(empty, cx), message, |d| {
+            d.add_help("expected the name of a link or a frame")
+        });
     }
-    let (parent, child) = (end(node, "parent", scope, cx)?, end(node, "child", scope, cx)?);
+    let (parent, child) =
+        (frame_at_joint_end(node, "parent", scope, cx)?, frame_at_joint_end(node, "child", scope, cx)?);
     let (word, kind, axes) = read_type(node, cx)?;
     let at = frames.resolve(joint, cx)?;
     // The ends of a joint may be frames that are attached to links.
-    let (parent, child) = (frames.carrier(&parent, cx)?, frames.carrier(&child, cx)?);
+    let (parent, child) = (frames.link_of_frame(&parent, cx)?, frames.link_of_frame(&child, cx)?);
     let (outer, inner) = (frames.resolve(&parent, cx)?, frames.resolve(&child, cx)?);
-    let anchor = inner.back().then(&at).at;
-    let base = outer.back().then(&Pose { at: at.at, axes: inner.axes });
+    let anchor = inner.inverse_pose().compose_with(&at).at;
+    let base = outer.inverse_pose().compose_with(&Pose { at: at.at, axes: inner.axes });
     let number = axes.max(1);
     for (axis, which) in [(axis, "axis"), (axis2, "second axis")].into_iter().skip(axes) {
         // Exporters write an axis into fixed joints.
@@ -102,9 +106,9 @@ pub(super) fn read_joint(
         };
         let pose = if k == 0 { base } else { Pose { at: anchor, ..Pose::ZERO } };
         let said = Said { node, named: &named, axis, word, kind };
-        let mut found = said.read((&at, &inner), scope, frames, options, robot, cx)?;
+        let mut found = said.read_axis_joint((&at, &inner), scope, frames, options, robot, cx)?;
         (found.parent, found.child) = (carrier, carried.clone());
-        (found.origin, found.anchor) = (origin(&pose, &joint.place), anchor);
+        (found.origin, found.anchor) = (origin_from_pose(&pose, &joint.place), anchor);
         if kind == JointKind::Screw {
             found.lead = read_lead(node, lead, old, cx);
         }
@@ -121,16 +125,16 @@ fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind
     let found = node.attribute_node("type")?;
     let known = TYPES.iter().find(|(word, ..)| *word == found.value());
     if known.is_none() {
-        let at = cx.place(found.range_value().start);
+        let at = cx.source_position(found.range_value().start);
         let (message, known) = match found.value() {
             "gearbox" => {
                 ("joint type `gearbox` is not supported".to_string(), "couple two joints by `<mimic>`")
             }
-            other => (format!("unknown joint type {}", quote(other)), ""),
+            other => (format!("unknown joint type {}", quote_word(other)), ""),
         };
-        cx.error(&at, message, |d| match known {
-            "" => d.suggest(found.value(), TYPES.map(|(word, ..)| word)),
-            help => d.help(help),
+        cx.report_error(&at, message, |d| match known {
+            "" => d.suggest_name(found.value(), TYPES.map(|(word, ..)| word)),
+            help => d.add_help(help),
         });
     }
     known.copied()
@@ -140,25 +144,27 @@ fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind
 /// positive for left-handed threads.
 fn read_lead(node: Node<'_>, lead: Option<Node<'_>>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
     let Some(written) = lead.or(old) else {
-        cx.error(&place(node, cx), "screw without `<screw_thread_pitch>`", |d| {
-            d.help("it is the advance of the joint per turn, m")
+        cx.report_error(&element_position(node, cx), "screw without `<screw_thread_pitch>`", |d| {
+            d.add_help("it is the advance of the joint per turn, m")
         });
         return None;
     };
-    let found = content::<1>(written, cx)?;
+    let found = read_numbers_content::<1>(written, cx)?;
     let [value] = found.value;
     if lead.is_none() && value == 0.0 {
-        cx.error(&found.place, "a screw with `<thread_pitch>` zero advances infinitely far in a turn", |d| {
-            d.help("write `<screw_thread_pitch>`: the advance of the joint per turn, m")
-        });
+        cx.report_error(
+            &found.place,
+            "a screw with `<thread_pitch>` zero advances infinitely far in a turn",
+            |d| d.add_help("write `<screw_thread_pitch>`: the advance of the joint per turn, m"),
+        );
         return None;
     }
     let lead = if lead.is_some() { value } else { -std::f64::consts::TAU / value };
-    Some(Expr::number(lead, &found.place))
+    Some(Expr::number_at(lead, &found.place))
 }
 
 /// Returns a joint that fixes two links to each other.
-pub(super) fn weld(name: Name, parent: Name, child: Name, origin: Origin) -> FileJoint {
+pub(super) fn fixed_joint(name: Name, parent: Name, child: Name, origin: Origin) -> FileJoint {
     let axis = Placed { value: [0.0, 0.0, 1.0], place: name.place.clone() };
     FileJoint {
         name,
@@ -189,7 +195,7 @@ struct Said<'n> {
 
 impl Said<'_> {
     /// Reads the joint of this axis. Parent, child and origin are placeholders, which the caller sets.
-    fn read(
+    fn read_axis_joint(
         &self,
         (at, inner): (&Pose, &Pose),
         scope: &Scope,
@@ -199,22 +205,23 @@ impl Said<'_> {
         cx: &mut Cx<'_>,
     ) -> Option<FileJoint> {
         let Said { node, named, word, kind, .. } = *self;
-        let own = place(node, cx);
-        let bare = weld(named.clone(), named.clone(), named.clone(), origin(&Pose::ZERO, &own));
+        let own = element_position(node, cx);
+        let bare =
+            fixed_joint(named.clone(), named.clone(), named.clone(), origin_from_pose(&Pose::ZERO, &own));
         let mut joint = FileJoint { kind, word, ..bare };
         let Some(axis) = self.axis.filter(|_| has_axis(kind)) else {
             if has_axis(kind) {
-                cx.error(&own, format!("a `{word}` joint without an axis"), |d| {
-                    d.help("expected `<axis><xyz>…</xyz></axis>`")
+                cx.report_error(&own, format!("a `{word}` joint without an axis"), |d| {
+                    d.add_help("expected `<axis><xyz>…</xyz></axis>`")
                 });
             }
             return Some(joint);
         };
         let parts = ["xyz", "limit", "dynamics", "mimic", "use_parent_model_frame", "initial_position"];
-        let [xyz, limit, dynamics, mimic, old, _] = children(axis, parts, cx);
+        let [xyz, limit, dynamics, mimic, old, _] = known_children(axis, parts, cx);
         [Some(axis), limit, dynamics].into_iter().flatten().for_each(|node| check_plain(node, &[], cx));
-        misplaced::check(axis, &parts, AXIS_HELP, cx);
-        let of_model = Name { text: scope.frame(), place: place(axis, cx) };
+        misplaced::check_misplaced(axis, &parts, AXIS_HELP, cx);
+        let of_model = Name { text: scope.full_frame_name(), place: element_position(axis, cx) };
         let usual = if is_in_model(axis, old, cx) { frames.resolve(&of_model, cx)? } else { *at };
         joint.axis = read_axis(xyz, axis, (&usual, inner), scope, frames, cx)?;
         if let Some(dynamics) = dynamics.filter(|_| options.honour_passive) {
@@ -223,7 +230,7 @@ impl Said<'_> {
         if let Some(limit) = limit.filter(|_| options.limits != LimitOption::Ignore) {
             joint.limits = read_limits(limit, word == "continuous", cx);
         }
-        if !has_coordinate(kind) && joint.limits.bounds() {
+        if !has_coordinate(kind) && joint.limits.has_limits() {
             robot.left_out.push(format!("limits of {}, which is `{word}`", named.text));
             joint.limits = FileLimits::default();
         }
@@ -238,10 +245,13 @@ impl Said<'_> {
 /// `<use_parent_model_frame>` is true.
 fn is_in_model(axis: Node<'_>, old: Option<Node<'_>>, cx: &mut Cx<'_>) -> bool {
     let Some(old) = old else { return is_before(axis, IN_JOINT) };
-    let is_said = word(old, cx).is_some_and(|word| matches!(&*word.text.to_ascii_lowercase(), "true" | "1"));
+    let is_said =
+        read_word(old, cx).is_some_and(|word| matches!(&*word.text.to_ascii_lowercase(), "true" | "1"));
     if is_said && !is_before(axis, EXPRESSED_IN) {
         let message = "`<use_parent_model_frame>` has another name since version 1.7 of SDF";
-        cx.error(&place(old, cx), message, |d| d.help("write `<xyz expressed_in=\"__model__\">`"));
+        cx.report_error(&element_position(old, cx), message, |d| {
+            d.add_help("write `<xyz expressed_in=\"__model__\">`")
+        });
     }
     is_said
 }
@@ -257,11 +267,11 @@ fn read_axis(
     cx: &mut Cx<'_>,
 ) -> Option<Placed<Vector>> {
     let found = match xyz {
-        Some(xyz) => content::<3>(xyz, cx)?,
-        None => Placed { value: [0.0, 0.0, 1.0], place: place(axis, cx) },
+        Some(xyz) => read_numbers_content::<3>(xyz, cx)?,
+        None => Placed { value: [0.0, 0.0, 1.0], place: element_position(axis, cx) },
     };
     if length(found.value) < 1e-14 {
-        cx.error(&found.place, "axis of zero length has no direction", |d| d);
+        cx.report_error(&found.place, "axis of zero length has no direction", |d| d);
         return None;
     }
     xyz.into_iter().for_each(|xyz| check_attributes(xyz, &[], &["expressed_in"], cx));
@@ -269,33 +279,34 @@ fn read_axis(
     let axes = match said.filter(|said| !said.value().trim().is_empty()) {
         Some(said) => {
             let text = scope.whole_name(said.value().trim());
-            frames.resolve(&Name { text, place: cx.place(said.range_value().start) }, cx)?
+            frames.resolve(&Name { text, place: cx.source_position(said.range_value().start) }, cx)?
         }
         None => *usual,
     };
-    let value = apply(&inner.back().then(&axes).axes, found.value);
+    let value = matrix_times_vector(&inner.inverse_pose().compose_with(&axes).axes, found.value);
     Some(Placed { value: value.map(|x| if x.abs() < 1e-15 { 0.0 } else { x }), place: found.place })
 }
 
 fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &mut Cx<'_>) {
     let parts = ["damping", "friction", "spring_stiffness", "spring_reference"];
-    let found = children(node, parts, cx);
-    misplaced::check(node, &parts, AXIS_HELP, cx);
-    let [damping, friction, stiffness, free] = found.map(|part| part.and_then(|part| content::<1>(part, cx)));
+    let found = known_children(node, parts, cx);
+    misplaced::check_misplaced(node, &parts, AXIS_HELP, cx);
+    let [damping, friction, stiffness, free] =
+        found.map(|part| part.and_then(|part| read_numbers_content::<1>(part, cx)));
     let alone = has_coordinate(joint.kind);
     for (which, found) in [("damping", &damping), ("friction", &friction), ("spring_stiffness", &stiffness)] {
         let Some(found) = found.as_ref().filter(|found| found.value != [0.0]) else { continue };
         if found.value[0] < 0.0 {
             let message = format!("negative {which} `{}`", found.value[0]);
-            cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+            cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
         } else if !alone {
             let message = format!("`{which}` of a `{}` joint is not supported", joint.word);
-            cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+            cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
         }
     }
     let nonzero_expression = |found: Option<Placed<[f64; 1]>>| {
         let found = found.filter(|found| found.value != [0.0])?;
-        Some(Expr::number(found.value[0], &found.place))
+        Some(Expr::number_at(found.value[0], &found.place))
     };
     (joint.damping, joint.friction) = (nonzero_expression(damping), nonzero_expression(friction));
     if let Some(stiffness) = stiffness.filter(|stiffness| stiffness.value != [0.0]) {
@@ -310,14 +321,14 @@ fn read_dynamics(node: Node<'_>, joint: &mut FileJoint, robot: &mut Robot, cx: &
 }
 
 fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits {
-    let found = children(node, ["lower", "upper", "velocity", "effort"], cx);
-    misplaced::check(node, &["lower", "upper", "velocity", "effort", "stiffness"], AXIS_HELP, cx);
+    let found = known_children(node, ["lower", "upper", "velocity", "effort"], cx);
+    misplaced::check_misplaced(node, &["lower", "upper", "velocity", "effort", "stiffness"], AXIS_HELP, cx);
     let is_infinite_limit = |part: Node<'_>, cx: &Cx<'_>| {
-        word(part, cx).is_some_and(|word| word.text.trim_start_matches(['-', '+']).starts_with("inf"))
+        read_word(part, cx).is_some_and(|word| word.text.trim_start_matches(['-', '+']).starts_with("inf"))
     };
     let mut number = |part: Option<Node<'_>>| {
         let part = part.filter(|part| !is_infinite_limit(*part, cx))?;
-        let found = content::<1>(part, cx)?;
+        let found = read_numbers_content::<1>(part, cx)?;
         Some(Placed { value: found.value[0], place: found.place }).filter(|found| found.value.abs() < ENDLESS)
     };
     let [lower, upper, velocity, effort] = found.map(&mut number);
@@ -334,7 +345,7 @@ fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits 
         && low.value > high.value
     {
         let message = format!("`lower` is {}, above `upper`, which is {}", low.value, high.value);
-        cx.error(&low.place, message, |d| d.help(IGNORE_LIMITS));
+        cx.report_error(&low.place, message, |d| d.add_help(IGNORE_LIMITS));
     }
     limits
 }
@@ -342,14 +353,15 @@ fn read_limits(node: Node<'_>, continuous: bool, cx: &mut Cx<'_>) -> FileLimits 
 /// Reads `<mimic>`: `q = multiplier (q_leader − reference) + offset`.
 fn read_mimic(node: Node<'_>, scope: &Scope, cx: &mut Cx<'_>) -> Option<Mimic> {
     check_attributes(node, &["joint"], &["axis"], cx);
-    let mut leader = name(node, "joint", cx)?;
+    let mut leader = read_name_attribute(node, "joint", cx)?;
     leader.text = match node.attribute("axis") {
         Some("axis2") => format!("{}_2", scope.whole_name(&leader.text)),
         _ => scope.whole_name(&leader.text),
     };
-    let found = children(node, ["multiplier", "offset", "reference"], cx);
-    misplaced::check(node, &["multiplier", "offset", "reference"], AXIS_HELP, cx);
-    let [multiplier, offset, reference] = found.map(|part| part.and_then(|part| content::<1>(part, cx)));
+    let found = known_children(node, ["multiplier", "offset", "reference"], cx);
+    misplaced::check_misplaced(node, &["multiplier", "offset", "reference"], AXIS_HELP, cx);
+    let [multiplier, offset, reference] =
+        found.map(|part| part.and_then(|part| read_numbers_content::<1>(part, cx)));
     let value_or = |found: Option<Placed<[f64; 1]>>, usual: f64| found.map_or(usual, |found| found.value[0]);
     let multiplier = value_or(multiplier, 1.0);
     Some(Mimic {

@@ -1,12 +1,13 @@
 //! Conversion of a `<link>` element to a [`Body`].
 
-use super::frames::{Frames, pose_in, reference};
+use super::frames::{Frames, pose_in, reference_frame_attribute};
 use super::scope::Scope;
 use super::version::is_before;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::{
-    Node, check_attributes, check_element_name, check_plain, children, content, elements, place, word,
+    Node, check_attributes, check_element_name, check_plain, child_elements, element_position,
+    known_children, read_numbers_content, read_word,
 };
 use crate::import::misplaced;
 use crate::import::pose::{Matrix, Pose, rotated_tensor};
@@ -38,8 +39,8 @@ pub(super) fn read_link(
     frames.resolve(name, cx)?;
     let mut body = bare_link(name.clone());
     check_motion(node, options, cx);
-    elements(node).for_each(|child| check_element_name(child, &LINK, cx));
-    misplaced::check(
+    child_elements(node).for_each(|child| check_element_name(child, &LINK, cx));
+    misplaced::check_misplaced(
         node,
         &LINK,
         "mass properties belong to `<inertial>`, and connections of links to `<joint>`",
@@ -48,61 +49,71 @@ pub(super) fn read_link(
     if options.inertias == Inertias::None {
         return Some(body);
     }
-    let [inertial] = children(node, ["inertial"], cx);
-    let at = place(inertial.unwrap_or(node), cx);
+    let [inertial] = known_children(node, ["inertial"], cx);
+    let at = element_position(inertial.unwrap_or(node), cx);
     let [pose, mass, inertia, water] = match inertial {
         Some(inertial) => {
             check_computed(inertial, &at, cx);
             check_plain(inertial, &["auto"], cx);
-            misplaced::check(inertial, &["pose", "mass", "inertia"], PARTS_HELP, cx);
-            children(inertial, ["pose", "mass", "inertia", "fluid_added_mass"], cx)
+            misplaced::check_misplaced(inertial, &["pose", "mass", "inertia"], PARTS_HELP, cx);
+            known_children(inertial, ["pose", "mass", "inertia", "fluid_added_mass"], cx)
         }
         None => [None; 4],
     };
     if let Some(water) = water {
-        cx.error(&place(water, cx), "`<fluid_added_mass>` is not supported", |d| d.help("remove it"));
+        cx.report_error(&element_position(water, cx), "`<fluid_added_mass>` is not supported", |d| {
+            d.add_help("remove it")
+        });
     }
     let mass = match mass {
-        Some(mass) => content::<1>(mass, cx)?.value[0],
+        Some(mass) => read_numbers_content::<1>(mass, cx)?.value[0],
         None => 1.0,
     };
     let pose = match (pose, inertial) {
         (Some(pose), Some(inertial)) => {
-            if let Some(said) = reference(pose, cx).filter(|_| !is_before(pose, IN_LINK)) {
-                let at = cx.place(said.range_value().start);
-                cx.error(&at, "the pose of an `<inertial>` is relative to its link", |d| {
-                    d.help("remove `relative_to`")
+            if let Some(said) = reference_frame_attribute(pose, cx).filter(|_| !is_before(pose, IN_LINK)) {
+                let at = cx.source_position(said.range_value().start);
+                cx.report_error(&at, "the pose of an `<inertial>` is relative to its link", |d| {
+                    d.add_help("remove `relative_to`")
                 });
             }
             pose_in(inertial, (name, scope), frames, cx)?
         }
         _ => Pose::ZERO,
     };
-    give(&mut body, mass, &pose, &rotated_tensor(&pose.axes, &read_inertia(inertia, cx)), &at);
-    if !body.inertia.iter().flat_map(Expr::parts).filter_map(Expr::literal).all(f64::is_finite) {
-        cx.error(&at, "an inertia that is too large for floating-point numbers", |d| d);
+    set_mass_properties(&mut body, mass, &pose, &rotated_tensor(&pose.axes, &read_inertia(inertia, cx)), &at);
+    if !body
+        .inertia
+        .iter()
+        .flat_map(Expr::subexpressions)
+        .filter_map(Expr::literal_number)
+        .all(f64::is_finite)
+    {
+        cx.report_error(&at, "an inertia that is too large for floating-point numbers", |d| d);
     }
     Some(body)
 }
 
 /// Reports settings of a link that affect its motion and are not supported.
 fn check_motion(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) {
-    for child in elements(node) {
+    for child in child_elements(node) {
         let kind = child.tag_name().name();
-        let off = word(child, cx).is_some_and(|word| matches!(word.text.as_str(), "false" | "0"));
+        let off = read_word(child, cx).is_some_and(|word| matches!(word.text.as_str(), "false" | "0"));
         if (kind == "gravity" && off) || (kind == "kinematic" && !off) {
             let message = format!("`<{kind}>` of a link is not supported");
-            cx.error(&place(child, cx), message, |d| {
-                d.help("remove it: gravity acts on all links, and forces move them")
+            cx.report_error(&element_position(child, cx), message, |d| {
+                d.add_help("remove it: gravity acts on all links, and forces move them")
             });
         }
         let decays = kind == "velocity_decay"
-            && elements(child)
-                .any(|rate| word(rate, cx).is_none_or(|word| word.text.parse::<f64>() != Ok(0.0)));
+            && child_elements(child)
+                .any(|rate| read_word(rate, cx).is_none_or(|word| word.text.parse::<f64>() != Ok(0.0)));
         if decays && options.honour_passive {
-            cx.error(&place(child, cx), "`<velocity_decay>` of a link is not supported", |d| {
-                d.help("to ignore it, write `#[mechanism(…, passive = ignore)]`")
-            });
+            cx.report_error(
+                &element_position(child, cx),
+                "`<velocity_decay>` of a link is not supported",
+                |d| d.add_help("to ignore it, write `#[mechanism(…, passive = ignore)]`"),
+            );
         }
     }
 }
@@ -111,7 +122,7 @@ fn check_computed(inertial: Node<'_>, at: &Place, cx: &mut Cx<'_>) {
     check_attributes(inertial, &[], &["auto"], cx);
     if inertial.attribute("auto").is_some_and(|auto| matches!(auto, "true" | "1")) {
         let message = "mass properties by collision geometry are not supported";
-        cx.error(at, message, |d| d.help("write `<mass>` and `<inertia>` instead of `auto`"));
+        cx.report_error(at, message, |d| d.add_help("write `<mass>` and `<inertia>` instead of `auto`"));
     }
 }
 
@@ -119,10 +130,10 @@ fn read_inertia(inertia: Option<Node<'_>>, cx: &mut Cx<'_>) -> Matrix {
     let mut entries = INERTIA.map(|(_, usual)| usual);
     if let Some(inertia) = inertia {
         check_plain(inertia, &[], cx);
-        misplaced::check(inertia, &INERTIA.map(|(entry, _)| entry), PARTS_HELP, cx);
-        let found = children(inertia, INERTIA.map(|(entry, _)| entry), cx);
+        misplaced::check_misplaced(inertia, &INERTIA.map(|(entry, _)| entry), PARTS_HELP, cx);
+        let found = known_children(inertia, INERTIA.map(|(entry, _)| entry), cx);
         for (to, from) in entries.iter_mut().zip(found) {
-            if let Some(found) = from.and_then(|from| content::<1>(from, cx)) {
+            if let Some(found) = from.and_then(|from| read_numbers_content::<1>(from, cx)) {
                 *to = found.value[0];
             }
         }
@@ -132,12 +143,12 @@ fn read_inertia(inertia: Option<Node<'_>>, cx: &mut Cx<'_>) -> Matrix {
 }
 
 /// Sets the mass properties of a body.
-fn give(body: &mut Body, mass: f64, pose: &Pose, inertia: &Matrix, at: &Place) {
-    body.mass = Some(Expr::number(mass, at));
-    body.com = (pose.at != [0.0; 3]).then(|| Expr::vector(pose.at, at));
+fn set_mass_properties(body: &mut Body, mass: f64, pose: &Pose, inertia: &Matrix, at: &Place) {
+    body.mass = Some(Expr::number_at(mass, at));
+    body.com = (pose.at != [0.0; 3]).then(|| Expr::vector_at(pose.at, at));
     let entry =
         |i: usize, j: usize| inertia.get(i.min(j)).and_then(|row| row.get(i.max(j))).copied().unwrap_or(0.0);
-    let rows = (0..3).map(|i| Expr::vector(std::array::from_fn(|j| entry(i, j)), at)).collect();
+    let rows = (0..3).map(|i| Expr::vector_at(std::array::from_fn(|j| entry(i, j)), at)).collect();
     let zero = inertia.iter().flatten().all(|entry| *entry == 0.0);
     body.inertia = (!zero).then(|| Expr { kind: ExprKind::Array(rows), place: at.clone() });
 }

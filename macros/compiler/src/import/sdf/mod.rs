@@ -3,18 +3,19 @@
 //! Links, joints, models and `<frame>` elements are frames, and a pose is relative to any of them. Nested
 //! models become one mechanism; names of their links and joints contain `::`.
 
-use super::context::{Cx, quote};
+use super::context::{Cx, quote_word};
 use super::element::{
-    Node, check_attributes, check_element_name, content, contents, elements, name, place, tag, word,
+    Node, check_attributes, check_element_name, child_elements, element_position, quoted_tag,
+    read_name_attribute, read_numbers_content, read_word, relevant_contents,
 };
 use super::misplaced;
 use super::pose::Pose;
 use crate::diag::Diagnostics;
 use crate::import::imported::Imported;
 use crate::import::robot::{self, MAX_ELEMENTS, Robot};
-use crate::import::whole::imported;
+use crate::import::whole::import_composed_text;
 use crate::syntax::{Expr, FileFormat, FileOptions, GROUND, JointKind, Name};
-use frames::{Frame, Frames, name_in_owner, origin, own_frames, read_frame};
+use frames::{Frame, Frames, name_in_owner, origin_from_pose, own_frames, read_frame};
 use scope::{Scope, WORLD, World};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -99,7 +100,7 @@ struct Models<'a> {
 }
 
 /// Reads the text of the file at `path` and the models that it includes.
-pub(super) fn import(
+pub(super) fn import_sdf(
     text: &str,
     path: &Path,
     options: &FileOptions,
@@ -107,11 +108,18 @@ pub(super) fn import(
 ) -> Option<Imported> {
     let whole = include::read_whole(text, path, &options.path, cx)?;
     let folder = path.parent().unwrap_or(path);
-    imported(whole, &options.path, FileFormat::Sdf, cx, |root, cx| read(root, folder, options, cx))
+    import_composed_text(whole, &options.path, FileFormat::Sdf, cx, |root, cx| {
+        read_root_element(root, folder, options, cx)
+    })
 }
 
 /// Reads the root element of an SDF file in `folder`.
-fn read<'a>(root_node: Node<'a>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
+fn read_root_element<'a>(
+    root_node: Node<'a>,
+    folder: &Path,
+    options: &FileOptions,
+    cx: &mut Cx<'_>,
+) -> Option<Imported> {
     let top = find_models(root_node, cx)?;
     let mut reader = Reader::default();
     reader.read_top(&top, cx)?;
@@ -120,24 +128,24 @@ fn read<'a>(root_node: Node<'a>, folder: &Path, options: &FileOptions, cx: &mut 
         let number = robot.links.len();
         robot.links.extend(link::read_link(*node, (name, scope), &reader.frames, options, cx));
         if options.visuals {
-            let parts = visual::read(*node, (name, scope), &reader.frames, cx);
+            let parts = visual::read_visuals(*node, (name, scope), &reader.frames, cx);
             robot.visuals.extend(parts.into_iter().map(|part| (number, part)));
         }
         if options.collisions {
-            let parts = collision::read(*node, (name, scope), &reader.frames, folder, cx);
+            let parts = collision::read_collisions(*node, (name, scope), &reader.frames, folder, cx);
             robot.collisions.extend(parts.into_iter().map(|part| (number, part)));
         }
     }
     for (node, name, scope) in &reader.joints {
         joint::read_joint((*node, name, scope), &reader.frames, options, &mut robot, cx);
     }
-    if robot.links.is_empty() && !cx.failed() {
-        cx.error(&place(top.moving[0].0, cx), "model without a link", |d| {
-            d.help("expected `<link name=\"…\"/>`")
+    if robot.links.is_empty() && !cx.has_errors() {
+        cx.report_error(&element_position(top.moving[0].0, cx), "model without a link", |d| {
+            d.add_help("expected `<link name=\"…\"/>`")
         });
     }
-    if !cx.failed() {
-        reader.mark(&mut robot, cx);
+    if !cx.has_errors() {
+        reader.add_frame_links(&mut robot, cx);
         robot::close_loops(&mut robot, cx);
     }
     robot::check_names(&robot, options.format, cx);
@@ -145,10 +153,11 @@ fn read<'a>(root_node: Node<'a>, folder: &Path, options: &FileOptions, cx: &mut 
     robot::rename_ground(&mut robot, options.base);
     robot::check_ends(&robot, options.format, cx);
     robot::check_locks(&robot.joints, &options.lock, cx);
-    if let Some(tolerance) = options.snap.filter(|_| !cx.failed()) {
-        robot.snapped = robot.joints.iter_mut().flat_map(|joint| robot::snap(joint, tolerance)).collect();
+    if let Some(tolerance) = options.snap.filter(|_| !cx.has_errors()) {
+        robot.snapped =
+            robot.joints.iter_mut().flat_map(|joint| robot::snap_joint_frame(joint, tolerance)).collect();
     }
-    if cx.failed() {
+    if cx.has_errors() {
         return None;
     }
     let order = robot::order_joints(&robot, cx)?;
@@ -156,16 +165,16 @@ fn read<'a>(root_node: Node<'a>, folder: &Path, options: &FileOptions, cx: &mut 
     let root = robot.links.get(order.root)?.name.clone();
     // If the root is a frame of the file, its pose relative to the world is known.
     if reader.frames.known.contains_key(&root.text) {
-        robot.root = Some(origin(&reader.frames.resolve(&root, cx)?, &root.place));
+        robot.root = Some(origin_from_pose(&reader.frames.resolve(&root, cx)?, &root.place));
     }
-    robot.gravity = gravity(top.world.or_else(|| first(root_node, "world")), cx);
+    robot.gravity = gravity_of_world(top.world.or_else(|| first_child(root_node, "world")), cx);
     robot.left_out.extend(left_out(root_node, options));
-    let standing = standing(&robot, &root.text, options);
+    let standing = links_fixed_to_ground(&robot, &root.text, options);
     let closing = std::mem::take(&mut robot.closing);
     let mut imported = robot::assemble(robot, &order, motions, options, cx);
     robot::make_fields(&mut imported, &standing, options, cx);
     imported.joints.extend(closing);
-    (!cx.failed()).then_some(imported)
+    (!cx.has_errors()).then_some(imported)
 }
 
 /// Returns the contents of the file that the mechanism does not represent, for the generated documentation.
@@ -189,20 +198,20 @@ fn left_out(root: Node<'_>, options: &FileOptions) -> Vec<String> {
 fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
     let kind = root.tag_name().name();
     if kind != "sdf" {
-        let message = format!("expected `<sdf>`, found {}", tag(root));
-        cx.error(&place(root, cx), message, |d| match kind {
-            "robot" => d.help("this is a URDF file: write `urdf = \"…\"` instead of `sdf = \"…\"`"),
-            "gazebo" => d.help(
+        let message = format!("expected `<sdf>`, found {}", quoted_tag(root));
+        cx.report_error(&element_position(root, cx), message, |d| match kind {
+            "robot" => d.add_help("this is a URDF file: write `urdf = \"…\"` instead of `sdf = \"…\"`"),
+            "gazebo" => d.add_help(
                 "files of versions 1.0 and 1.2 begin so: convert the file, `gz sdf -p robot.sdf > \
                  converted.sdf`, after writing `<sdf version=\"…\">`",
             ),
-            "mujoco" => d.help("this is an MJCF file: write `mjcf = \"…\"` instead of `sdf = \"…\"`"),
-            _ => d.suggest(kind, ["sdf"]),
+            "mujoco" => d.add_help("this is an MJCF file: write `mjcf = \"…\"` instead of `sdf = \"…\"`"),
+            _ => d.suggest_name(kind, ["sdf"]),
         });
         return None;
     }
     let children_with_tag = |node: Node<'a>, what: &str| -> Vec<Node<'a>> {
-        elements(node).filter(|child| child.tag_name().name() == what).collect()
+        child_elements(node).filter(|child| child.tag_name().name() == what).collect()
     };
     let mut found = children_with_tag(root, "model");
     found.extend(
@@ -237,45 +246,51 @@ fn find_models<'a>(root: Node<'a>, cx: &mut Cx<'_>) -> Option<Models<'a>> {
             let fixed = models_with_prefix(fixed, &format!("{WORLD}::"));
             return Some(Models { moving: models_with_prefix(found, ""), fixed, world });
         }
-        [] => cx.error(&place(root, cx), "SDF file without a model", |d| {
-            d.help("expected `<sdf version=\"…\"><model name=\"…\"> … </model></sdf>`")
+        [] => cx.report_error(&element_position(root, cx), "SDF file without a model", |d| {
+            d.add_help("expected `<sdf version=\"…\"><model name=\"…\"> … </model></sdf>`")
         }),
-        [_, second, ..] => cx.error(&place(*second, cx), "SDF file with several models", |d| {
-            d.help(
-                "a mechanism is one model, or several that joints of their world connect: put the others \
+        [_, second, ..] => {
+            cx.report_error(&element_position(*second, cx), "SDF file with several models", |d| {
+                d.add_help(
+                    "a mechanism is one model, or several that joints of their world connect: put the others \
                  into files of their own",
-            )
-        }),
+                )
+            })
+        }
     }
     None
 }
 
 /// Returns the first child element with this name.
-fn first<'a>(node: Node<'a>, kind: &str) -> Option<Node<'a>> {
-    elements(node).find(|child| child.tag_name().name() == kind)
+fn first_child<'a>(node: Node<'a>, kind: &str) -> Option<Node<'a>> {
+    child_elements(node).find(|child| child.tag_name().name() == kind)
 }
 
 /// Returns whether a model is static.
 fn is_static(model: Node<'_>) -> bool {
-    let text = first(model, "static").and_then(|said| contents(said).find_map(|text| text.text()));
+    let text =
+        first_child(model, "static").and_then(|said| relevant_contents(said).find_map(|text| text.text()));
     text.is_some_and(|word| matches!(word.trim(), "true" | "1"))
 }
 
 /// Returns the gravitational acceleration of a world, by default 9.8 m/s² downwards. Returns `None` for a
 /// model without a world.
-fn gravity(world: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
+fn gravity_of_world(world: Option<Node<'_>>, cx: &mut Cx<'_>) -> Option<Expr> {
     let world = world?;
-    let said = first(world, "gravity").or_else(|| {
-        let of_physics = first(first(world, "physics")?, "gravity")?;
+    let said = first_child(world, "gravity").or_else(|| {
+        let of_physics = first_child(first_child(world, "physics")?, "gravity")?;
         if !version::is_before(world, GRAVITY_OF_WORLD) {
             let message = "`<gravity>` is an element of the world since version 1.6 of SDF";
-            cx.error(&place(of_physics, cx), message, |d| d.help("move it from `<physics>` into `<world>`"));
+            cx.report_error(&element_position(of_physics, cx), message, |d| {
+                d.add_help("move it from `<physics>` into `<world>`")
+            });
         }
         Some(of_physics)
     });
-    let at = place(said.unwrap_or(world), cx);
-    let value = said.and_then(|said| content(said, cx)).map_or([0.0, 0.0, -9.8], |found| found.value);
-    Some(Expr::vector(value, &at))
+    let at = element_position(said.unwrap_or(world), cx);
+    let value =
+        said.and_then(|said| read_numbers_content(said, cx)).map_or([0.0, 0.0, -9.8], |found| found.value);
+    Some(Expr::vector_at(value, &at))
 }
 
 impl<'a> Reader<'a> {
@@ -290,9 +305,9 @@ impl<'a> Reader<'a> {
             self.read_models((*model, prefix), &world, true, cx)?;
         }
         if let Some(node) = top.world {
-            misplaced::check(node, &["joint"], "links and their parts belong to a `<model>`", cx);
+            misplaced::check_misplaced(node, &["joint"], "links and their parts belong to a `<model>`", cx);
         }
-        for child in top.world.into_iter().flat_map(elements) {
+        for child in top.world.into_iter().flat_map(child_elements) {
             match child.tag_name().name() {
                 kind @ ("joint" | "frame") => self.read_part(child, kind, &world, false, cx),
                 _ => check_element_name(child, &WORLD_PARTS, cx),
@@ -314,48 +329,56 @@ impl<'a> Reader<'a> {
         while let Some((node, prefix, outer)) = open.pop() {
             let scope = Scope::Model(prefix.clone());
             check_attributes(node, &["name"], &["canonical_link", "placement_frame"], cx);
-            misplaced::check(node, &["link", "joint", "pose"], MODEL_HELP, cx);
+            misplaced::check_misplaced(node, &["link", "joint", "pose"], MODEL_HELP, cx);
             if let Some(frame) =
                 node.attribute_node("placement_frame").filter(|frame| !frame.value().is_empty())
             {
-                let at = cx.place(frame.range_value().start);
-                cx.error(&at, "`placement_frame` is not supported", |d| d.help("give the model a `<pose>`"));
+                let at = cx.source_position(frame.range_value().start);
+                cx.report_error(&at, "`placement_frame` is not supported", |d| {
+                    d.add_help("give the model a `<pose>`")
+                });
             }
-            let own = scope.frame();
-            let mut frame = read_frame(node, &outer, &outer.frame(), cx);
+            let own = scope.full_frame_name();
+            let mut frame = read_frame(node, &outer, &outer.full_frame_name(), cx);
             frame.attached = match is_fixed {
-                true => Some(Name { text: WORLD.to_string(), place: place(node, cx) }),
+                true => Some(Name { text: WORLD.to_string(), place: element_position(node, cx) }),
                 false => canonical_link(node, &scope, cx),
             };
             if !prefix.is_empty() {
                 let short = prefix.trim_end_matches("::").to_string();
-                let base = Name { text: own.clone(), place: place(node, cx) };
+                let base = Name { text: own.clone(), place: element_position(node, cx) };
                 let same = Frame { attached: Some(base.clone()), base, pose: Pose::ZERO };
                 self.frames.known.insert(short, same);
             }
             self.frames.known.insert(own.clone(), frame);
-            for child in elements(node) {
+            for child in child_elements(node) {
                 match child.tag_name().name() {
                     kind @ ("link" | "joint" | "frame") => self.read_part(child, kind, &scope, is_fixed, cx),
                     "model" => {
-                        if let Some(inner) = name(child, "name", cx) {
+                        if let Some(inner) = read_name_attribute(child, "name", cx) {
                             open.push((child, format!("{prefix}{}::", inner.text), scope.clone()));
                         }
                     }
                     "static"
                         if !is_fixed
-                            && word(child, cx)
+                            && read_word(child, cx)
                                 .is_some_and(|word| matches!(word.text.as_str(), "true" | "1")) =>
                     {
-                        cx.error(&place(child, cx), "the model is static and cannot move", |d| {
-                            d.help("remove `<static>`")
-                        });
+                        cx.report_error(
+                            &element_position(child, cx),
+                            "the model is static and cannot move",
+                            |d| d.add_help("remove `<static>`"),
+                        );
                     }
                     _ => check_element_name(child, &MODEL, cx),
                 }
             }
             if self.links.len() > MAX_ELEMENTS || self.joints.len() > MAX_ELEMENTS {
-                cx.error(&place(node, cx), format!("more than {MAX_ELEMENTS} links or joints"), |d| d);
+                cx.report_error(
+                    &element_position(node, cx),
+                    format!("more than {MAX_ELEMENTS} links or joints"),
+                    |d| d,
+                );
                 return None;
             }
         }
@@ -364,22 +387,23 @@ impl<'a> Reader<'a> {
 
     /// Collects a link, a joint or a frame. Each of them defines a frame.
     fn read_part(&mut self, node: Node<'a>, kind: &str, scope: &Scope, is_fixed: bool, cx: &mut Cx<'_>) {
-        let Some(mut part) = name(node, "name", cx) else {
+        let Some(mut part) = read_name_attribute(node, "name", cx) else {
             check_attributes(node, &["name"], &[], cx);
             return;
         };
         part.text = scope.name_of_part(&part.text);
         let base = match kind {
             // The pose of a joint is relative to its child by default.
-            "joint" => joint::end(node, "child", scope, cx).map_or(scope.frame(), |child| child.text),
+            "joint" => joint::frame_at_joint_end(node, "child", scope, cx)
+                .map_or(scope.full_frame_name(), |child| child.text),
             "frame" => match node.attribute("attached_to").filter(|to| !to.is_empty()) {
                 Some(to) => scope.whole_name(to),
-                None => scope.frame(),
+                None => scope.full_frame_name(),
             },
-            _ => scope.frame(),
+            _ => scope.full_frame_name(),
         };
         let mut frame = read_frame(node, scope, &base, cx);
-        let at = place(node, cx);
+        let at = element_position(node, cx);
         let name_at_element = |text: &str| Name { text: text.to_string(), place: at.clone() };
         frame.attached = match kind {
             "link" => is_fixed.then(|| name_at_element(WORLD)),
@@ -393,8 +417,10 @@ impl<'a> Reader<'a> {
                 .insert(name_in_owner(&part.text, own.attribute("name").unwrap_or_default()), frame);
         }
         if self.frames.known.insert(part.text.clone(), frame).is_some() && kind != "link" {
-            let message = format!("second link, joint or frame with the name {}", quote(&part.text));
-            cx.error(&part.place, message, |d| d.help("they are all frames: choose different names"));
+            let message = format!("second link, joint or frame with the name {}", quote_word(&part.text));
+            cx.report_error(&part.place, message, |d| {
+                d.add_help("they are all frames: choose different names")
+            });
         }
         match kind {
             _ if is_fixed => {}
@@ -405,25 +431,25 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds a massless link for each `<frame>`, welded to the link that the frame is attached to.
-    fn mark(&self, robot: &mut Robot, cx: &mut Cx<'_>) -> Option<()> {
+    fn add_frame_links(&self, robot: &mut Robot, cx: &mut Cx<'_>) -> Option<()> {
         let mut names: BTreeSet<String> = robot.joints.iter().map(|joint| joint.name.text.clone()).collect();
         let hangs_from_world = robot.joints.iter().any(|joint| joint.parent.text == WORLD);
         for mark in &self.marks {
-            let carrier = self.frames.carrier(mark, cx)?;
+            let carrier = self.frames.link_of_frame(mark, cx)?;
             // Without joints that start at the world, the world is not a link, and nothing can be welded
             // to it.
             if carrier.text == WORLD && !hangs_from_world {
                 continue;
             }
             let (at, base) = (self.frames.resolve(mark, cx)?, self.frames.resolve(&carrier, cx)?);
-            let text = robot::unused(&format!("{}_weld", mark.text), |name| names.contains(name));
+            let text = robot::unused_name(&format!("{}_weld", mark.text), |name| names.contains(name));
             names.insert(text.clone());
             let name = Name { text, place: mark.place.clone() };
-            robot.joints.push(joint::weld(
+            robot.joints.push(joint::fixed_joint(
                 name,
                 carrier,
                 mark.clone(),
-                origin(&base.back().then(&at), &mark.place),
+                origin_from_pose(&base.inverse_pose().compose_with(&at), &mark.place),
             ));
             robot.links.push(robot::bare_link(mark.clone()));
         }
@@ -436,17 +462,17 @@ impl<'a> Reader<'a> {
 fn canonical_link(node: Node<'_>, scope: &Scope, cx: &Cx<'_>) -> Option<Name> {
     if let Some(said) = node.attribute_node("canonical_link").filter(|said| !said.value().is_empty()) {
         let text = scope.whole_name(said.value());
-        return Some(Name { text, place: cx.place(said.range_value().start) });
+        return Some(Name { text, place: cx.source_position(said.range_value().start) });
     }
     let child_name = |what: &str| {
-        let found = first(node, what)?;
-        Some(Name { text: scope.whole_name(found.attribute("name")?), place: place(found, cx) })
+        let found = first_child(node, what)?;
+        Some(Name { text: scope.whole_name(found.attribute("name")?), place: element_position(found, cx) })
     };
     child_name("link").or_else(|| child_name("model"))
 }
 
 /// Returns the names of the links that are fixed to the ground.
-fn standing(robot: &Robot, root: &str, options: &FileOptions) -> Vec<String> {
+fn links_fixed_to_ground(robot: &Robot, root: &str, options: &FileOptions) -> Vec<String> {
     if options.base == crate::syntax::Base::Free {
         return Vec::new();
     }

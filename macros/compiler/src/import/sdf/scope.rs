@@ -1,6 +1,6 @@
 //! Scopes of names: translate the names inside a model or world to full names.
 
-use crate::import::element::{Node, elements};
+use crate::import::element::{Node, child_elements};
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
@@ -35,8 +35,8 @@ impl World {
         // instead.
         let bare = models.iter().filter(|(_, prefix)| prefix.is_empty());
         let taken: BTreeSet<String> =
-            bare.flat_map(|(model, _)| elements(*model)).filter_map(|part| name(&part)).collect();
-        let parts = node.into_iter().flat_map(elements);
+            bare.flat_map(|(model, _)| child_elements(*model)).filter_map(|part| name(&part)).collect();
+        let parts = node.into_iter().flat_map(child_elements);
         let parts = parts.filter(|part| matches!(part.tag_name().name(), "frame" | "joint"));
         let name_with_full_path = |name: String| match taken.contains(&name) {
             true => (name.clone(), format!("{WORLD}::{name}")),
@@ -57,7 +57,7 @@ impl Scope {
     pub(super) fn whole_name(&self, name: &str) -> String {
         match (self, name) {
             (_, WORLD) => WORLD.to_string(),
-            (Scope::Model(prefix), "__model__") => model(prefix),
+            (Scope::Model(prefix), "__model__") => full_model_frame_name(prefix),
             (Scope::Model(prefix), _) => format!("{prefix}{name}"),
             (Scope::World(world), _) => {
                 let (first, rest) = name.split_once("::").unwrap_or((name, "__model__"));
@@ -79,15 +79,15 @@ impl Scope {
     }
 
     /// Returns the full name of the frame of the model, or of the world.
-    pub(super) fn frame(&self) -> String {
+    pub(super) fn full_frame_name(&self) -> String {
         match self {
-            Scope::Model(prefix) => model(prefix),
+            Scope::Model(prefix) => full_model_frame_name(prefix),
             Scope::World(_) => WORLD.to_string(),
         }
     }
 }
 
 /// Returns the full name of the frame of a model.
-fn model(prefix: &str) -> String {
+fn full_model_frame_name(prefix: &str) -> String {
     format!("{prefix}__model__")
 }

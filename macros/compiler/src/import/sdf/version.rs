@@ -1,7 +1,7 @@
 //! SDF version of the file in which an element is written.
 
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, place};
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{Node, element_position};
 
 /// Attribute in which an included model stores the version of its own file.
 pub(super) const OF_INCLUDED: &str = "sdf_version";
@@ -21,14 +21,14 @@ pub(super) fn is_before(node: Node<'_>, number: (u32, u32)) -> bool {
 }
 
 /// Reports an invalid or unsupported version of SDF.
-pub(super) fn check(root: Node<'_>, cx: &mut Cx<'_>) {
+pub(super) fn check_version(root: Node<'_>, cx: &mut Cx<'_>) {
     let is_sdf = root.tag_name().name() == "sdf";
     let Some(version) = root.attribute_node("version").filter(|_| is_sdf) else { return };
-    let at = cx.place(version.range_value().start);
+    let at = cx.source_position(version.range_value().start);
     match parse(version.value()) {
         None => {
-            let message = format!("{} is not a version of SDF", quote(version.value()));
-            cx.error(&at, message, |d| d.help("expected a number, as in `version=\"1.9\"`"));
+            let message = format!("{} is not a version of SDF", quote_word(version.value()));
+            cx.report_error(&at, message, |d| d.add_help("expected a number, as in `version=\"1.9\"`"));
         }
         Some(found) if found < FIRST => report_first(root, cx),
         Some(_) => {}
@@ -37,8 +37,8 @@ pub(super) fn check(root: Node<'_>, cx: &mut Cx<'_>) {
 
 /// Reports a file of version 1.0, whose elements have other names.
 pub(super) fn report_first(root: Node<'_>, cx: &mut Cx<'_>) {
-    cx.error(&place(root, cx), "version 1.0 of SDF is not supported", |d| {
-        d.help("convert the file: `gz sdf -p robot.sdf > converted.sdf`")
+    cx.report_error(&element_position(root, cx), "version 1.0 of SDF is not supported", |d| {
+        d.add_help("convert the file: `gz sdf -p robot.sdf > converted.sdf`")
     });
 }
 

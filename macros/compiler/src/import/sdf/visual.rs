@@ -5,25 +5,25 @@ use super::collision::{SHAPES, read_shape};
 use super::frames::{Frames, origin_in};
 use super::scope::Scope;
 use crate::import::context::Cx;
-use crate::import::element::{Node, content, elements, word};
+use crate::import::element::{Node, child_elements, read_numbers_content, read_word};
 use crate::import::robot::FileVisual;
 use crate::syntax::{Mesh, Name, Shape};
 
 /// Reads all visual geometry of a link.
-pub(super) fn read(
+pub(super) fn read_visuals(
     node: Node<'_>,
     link: (&Name, &Scope),
     frames: &Frames,
     cx: &mut Cx<'_>,
 ) -> Vec<FileVisual> {
-    let parts = elements(node).filter(|node| node.tag_name().name() == "visual");
+    let parts = child_elements(node).filter(|node| node.tag_name().name() == "visual");
     parts.filter_map(|part| read_part(part, link, frames, cx)).collect()
 }
 
 fn read_part(node: Node<'_>, link: (&Name, &Scope), frames: &Frames, cx: &mut Cx<'_>) -> Option<FileVisual> {
-    let geometry = elements(node).find(|child| child.tag_name().name() == "geometry")?;
+    let geometry = child_elements(node).find(|child| child.tag_name().name() == "geometry")?;
     let is_shape = |child: &Node<'_>| SHAPES.contains(&child.tag_name().name());
-    let form = elements(geometry).find(is_shape)?;
+    let form = child_elements(geometry).find(is_shape)?;
     let origin = origin_in(node, link, frames, cx)?;
     let shape = read_shape(form, cx)?;
     let mesh = if shape == Shape::Mesh { Some(read_mesh(form, cx)?) } else { None };
@@ -31,9 +31,9 @@ fn read_part(node: Node<'_>, link: (&Name, &Scope), frames: &Frames, cx: &mut Cx
 }
 
 fn read_mesh(form: Node<'_>, cx: &mut Cx<'_>) -> Option<Mesh> {
-    let find_child_by_tag = |name: &str| elements(form).find(|child| child.tag_name().name() == name);
-    let path = word(find_child_by_tag("uri")?, cx)?.text;
+    let find_child_by_tag = |name: &str| child_elements(form).find(|child| child.tag_name().name() == name);
+    let path = read_word(find_child_by_tag("uri")?, cx)?.text;
     let scale = find_child_by_tag("scale")
-        .map_or(Some([1.0; 3]), |scale| content(scale, cx).map(|found| found.value))?;
+        .map_or(Some([1.0; 3]), |scale| read_numbers_content(scale, cx).map(|found| found.value))?;
     Some(Mesh { path, scale })
 }

@@ -1,6 +1,6 @@
 //! Tests of actuators and couplings of joints in MJCF files.
 
-use super::mjcf::{check_model, mjcf};
+use super::mjcf::{check_model, mjcf_options};
 use super::*;
 use crate::syntax::Key;
 
@@ -171,8 +171,9 @@ fn defaults_of_actuators_are_one_record() {
              <actuator>{actuator} joint='j'/></actuator></mujoco>"
         );
         let mut cx = Diagnostics::new();
-        let imported = import_text(&text, &mjcf(), &mut cx).unwrap_or_else(|| panic!("{:?}", cx.messages()));
-        let laws = imported.drives.iter().map(|drive| match (&drive.on, drive.law) {
+        let imported =
+            import_text(&text, &mjcf_options(), &mut cx).unwrap_or_else(|| panic!("{:?}", cx.messages()));
+        let laws = imported.drives.iter().map(|drive| match (&drive.on, &drive.law) {
             (DriveOn::Sum(terms), DriveLaw::Input(_)) => format!("input {}", terms[0].1),
             (_, DriveLaw::Spring { stiffness, free }) => format!("spring {stiffness} from {free}"),
             (_, DriveLaw::Damper(damping)) => format!("damper {damping}"),
@@ -194,16 +195,16 @@ fn what_newer_versions_have_is_refused() {
         "= help: to ignore springs, damping and friction, write `#[mechanism(…, passive = ignore)]`";
     let inputs =
         "= help: to ignore the actuators of the file, write `#[mechanism(…, inputs = joints)]`, or `none`";
-    let polynomial_message = |which: &str| {
-        format!(
-            "`{which}` is a polynomial, as MuJoCo reads it since version 3.7\n= help: expected one number: a \
-             linear coefficient"
-        )
-    };
     for (joint, motor, expected) in [
-        ("damping='5 2 1'", "", format!("r.xml:2:52: {}\n{passive}", polynomial_message("damping"))),
-        ("stiffness='5 2'", "", format!("r.xml:2:54: {}\n{passive}", polynomial_message("stiffness"))),
-        ("", "damping='5 0 1'", format!("r.xml:2:109: {}\n{inputs}", polynomial_message("damping"))),
+        (
+            "type='ball' damping='5 2 1'",
+            "",
+            format!(
+                "r.xml:2:64: a polynomial `damping` is supported only on a `hinge` or a `slide`\n= help: \
+                 expected one number: a linear coefficient\n{passive}\nr.xml:2:124: joint `j` is `ball`: a \
+                 joint with several coordinates cannot drive\n= help: expected a `hinge` or a `slide`"
+            ),
+        ),
         (
             "stiffness='5' springyield='1'",
             "",
@@ -280,7 +281,7 @@ fn rotors_of_actuators() {
          m: input in N·m on 3 j",
     );
     check_with(
-        &FileOptions { inputs: InputOption::Joints, ..mjcf() },
+        &FileOptions { inputs: InputOption::Joints, ..mjcf_options() },
         &format!("<mujoco>\n{model}\n</mujoco>"),
         "the root is the ground
          body b
@@ -325,8 +326,10 @@ fn efforts_of_several_actuators() {
              <tendon><fixed name='t'><joint joint='j' coef='-2'/></fixed></tendon><actuator>{actuators}</actuator></mujoco>"
         );
         let mut cx = Diagnostics::new();
-        let imported = import_text(&text, &mjcf(), &mut cx).unwrap_or_else(|| panic!("{:?}", cx.messages()));
-        let effort = imported.limits.iter().find_map(|limit| limit.arguments.get(Key::MaxEffort)?.literal());
+        let imported =
+            import_text(&text, &mjcf_options(), &mut cx).unwrap_or_else(|| panic!("{:?}", cx.messages()));
+        let effort =
+            imported.limits.iter().find_map(|limit| limit.arguments.get(Key::MaxEffort)?.literal_number());
         assert_eq!(effort, expected, "{joint} {actuators}");
     }
 }

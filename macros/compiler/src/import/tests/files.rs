@@ -1,7 +1,7 @@
 //! Tests of the reading of files.
 
 use crate::diag::Diagnostics;
-use crate::import::tests::{defaults, name};
+use crate::import::tests::{default_options, test_name};
 use crate::import::{FileOptions, read_file};
 use std::fs;
 use std::path::PathBuf;
@@ -16,14 +16,14 @@ impl Folder {
         Folder(path)
     }
 
-    fn write(&self, file: &str, bytes: &[u8]) {
+    fn write_test_file(&self, file: &str, bytes: &[u8]) {
         fs::write(self.0.join(file), bytes).expect("a temporary file");
     }
 
     /// Returns the text of a file, or the errors without the name of the directory.
-    fn read(&self, file: &str) -> String {
+    fn import_test_file(&self, file: &str) -> String {
         let mut cx = Diagnostics::new();
-        let options = FileOptions { path: name(file), ..defaults() };
+        let options = FileOptions { path: test_name(file), ..default_options() };
         let text = read_file(&self.0.join(file), &options, &mut cx);
         assert_eq!(text.is_some(), cx.is_empty());
         text.unwrap_or_else(|| cx.messages().join("\n").replace(&format!("{}/", self.0.display()), "…"))
@@ -39,20 +39,20 @@ impl Drop for Folder {
 #[test]
 fn a_file_is_read() {
     let folder = Folder::new("read");
-    folder.write("urdf/r.urdf", b"<robot/>");
-    assert_eq!(folder.read("urdf/r.urdf"), "<robot/>");
+    folder.write_test_file("urdf/r.urdf", b"<robot/>");
+    assert_eq!(folder.import_test_file("urdf/r.urdf"), "<robot/>");
 }
 
 #[test]
 fn a_missing_file_has_neighbours() {
     let folder = Folder::new("missing");
-    let found = folder.read("urdf/pandas.urdf");
+    let found = folder.import_test_file("urdf/pandas.urdf");
     assert_eq!(found, "there is no file `urdf/pandas.urdf`\n\n= help: looked for `…urdf/pandas.urdf`");
-    folder.write("urdf/panda.urdf", b"");
-    folder.write("urdf/readme.txt", b"");
-    let found = folder.read("urdf/pandas.urdf");
+    folder.write_test_file("urdf/panda.urdf", b"");
+    folder.write_test_file("urdf/readme.txt", b"");
+    let found = folder.import_test_file("urdf/pandas.urdf");
     assert_eq!(found, "there is no file `urdf/pandas.urdf`\n\n= help: did you mean `urdf/panda.urdf`?");
-    let found = folder.read("robots/panda.urdf");
+    let found = folder.import_test_file("robots/panda.urdf");
     assert_eq!(
         found,
         "there is no file `robots/panda.urdf`\n\n= help: there is no directory `…robots` either"
@@ -62,17 +62,20 @@ fn a_missing_file_has_neighbours() {
 #[test]
 fn what_is_no_text_file_is_refused() {
     let folder = Folder::new("refused");
-    assert_eq!(folder.read("urdf"), "`urdf` is a directory, expected a URDF file");
-    folder.write("r.urdf", b"<robot>\n\xff</robot>");
-    assert_eq!(folder.read("r.urdf"), "`r.urdf` is not UTF-8 text: line 2\n\n= help: save the file in UTF-8");
+    assert_eq!(folder.import_test_file("urdf"), "`urdf` is a directory, expected a URDF file");
+    folder.write_test_file("r.urdf", b"<robot>\n\xff</robot>");
+    assert_eq!(
+        folder.import_test_file("r.urdf"),
+        "`r.urdf` is not UTF-8 text: line 2\n\n= help: save the file in UTF-8"
+    );
     let file = fs::File::create(folder.0.join("large.urdf")).expect("a temporary file");
     file.set_len(40 << 20).expect("a sparse file");
-    assert_eq!(folder.read("large.urdf"), "`large.urdf` has 40 MiB, expected at most 16 MiB");
+    assert_eq!(folder.import_test_file("large.urdf"), "`large.urdf` has 40 MiB, expected at most 16 MiB");
     #[cfg(unix)]
     {
-        let found = folder.read("r.urdf/x.urdf");
+        let found = folder.import_test_file("r.urdf/x.urdf");
         assert!(found.starts_with("there is no file `r.urdf/x.urdf`"), "{found}");
-        let options = FileOptions { path: name("null"), ..defaults() };
+        let options = FileOptions { path: test_name("null"), ..default_options() };
         let mut cx = Diagnostics::new();
         assert!(read_file("/dev/null".as_ref(), &options, &mut cx).is_none());
         assert_eq!(cx.messages(), ["`null` is not a regular file"]);

@@ -22,7 +22,7 @@ fn next(state: &mut u64) -> usize {
 }
 
 /// Changes, removes, copies or inserts random bytes of a file.
-fn damage(bytes: &mut Vec<u8>, state: &mut u64) {
+fn damage_bytes(bytes: &mut Vec<u8>, state: &mut u64) {
     const SPICE: &[u8] = b"<>/=\"' &;!-[]?:.0e9-abcjk\x00\xc3\xa4\n";
     let at = next(state) % bytes.len();
     let length = (next(state) % 40).min(bytes.len() - at);
@@ -44,7 +44,7 @@ fn damage(bytes: &mut Vec<u8>, state: &mut u64) {
 
 #[test]
 fn damage_never_panics() {
-    let options = FileOptions { inputs: InputOption::Joints, ..locked(&["j"]) };
+    let options = FileOptions { inputs: InputOption::Joints, ..options_with_locked_joints(&["j"]) };
     damage_gets_an_answer(&options, FILE, "root_joint");
 }
 
@@ -55,9 +55,9 @@ pub(super) fn damage_gets_an_answer(options: &FileOptions, file: &str, sign: &st
     for round in 0..4000 {
         let mut bytes = file.as_bytes().to_vec();
         for _ in 0..=round % 4 {
-            damage(&mut bytes, &mut state);
+            damage_bytes(&mut bytes, &mut state);
         }
-        let answer = run(options, &String::from_utf8_lossy(&bytes));
+        let answer = import_as_text(options, &String::from_utf8_lossy(&bytes));
         good += usize::from(answer.contains(sign));
     }
     assert!((50..3900).contains(&good), "damage should spare some files and not others: {good}");
@@ -66,7 +66,7 @@ pub(super) fn damage_gets_an_answer(options: &FileOptions, file: &str, sign: &st
 #[test]
 fn every_beginning_of_a_file_gets_an_answer() {
     for end in 0..FILE.len() {
-        assert!(!run(&defaults(), &FILE[..end]).contains("root_joint"));
+        assert!(!import_as_text(&default_options(), &FILE[..end]).contains("root_joint"));
     }
-    assert!(run(&defaults(), FILE).contains("root_joint"));
+    assert!(import_as_text(&default_options(), FILE).contains("root_joint"));
 }

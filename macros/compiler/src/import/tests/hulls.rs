@@ -9,7 +9,7 @@ fn read(test: &str, options: &str, item: &str, text: &str) -> Result<Description
     let folder = Folder::new(test, &[("r.xml", text), ("stone.obj", STONE)]);
     let mut cx = Diagnostics::new();
     let (options, item) = (options.parse().expect("tokens"), item.parse().expect("tokens"));
-    let source = crate::read(options, item, &folder.0, &mut cx);
+    let source = crate::read_source(options, item, &folder.0, &mut cx);
     match source.filter(|_| cx.is_empty()) {
         Some(source) => Ok(source.mechanism.description),
         None => Err(cx.messages().join("\n")),

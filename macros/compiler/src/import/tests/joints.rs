@@ -5,7 +5,7 @@ use crate::syntax::file_parameters::FileParameters;
 
 /// Checks the last joints of a chain.
 fn check_chain(options: &FileOptions, joints: &[(&str, &str)], expected: &str) {
-    check_with(options, &chain(joints), &(chain_bodies(joints.len()) + expected));
+    check_with(options, &chain_of_links(joints), &(chain_bodies(joints.len()) + expected));
 }
 
 #[test]
@@ -13,7 +13,7 @@ fn every_type_has_its_joint() {
     let axis = "<axis xyz='0 0 2'/>";
     let kinds = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
     check_chain(
-        &FileOptions { inputs: InputOption::Joints, ..defaults() },
+        &FileOptions { inputs: InputOption::Joints, ..default_options() },
         &kinds.map(|kind| (kind, axis)),
         "Pin j1: l0 -> l1 about [0, 0, 2] driven
          Pin j2: l1 -> l2 about [0, 0, 2] driven
@@ -28,7 +28,7 @@ fn every_type_has_its_joint() {
 #[test]
 fn the_axis_is_x_unless_given() {
     check_chain(
-        &defaults(),
+        &default_options(),
         &[
             ("revolute", ""),
             ("prismatic", "<origin rpy='0 0 0'/>"),
@@ -38,8 +38,8 @@ fn the_axis_is_x_unless_given() {
          Sleeve j2: l1 -> l2 along [1, 0, 0]
          Weld j3: l2 -> l3",
     );
-    check(
-        &chain(&[("revolute", "<axis xyz='0 0 0.0'/>")]),
+    check_import(
+        &chain_of_links(&[("revolute", "<axis xyz='0 0 0.0'/>")]),
         "r.urdf:3:82: axis of zero length has no direction",
     );
 }
@@ -47,7 +47,7 @@ fn the_axis_is_x_unless_given() {
 #[test]
 fn the_origin_is_a_place_and_carried_turns() {
     check_chain(
-        &defaults(),
+        &default_options(),
         &[
             ("revolute", "<origin xyz='1 2 3' rpy='0.1 0.2 0.3'/>"),
             ("fixed", "<origin rpy='0.1 0 0.3'/>"),
@@ -59,8 +59,8 @@ fn the_origin_is_a_place_and_carried_turns() {
          Free j3: l2.at([0, 0, 1]) -> l3
          Weld j4: l3 -> l4",
     );
-    check(
-        &chain(&[("revolute", "<origin xyz='0 0 0' quat_xyzw='0 0 0 1'/>")]),
+    check_import(
+        &chain_of_links(&[("revolute", "<origin xyz='0 0 0' quat_xyzw='0 0 0 1'/>")]),
         r#"r.urdf:3:91: `quat_xyzw` is not supported
            = help: expected `rpy="roll pitch yaw"`"#,
     );
@@ -71,19 +71,19 @@ fn passive_elements_count_unless_ignored() {
     let joints =
         [("revolute", "<dynamics damping='2' friction='3'/>"), ("prismatic", "<dynamics friction='0'/>")];
     check_chain(
-        &defaults(),
+        &default_options(),
         &joints,
         "Pin j1: l0 -> l1 about [1, 0, 0] damping=2 friction=3
          Sleeve j2: l1 -> l2 along [1, 0, 0]",
     );
-    let ignore = FileOptions { honour_passive: false, ..defaults() };
+    let ignore = FileOptions { honour_passive: false, ..default_options() };
     check_chain(
         &ignore,
         &[("revolute", "<dynamics damping='-2' friction='x'/>")],
         "Pin j1: l0 -> l1 about [1, 0, 0]",
     );
-    check(
-        &chain(&[("revolute", "<dynamics damping='-2'/>"), ("planar", "<dynamics friction='1'/>")]),
+    check_import(
+        &chain_of_links(&[("revolute", "<dynamics damping='-2'/>"), ("planar", "<dynamics friction='1'/>")]),
         "r.urdf:3:90: negative damping `-2`
          = help: to ignore damping and friction, write `#[mechanism(…, passive = ignore)]`
          r.urdf:5:89: `friction` of a `planar` joint is not supported
@@ -99,7 +99,7 @@ fn a_follower_follows_unless_independent() {
         ("prismatic", "<mimic joint='j4' multiplier='-3' offset='5'/>"),
         ("revolute", ""),
     ];
-    let inputs = FileOptions { inputs: InputOption::Joints, ..defaults() };
+    let inputs = FileOptions { inputs: InputOption::Joints, ..default_options() };
     check_chain(
         &inputs,
         &joints,
@@ -123,8 +123,8 @@ fn a_follower_follows_unless_independent() {
 fn a_follower_needs_somebody_to_follow() {
     let help =
         "= help: to let joints that follow move on their own, write `#[mechanism(…, mimic = independent)]`";
-    check(
-        &chain(&[
+    check_import(
+        &chain_of_links(&[
             ("revolute", "<mimic joint='j22'/>"),
             ("fixed", ""),
             ("planar", "<mimic joint='j1'/>"),
@@ -143,8 +143,8 @@ fn a_follower_needs_somebody_to_follow() {
              {help}"
         ),
     );
-    check(
-        &chain(&[
+    check_import(
+        &chain_of_links(&[
             ("revolute", "<mimic joint='j1'/>"),
             ("revolute", "<mimic joint='j4'/>"),
             ("revolute", "<mimic joint='j2'/>"),
@@ -158,8 +158,8 @@ fn a_follower_needs_somebody_to_follow() {
              {help}"
         ),
     );
-    check(
-        &chain(&[
+    check_import(
+        &chain_of_links(&[
             ("revolute", "<mimic joint='j2' multiplier='1e200'/>"),
             ("revolute", "<mimic joint='j3' multiplier='1e200'/>"),
             ("revolute", ""),
@@ -170,7 +170,8 @@ fn a_follower_needs_somebody_to_follow() {
 
 #[test]
 fn a_locked_joint_is_a_weld() {
-    let options = FileOptions { inputs: InputOption::Joints, ..locked(&["j1", "j3", "j4"]) };
+    let options =
+        FileOptions { inputs: InputOption::Joints, ..options_with_locked_joints(&["j1", "j3", "j4"]) };
     check_chain(
         &options,
         &[
@@ -186,8 +187,8 @@ fn a_locked_joint_is_a_weld() {
          left out the coupling of j4, which is locked",
     );
     check_with(
-        &locked(&["j", "elbow"]),
-        &chain(&[("revolute", ""), ("revolute", "")]),
+        &options_with_locked_joints(&["j", "elbow"]),
+        &chain_of_links(&[("revolute", ""), ("revolute", "")]),
         "unknown joint `j` in `lock`
          = help: did you mean `j1`?
          unknown joint `elbow` in `lock`
@@ -197,13 +198,13 @@ fn a_locked_joint_is_a_weld() {
 
 #[test]
 fn numbers_near_round_ones_are_rounded_on_request_and_reported() {
-    let robot = chain(&[
+    let robot = chain_of_links(&[
         ("revolute", "<origin xyz='1e-5 0.5 0' rpy='1.5708 -3.14159 0.3'/><axis xyz='0 -2 1e-4'/>"),
         ("prismatic", "<origin xyz='0.002 0 0' rpy='1.572 0 0'/><axis xyz='1 0 0.01'/>"),
         ("fixed", "<origin rpy='0 -1.571 0'/>"),
     ]);
     check_with(
-        &FileOptions { snap: Some(1e-3), ..defaults() },
+        &FileOptions { snap: Some(1e-3), ..default_options() },
         &robot,
         "body l0\nbody l1\nbody l2\nbody l3
          Weld root_joint: ground -> l0
@@ -221,8 +222,8 @@ fn numbers_near_round_ones_are_rounded_on_request_and_reported() {
 /// Checks that an axis may have any length.
 #[test]
 fn long_axes_are_rounded_by_their_direction() {
-    let robot = chain(&[("revolute", "<axis xyz='1.7e308 -1.7e308 1e300'/>")]);
-    let options = FileOptions { snap: Some(1e-3), ..defaults() };
+    let robot = chain_of_links(&[("revolute", "<axis xyz='1.7e308 -1.7e308 1e300'/>")]);
+    let options = FileOptions { snap: Some(1e-3), ..default_options() };
     let imported = import_text(&robot, &options, &mut Diagnostics::new()).expect("the file is right");
     assert_eq!(imported.snapped, ["`j1`: axis z 1e300 → 0.0"]);
 }
@@ -231,7 +232,7 @@ fn long_axes_are_rounded_by_their_direction() {
 fn what_follows_a_locked_joint_stands_at_its_offset() {
     let follow = "<mimic joint='j6' offset='0.5'/>";
     check_chain(
-        &locked(&["j6"]),
+        &options_with_locked_joints(&["j6"]),
         &[
             (
                 "revolute",
@@ -251,7 +252,7 @@ fn what_follows_a_locked_joint_stands_at_its_offset() {
          Weld j6: l5 -> l6",
     );
     check_chain(
-        &defaults(),
+        &default_options(),
         &[("revolute", "<mimic joint='j2' multiplier='0' offset='1'/>"), ("revolute", "")],
         "Weld j1: l0.rotated(x(1)) -> l1
          Pin j2: l1 -> l2 about [1, 0, 0]",
@@ -262,8 +263,8 @@ fn what_follows_a_locked_joint_stands_at_its_offset() {
 fn a_locked_slide_moves_along_the_turned_axis() {
     // Yaw 1, pitch 2 and roll 3 about successive axes: the third column of R_z(1) R_y(2) R_x(3).
     let inside = "<origin rpy='3 2 1'/><axis xyz='0 0 1'/><mimic joint='j2' offset='1'/>";
-    let text = chain(&[("prismatic", inside), ("revolute", "")]);
-    let imported = import_text(&text, &locked(&["j2"]), &mut Diagnostics::new());
+    let text = chain_of_links(&[("prismatic", inside), ("revolute", "")]);
+    let imported = import_text(&text, &options_with_locked_joints(&["j2"]), &mut Diagnostics::new());
     let at = imported.and_then(|imported| imported.joints[1].parent.at.clone()).map(|at| at.kind);
     let Some(ExprKind::Array(items)) = at else { panic!("a moved end") };
     let ((s1, c1), (s2, c2), (s3, c3)) = (1f64.sin_cos(), 2f64.sin_cos(), 3f64.sin_cos());
@@ -277,8 +278,8 @@ fn a_locked_slide_moves_along_the_turned_axis() {
 fn a_slide_cannot_stand_infinitely_far_away() {
     let inside = "<origin xyz='1.7e308 0 0'/><mimic joint='j2' offset='1.7e308'/>";
     check_with(
-        &locked(&["j2"]),
-        &chain(&[("prismatic", inside), ("revolute", "")]),
+        &options_with_locked_joints(&["j2"]),
+        &chain_of_links(&[("prismatic", inside), ("revolute", "")]),
         "r.urdf:3:14: joint `j1` has an infinite position",
     );
 }
@@ -300,8 +301,11 @@ fn a_joint_says_what_it_joins_and_how() {
            r.urdf:4:54: empty `link` of `<child>`
            = help: write a name: `link="…"`"#,
     );
-    check(
-        &chain(&[("ball", "<axes xyz='0 0 1'/>"), ("revolute", "<mimic joint='j1' multipler='2'/>")]),
+    check_import(
+        &chain_of_links(&[
+            ("ball", "<axes xyz='0 0 1'/>"),
+            ("revolute", "<mimic joint='j1' multipler='2'/>"),
+        ]),
         "r.urdf:3:24: unknown joint type `ball`
          = help: expected `revolute`, `continuous`, `prismatic`, `fixed`, `floating`, `planar` or `spherical`
          r.urdf:3:67: unknown element `<axes>`
@@ -354,15 +358,15 @@ fn parts_of_joints_are_attributes_of_their_elements() {
         ("<pose>0 0 1 0 0 0</pose>", format!("r.urdf:3:71: unexpected `<pose>` in `<joint>`\n{elements}")),
         ("0 0 1", format!("r.urdf:3:71: unexpected text `0 0 1` in `<joint>`\n{elements}")),
     ] {
-        check(&chain(&[("revolute", inside)]), &expected);
+        check_import(&chain_of_links(&[("revolute", inside)]), &expected);
     }
-    check(
-        &chain(&[("revolute", "")]).replace("<joint ", "<joint axis='0 0 1' "),
+    check_import(
+        &chain_of_links(&[("revolute", "")]).replace("<joint ", "<joint axis='0 0 1' "),
         &format!("r.urdf:3:8: unknown attribute `axis` of `<joint>`\n{elements}"),
     );
     // Elements and attributes of other tools, and an identity orientation, do not affect the joint.
     check_chain(
-        &defaults(),
+        &default_options(),
         &[(
             "revolute",
             "<axis xyz='0 0 1' rpy='0 0 0'/><limit effort='1' velocity='1' acceleration='2'/><dynamics damping='1' K='3'/>\
@@ -379,21 +383,25 @@ fn what_a_joint_cannot_have_is_listed() {
         let imported = import_text(text, options, &mut Diagnostics::new()).expect("a robot");
         imported.left_out
     };
-    let limits = chain(&[("planar", "<limit lower='-1' upper='1'/>"), ("floating", "<limit velocity='1'/>")]);
+    let limits =
+        chain_of_links(&[("planar", "<limit lower='-1' upper='1'/>"), ("floating", "<limit velocity='1'/>")]);
     assert_eq!(
-        ignored_elements(&defaults(), &limits),
+        ignored_elements(&default_options(), &limits),
         ["limits of j1, which is `planar`", "limits of j2, which is `floating`"]
     );
-    let follower = chain(&[("revolute", ""), ("revolute", "<mimic joint='j1' multiplier='2'/>")]);
-    assert_eq!(ignored_elements(&locked(&["j2"]), &follower), ["the coupling of j2, which is locked"]);
-    assert_eq!(ignored_elements(&locked(&["j1"]), &follower), [""; 0]);
+    let follower = chain_of_links(&[("revolute", ""), ("revolute", "<mimic joint='j1' multiplier='2'/>")]);
+    assert_eq!(
+        ignored_elements(&options_with_locked_joints(&["j2"]), &follower),
+        ["the coupling of j2, which is locked"]
+    );
+    assert_eq!(ignored_elements(&options_with_locked_joints(&["j1"]), &follower), [""; 0]);
 }
 
 /// Checks a joint that follows a locked one: it is held at its offset, which its placement as a field
 /// contains, rotated by 0.5 rad about the axis after roll, pitch and yaw.
 #[test]
 fn placements_of_held_joints_have_their_rotation() {
-    let figures = FileParameters { word: name("placement"), of: Some(vec![name("j2")]) };
+    let figures = FileParameters { word: test_name("placement"), of: Some(vec![test_name("j2")]) };
     for (axis, rpy, expected) in [
         ("1 0 0", "0.1 0 0", [0.6, 0.0, 0.0]),
         ("0 0 1", "0 0 0.25", [0.0, 0.0, 0.75]),
@@ -406,8 +414,9 @@ fn placements_of_held_joints_have_their_rotation() {
         let inside = format!(
             "<origin xyz='1 2 3' rpy='{rpy}'/><axis xyz='{axis}'/><mimic joint='j1' offset='{offset}'/>"
         );
-        let text = chain(&[("revolute", ""), ("revolute", &inside)]);
-        let options = FileOptions { parameters: vec![figures.clone()], ..locked(&["j1"]) };
+        let text = chain_of_links(&[("revolute", ""), ("revolute", &inside)]);
+        let options =
+            FileOptions { parameters: vec![figures.clone()], ..options_with_locked_joints(&["j1"]) };
         let imported = import_text(&text, &options, &mut Diagnostics::new()).expect("a robot");
         let [field] = imported.fields.as_slice() else { panic!("one field") };
         let rotation_from_rpy = |[roll, pitch, yaw]: [f64; 3]| {

@@ -49,7 +49,7 @@ fn zeros_are_as_good_as_nothing() {
 fn a_mass_that_the_model_refuses_comes_with_its_place() {
     let text =
         format!("<robot><link name='a'>\n <inertial><mass value='-1'/>{INERTIA}</inertial></link></robot>");
-    let imported = import_text(&text, &defaults(), &mut Diagnostics::new());
+    let imported = import_text(&text, &default_options(), &mut Diagnostics::new());
     let at = imported.and_then(|i| i.bodies[0].mass.clone()).and_then(|mass| mass.place.file);
     assert_eq!(at.map(|at| (at.file.to_string(), at.line, at.column)), Some(("r.urdf".to_string(), 2, 25)));
 }
@@ -57,7 +57,7 @@ fn a_mass_that_the_model_refuses_comes_with_its_place() {
 /// If mass properties are not needed, errors in them are ignored.
 #[test]
 fn inertia_may_be_left_out() {
-    let options = FileOptions { inertias: Inertias::None, ..defaults() };
+    let options = FileOptions { inertias: Inertias::None, ..default_options() };
     let text = "<robot><link name='a'><inertial><mass value='x'/></inertial></link></robot>";
     check_with(&options, text, "body a\nWeld root_joint: ground -> a");
 }
@@ -65,7 +65,7 @@ fn inertia_may_be_left_out() {
 #[test]
 fn what_is_missing_is_shown() {
     check_with(
-        &FileOptions { base: Base::Free, ..defaults() },
+        &FileOptions { base: Base::Free, ..default_options() },
         "<robot>\n<link name='a'><inertial></inertial></link></robot>",
         r#"r.urdf:2:16: `<inertial>` without `<mass>`
            = help: expected `<mass value="…"/>`
@@ -191,7 +191,8 @@ fn links_on_the_ground_need_no_inertia() {
         |name: &str| format!("<link name='{name}'><inertial><mass value='1'/></inertial></link>");
     let links =
         [link_without_inertia("base"), link_without_inertia("arms"), link_without_inertia("hand")].join("\n");
-    let joints = [joint("a", "fixed", "base", "arms", ""), joint("b", "revolute", "arms", "hand", "")];
+    let joints =
+        [joint_element("a", "fixed", "base", "arms", ""), joint_element("b", "revolute", "arms", "hand", "")];
     let text = format!("<robot>\n{links}\n{}</robot>", joints.concat());
     let missing_inertia_message = |line: u32| {
         format!(
@@ -199,11 +200,11 @@ fn links_on_the_ground_need_no_inertia() {
                  = help: expected `<inertia ixx=\"…\" ixy=\"…\" ixz=\"…\" iyy=\"…\" iyz=\"…\" izz=\"…\"/>`\n"
         )
     };
-    check(&text, &missing_inertia_message(4));
-    let free = FileOptions { base: Base::Free, ..defaults() };
+    check_import(&text, &missing_inertia_message(4));
+    let free = FileOptions { base: Base::Free, ..default_options() };
     check_with(&free, &text, &[2, 3, 4].map(missing_inertia_message).concat());
     check_with(
-        &locked(&["b"]),
+        &options_with_locked_joints(&["b"]),
         &text,
         "body base mass=1\nbody arms mass=1\nbody hand mass=1
          Weld root_joint: ground -> base\nWeld a: base -> arms\nWeld b: arms -> hand",
@@ -278,13 +279,17 @@ fn strange_blanks_are_blanks() {
              {INERTIA}</inertial></link>{blank}</robot>"
         )
     };
-    let expected = run(&defaults(), &robot_with_blank(" "));
+    let expected = import_as_text(&default_options(), &robot_with_blank(" "));
     assert!(expected.contains("com=[0, 0, 1]"), "{expected}");
     for blank in ["\u{a0}", " \u{feff}", "\u{2003}", "\u{200b}", "\u{3000}"] {
-        assert_eq!(run(&defaults(), &robot_with_blank(blank)), expected, "{blank:?}");
-        assert_eq!(run(&defaults(), &format!("\u{feff}{}", robot_with_blank(blank))), expected, "{blank:?}");
+        assert_eq!(import_as_text(&default_options(), &robot_with_blank(blank)), expected, "{blank:?}");
+        assert_eq!(
+            import_as_text(&default_options(), &format!("\u{feff}{}", robot_with_blank(blank))),
+            expected,
+            "{blank:?}"
+        );
     }
-    check(
+    check_import(
         "<robot>\n<link\u{a0}name='a'\u{a0}/>\u{feff}<lnk/></robot>",
         "r.urdf:2:19: unknown element `<lnk>`\n= help: did you mean `<link>`?",
     );
@@ -298,7 +303,7 @@ fn second_shapes_of_a_geometry_are_errors() {
         (FileFormat::Urdf, "<sphere radius='1'/><box size='1 1 1'/>", 57),
         (FileFormat::Sdf, "<sphere><radius>1</radius></sphere><empty/><box><size>1 1 1</size></box>", 80),
     ] {
-        let options = FileOptions { format, collisions: true, ..defaults() };
+        let options = FileOptions { format, collisions: true, ..default_options() };
         let link = format!("<link name='a'><collision><geometry>{shapes}</geometry></collision></link>");
         let text = match format {
             FileFormat::Urdf => format!("<robot name='r'>\n{link}\n</robot>"),

@@ -2,18 +2,18 @@
 
 use super::*;
 
-pub(super) fn mjcf() -> FileOptions {
+pub(super) fn mjcf_options() -> FileOptions {
     FileOptions {
         format: FileFormat::Mjcf,
-        path: name("r.xml"),
+        path: test_name("r.xml"),
         inputs: InputOption::Actuators,
-        ..defaults()
+        ..default_options()
     }
 }
 
 /// Compares the result of a file with these elements. The elements begin on the second line.
 pub(super) fn check_model(inside: &str, expected: &str) {
-    check_with(&mjcf(), &format!("<mujoco>\n{inside}\n</mujoco>"), expected);
+    check_with(&mjcf_options(), &format!("<mujoco>\n{inside}\n</mujoco>"), expected);
 }
 
 /// Compares the result of a body with these elements.
@@ -180,8 +180,9 @@ fn sections() {
             "r.xml:2:35: unknown `coordinate` `global`\n= help: expected `local`: MuJoCo has no other since version 2.3.4; let an older one convert the file",
         ),
         (
-            "<worldbody/><actuator><muscle joint='j'/></actuator>",
-            "r.xml:2:23: actuator `<muscle>` is not supported\n= help: to ignore the actuators of the file, \
+            "<worldbody/><actuator><adhesion body='b'/></actuator>",
+            "r.xml:2:23: actuator `<adhesion>` is not supported\n= help: it acts at contacts, whose forces \
+             MuJoCo divides among them\n= help: to ignore the actuators of the file, \
              write `#[mechanism(…, inputs = joints)]`, or `none`",
         ),
     ] {
@@ -198,13 +199,13 @@ fn another_format_is_named() {
         ("mujco", "did you mean `mujoco`?"),
     ] {
         let expected = format!("r.xml:1:1: expected `<mujoco>`, found `<{root}>`\n= help: {help}");
-        check_with(&mjcf(), &format!("<{root}/>"), &expected);
+        check_with(&mjcf_options(), &format!("<{root}/>"), &expected);
     }
 }
 
 #[test]
 fn a_free_base_needs_a_body_that_nothing_holds() {
-    let free = FileOptions { base: Base::Free, ..mjcf() };
+    let free = FileOptions { base: Base::Free, ..mjcf_options() };
     check_with(
         &free,
         "<mujoco><worldbody><body name='b'/></worldbody></mujoco>",
@@ -231,7 +232,7 @@ fn included_files_stand_in_the_place_of_their_elements() {
     let folder = Folder::new("includes", &files);
     let wrap_in_mujoco = |inside: &str| format!("<mujoco>\n{inside}</mujoco>");
     assert_eq!(
-        folder.answer(&mjcf(), &wrap_in_mujoco("<include file='parts/arm.xml'/>")),
+        folder.import_as_text(&mjcf_options(), &wrap_in_mujoco("<include file='parts/arm.xml'/>")),
         "the root is the ground\nbody hand\nPin j: ground -> hand about [0, 0, 1]\n2 files"
     );
     for (inside, expected) in [
@@ -255,7 +256,7 @@ fn included_files_stand_in_the_place_of_their_elements() {
             "r.xml:2:10: unknown attribute `fil` of `<include>`\n\n= help: did you mean `file`?",
         ),
     ] {
-        let answer = folder.answer(&mjcf(), &wrap_in_mujoco(inside));
+        let answer = folder.import_as_text(&mjcf_options(), &wrap_in_mujoco(inside));
         assert!(answer.starts_with(expected), "{answer}");
     }
 }
@@ -275,8 +276,8 @@ fn meshes_that_cannot_be_read() {
         ("name='no'", "r.xml:1:16: the mass of a mesh without `file` is not computed"),
     ] {
         let stem = asset.split(['\'', '.']).nth(1).unwrap_or_default();
-        let answer = folder.answer(
-            &mjcf(),
+        let answer = folder.import_as_text(
+            &mjcf_options(),
             &format!(
                 "<mujoco><asset><mesh {asset}/></asset><worldbody><body><geom type='mesh' mesh='{stem}'/></body></worldbody></mujoco>"
             ),
@@ -289,17 +290,20 @@ fn meshes_that_cannot_be_read() {
 fn hostile_files_get_an_answer() {
     let deep =
         format!("<mujoco><worldbody>{}{}</worldbody></mujoco>", "<body>".repeat(300), "</body>".repeat(300));
-    assert!(run(&mjcf(), &deep).contains("more than 256 nested elements"));
+    assert!(import_as_text(&mjcf_options(), &deep).contains("more than 256 nested elements"));
     let chain = format!(
         "<mujoco><worldbody>{}{}</worldbody></mujoco>",
         "<body><joint type='slide'/>".repeat(250),
         "</body>".repeat(250)
     );
-    assert!(run(&mjcf(), &chain).contains("Sleeve body250_slide"));
+    assert!(import_as_text(&mjcf_options(), &chain).contains("Sleeve body250_slide"));
     let many = format!("<mujoco><worldbody>{}</worldbody></mujoco>", "<body/>".repeat(2000));
-    assert!(run(&mjcf(), &many).contains("more than 1024 bodies"));
+    assert!(import_as_text(&mjcf_options(), &many).contains("more than 1024 bodies"));
     let entity = "<!DOCTYPE x [<!ENTITY a 'b'>]><mujoco/>";
-    assert!(run(&mjcf(), entity).contains("an MJCF file has no document type and no entities of its own"));
+    assert!(
+        import_as_text(&mjcf_options(), entity)
+            .contains("an MJCF file has no document type and no entities of its own")
+    );
     check_body(
         "<geom size='1e200' mass='1'/><joint axis='1e300 1e300 0'/>",
         "r.xml:2:24: body `b` is too large, too heavy or too far away for floating-point numbers",
@@ -320,7 +324,7 @@ const FILE: &str = r#"<mujoco model="m"><!-- c --><compiler angle="radian" setto
 
 #[test]
 fn planes_are_touched() {
-    let options = FileOptions { contacts: true, collisions: true, ..mjcf() };
+    let options = FileOptions { contacts: true, collisions: true, ..mjcf_options() };
     let contacts_with_world = |world: &str| {
         let text = format!(
             "<mujoco><worldbody>{world}<body name='b'><freejoint/><geom name='a' size='1'/><geom size='1' condim='1' contype='2'/>\
@@ -377,15 +381,15 @@ fn planes_are_touched() {
 
 #[test]
 fn damage_never_panics() {
-    super::fuzz::damage_gets_an_answer(&mjcf(), FILE, "ground");
+    super::fuzz::damage_gets_an_answer(&mjcf_options(), FILE, "ground");
 }
 
 #[test]
 fn every_beginning_of_a_file_gets_an_answer() {
     for end in 0..FILE.len() {
-        assert!(!run(&mjcf(), &FILE[..end]).contains("the root is"));
+        assert!(!import_as_text(&mjcf_options(), &FILE[..end]).contains("the root is"));
     }
-    assert!(run(&mjcf(), FILE).contains("the root is"));
+    assert!(import_as_text(&mjcf_options(), FILE).contains("the root is"));
 }
 
 /// Checks that flags of `<option>` disable the effects that they name. The flag `constraint` disables
@@ -413,7 +417,8 @@ fn flags() {
         ("constraint='disable'", vec![friction, friction2, follows]),
         ("contact='disable'", vec![]),
     ] {
-        let found = run(&mjcf(), &format!("<mujoco>\n{}\n</mujoco>", model_with_flags(flags)));
+        let found =
+            import_as_text(&mjcf_options(), &format!("<mujoco>\n{}\n</mujoco>", model_with_flags(flags)));
         for part in [spring, spring2, damper, damper2, friction, friction2, follows] {
             assert_eq!(found.contains(part), !off.contains(&part), "{flags}: {part}\n{found}");
         }
@@ -421,11 +426,12 @@ fn flags() {
     for (flags, limits) in [("limit='disable'", 0), ("constraint='disable'", 0), ("equality='disable'", 1)] {
         let mut cx = Diagnostics::new();
         let imported =
-            import_text(&format!("<mujoco>{}</mujoco>", model_with_flags(flags)), &mjcf(), &mut cx);
+            import_text(&format!("<mujoco>{}</mujoco>", model_with_flags(flags)), &mjcf_options(), &mut cx);
         assert_eq!(imported.map(|imported| imported.limits.len()), Some(limits), "{flags}");
     }
     let weightless = "<option><flag gravity='disable'/></option><option gravity='0 0 -1'/><worldbody/>";
-    let imported = import_text(&format!("<mujoco>{weightless}</mujoco>"), &mjcf(), &mut Diagnostics::new());
+    let imported =
+        import_text(&format!("<mujoco>{weightless}</mujoco>"), &mjcf_options(), &mut Diagnostics::new());
     assert_eq!(
         imported.and_then(|imported| Some(render_expr(imported.gravity.as_ref()?))).as_deref(),
         Some("[0, 0, 0]")
@@ -465,8 +471,8 @@ fn sites_between_two_points_have_their_axes() {
         ),
     ] {
         let column = "<worldbody><body name=\"b\">".len() + inside.find(at).expect("it stands there") + 1;
-        let answer = run(
-            &mjcf(),
+        let answer = import_as_text(
+            &mjcf_options(),
             &format!("<mujoco>\n<worldbody><body name=\"b\">{inside}</body></worldbody></mujoco>"),
         );
         assert!(answer.starts_with(&format!("r.xml:2:{column}: {message}")), "{answer}");
@@ -533,7 +539,7 @@ fn what_mujoco_refuses() {
             "a free body in principal axes is not supported",
         ),
     ] {
-        let answer = run(&mjcf(), &format!("<mujoco>\n{text}\n</mujoco>"));
+        let answer = import_as_text(&mjcf_options(), &format!("<mujoco>\n{text}\n</mujoco>"));
         assert!(answer.contains(message), "{text}\n{answer}");
         assert_eq!(answer.matches("r.xml:").count(), 1, "{answer}");
     }
@@ -545,7 +551,10 @@ fn what_mujoco_refuses() {
             .to_string(),
         "<worldbody><body><freejoint align='true'/><geom size='1'/><body/></body></worldbody>".to_string(),
     ] {
-        assert!(run(&mjcf(), &format!("<mujoco>\n{text}\n</mujoco>")).contains("the root is"), "{text}");
+        assert!(
+            import_as_text(&mjcf_options(), &format!("<mujoco>\n{text}\n</mujoco>")).contains("the root is"),
+            "{text}"
+        );
     }
 }
 
@@ -587,13 +596,13 @@ fn parts_of_a_path_without_length_are_errors() {
 /// Requested contacts that the file does not contain.
 #[test]
 fn planes_that_nothing_touches() {
-    let options = FileOptions { contacts: true, collisions: true, ..mjcf() };
+    let options = FileOptions { contacts: true, collisions: true, ..mjcf_options() };
     let contacts_with = |bits: &str| {
         let text = format!(
             "<mujoco><worldbody><geom type='plane' size='1 1 1' {bits}/>\
              <body name='b'><freejoint/>{BALL}</body></worldbody></mujoco>"
         );
-        run(&options, &text)
+        import_as_text(&options, &text)
     };
     assert!(contacts_with("").starts_with("the root is the ground\n"));
     let found = contacts_with("contype='2' conaffinity='2'");

@@ -1,6 +1,6 @@
 //! Tests of the importers: compare the description, or the errors, as text.
 
-use super::{FileOptions, Imported, import};
+use super::{FileOptions, Imported, import_file};
 use crate::diag::Diagnostics;
 use crate::syntax::{
     Base, BinaryOp, Body, Drive, DriveLaw, DriveOn, Endpoint, Expr, ExprKind, FileFormat, Inertias,
@@ -24,7 +24,7 @@ mod sdf;
 mod spatial;
 mod turns;
 
-fn name(text: &str) -> Name {
+fn test_name(text: &str) -> Name {
     Name { text: text.to_string(), place: Span::call_site().into() }
 }
 
@@ -41,10 +41,10 @@ impl Folder {
         Folder(folder)
     }
 
-    fn answer(&self, options: &FileOptions, text: &str) -> String {
+    fn import_as_text(&self, options: &FileOptions, text: &str) -> String {
         let mut cx = Diagnostics::new();
-        match import(text, &self.0, options, &mut cx) {
-            Some(imported) => format!("{}{} files", render(&imported), imported.files.len()),
+        match import_file(text, &self.0, options, &mut cx) {
+            Some(imported) => format!("{}{} files", render_description(&imported), imported.files.len()),
             None => cx.messages().join("\n"),
         }
     }
@@ -58,10 +58,10 @@ impl Drop for Folder {
 }
 
 /// Returns the default options of a robot file.
-fn defaults() -> FileOptions {
+fn default_options() -> FileOptions {
     FileOptions {
         format: FileFormat::Urdf,
-        path: name("r.urdf"),
+        path: test_name("r.urdf"),
         base: Base::Fixed,
         honour_passive: true,
         follow_mimic: true,
@@ -78,8 +78,8 @@ fn defaults() -> FileOptions {
     }
 }
 
-fn locked(joints: &[&str]) -> FileOptions {
-    FileOptions { lock: joints.iter().map(|joint| name(joint)).collect(), ..defaults() }
+fn options_with_locked_joints(joints: &[&str]) -> FileOptions {
+    FileOptions { lock: joints.iter().map(|joint| test_name(joint)).collect(), ..default_options() }
 }
 
 /// Compares the result for `text` with `expected`. Indentation and empty lines are ignored.
@@ -88,36 +88,36 @@ fn check_with(options: &FileOptions, text: &str, expected: &str) {
         let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
         lines.map(|line| format!("{line}\n")).collect()
     };
-    let actual = run(options, text);
+    let actual = import_as_text(options, text);
     assert!(trim_lines(&actual) == trim_lines(expected), "expected\n{expected}\nfound\n{actual}");
 }
 
-fn check(text: &str, expected: &str) {
-    check_with(&defaults(), text, expected);
+fn check_import(text: &str, expected: &str) {
+    check_with(&default_options(), text, expected);
 }
 
 /// Compares the result for elements inside `<robot>`. The elements begin on the second line.
 fn check_robot(inside: &str, expected: &str) {
-    check(&format!("<robot name=\"r\">\n{inside}\n</robot>"), expected);
+    check_import(&format!("<robot name=\"r\">\n{inside}\n</robot>"), expected);
 }
 
 /// Imports a text that refers to no other files.
 fn import_text(text: &str, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
-    import(text, Path::new(""), options, cx)
+    import_file(text, Path::new(""), options, cx)
 }
 
 /// Returns the description as text, or the errors.
-fn run(options: &FileOptions, text: &str) -> String {
+fn import_as_text(options: &FileOptions, text: &str) -> String {
     let mut cx = Diagnostics::new();
     let imported = import_text(text, options, &mut cx);
     assert_eq!(imported.is_some(), cx.is_empty(), "nothing is given just when there is a mistake");
     match imported {
-        Some(imported) => render(&imported),
+        Some(imported) => render_description(&imported),
         None => cx.messages().join("\n"),
     }
 }
 
-fn render(imported: &Imported) -> String {
+fn render_description(imported: &Imported) -> String {
     let bodies = imported.bodies.iter().map(render_body);
     let joints = imported.joints.iter().map(render_joint);
     let drives = imported.drives.iter().map(render_drive);
@@ -185,16 +185,20 @@ fn render_drive(drive: &Drive) -> String {
             format!("{} by {force}, {torque}{}", render_expr(&wrench.on), against.collect::<String>())
         }
     };
-    let law = match drive.law {
+    let law = match &drive.law {
         DriveLaw::Spring { stiffness, free } => format!("spring {stiffness} from {free}"),
         DriveLaw::Slack { stiffness, range: [low, high] } => {
-            format!("spring {stiffness} outside of {low} to {high}")
+            let terms: Vec<String> = stiffness.iter().map(f64::to_string).collect();
+            let terms = terms.join(", ").replace(", 0, 0", "");
+            format!("spring {terms} outside of {low} to {high}")
         }
         DriveLaw::Damper(damping) => format!("damper {damping}"),
         DriveLaw::Friction(force) => format!("friction {force}"),
         DriveLaw::Inerter(inertance) => format!("inerter {inertance}"),
         DriveLaw::Push(force) => format!("push {force}"),
         DriveLaw::Input(unit) => format!("input in {unit}"),
+        DriveLaw::PolynomialDamper(terms) => format!("damper {terms:?}"),
+        DriveLaw::Expression { force, .. } => format!("force {}", render_expr(force)),
     };
     format!("{}: {law} on {on}", drive.name.text)
 }
@@ -219,7 +223,7 @@ fn render_expr(expr: &Expr) -> String {
         ExprKind::Method(object, method, arguments) => {
             format!("{}.{}({})", render_expr(object), method.text, render_list(arguments))
         }
-        ExprKind::Name(name) => name.clone(),
+        ExprKind::Name(name) => name.replace('\u{1}', ""),
         ExprKind::Field(base, member) => format!("{}.{}", render_expr(base), member.text),
         ExprKind::Binary(op, a, b, _) => {
             let sign = match op {
@@ -235,12 +239,12 @@ fn render_expr(expr: &Expr) -> String {
 }
 
 /// Returns the URDF text of a link without mass properties.
-fn link(name: &str) -> String {
+fn massless_link(name: &str) -> String {
     format!("<link name=\"{name}\"/>")
 }
 
 /// Returns the URDF text of a joint with further elements inside.
-fn joint(name: &str, kind: &str, parent: &str, child: &str, inside: &str) -> String {
+fn joint_element(name: &str, kind: &str, parent: &str, child: &str, inside: &str) -> String {
     format!(
         "<joint name=\"{name}\" type=\"{kind}\">\
          <parent link=\"{parent}\"/><child link=\"{child}\"/>{inside}</joint>"
@@ -248,12 +252,15 @@ fn joint(name: &str, kind: &str, parent: &str, child: &str, inside: &str) -> Str
 }
 
 /// Returns a chain of links `l0`, `l1`, … with joints `j1`, … of these types and contents.
-fn chain(joints: &[(&str, &str)]) -> String {
-    let mut text = link("l0");
+fn chain_of_links(joints: &[(&str, &str)]) -> String {
+    let mut text = massless_link("l0");
     for (k, (kind, inside)) in joints.iter().enumerate() {
         let (parent, child) = (format!("l{k}"), format!("l{}", k + 1));
-        text +=
-            &format!("\n{}\n{}", link(&child), joint(&format!("j{}", k + 1), kind, &parent, &child, inside));
+        text += &format!(
+            "\n{}\n{}",
+            massless_link(&child),
+            joint_element(&format!("j{}", k + 1), kind, &parent, &child, inside)
+        );
     }
     format!("<robot name=\"r\">{text}</robot>")
 }

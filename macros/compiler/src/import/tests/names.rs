@@ -4,12 +4,12 @@ use super::*;
 
 #[test]
 fn joints_come_depth_first_in_alphabetical_order() {
-    let links: String = ["tip", "a", "b", "c", "base"].map(link).concat();
+    let links: String = ["tip", "a", "b", "c", "base"].map(massless_link).concat();
     let joints = [
-        joint("second", "revolute", "base", "b", ""),
-        joint("zzz", "revolute", "a", "tip", ""),
-        joint("first", "revolute", "base", "a", ""),
-        joint("First", "revolute", "base", "c", ""),
+        joint_element("second", "revolute", "base", "b", ""),
+        joint_element("zzz", "revolute", "a", "tip", ""),
+        joint_element("first", "revolute", "base", "a", ""),
+        joint_element("First", "revolute", "base", "c", ""),
     ];
     check_robot(
         &(links + &joints.concat()),
@@ -28,15 +28,15 @@ fn joints_come_depth_first_in_alphabetical_order() {
 
 #[test]
 fn the_root_is_held_or_free() {
-    let free = FileOptions { base: Base::Free, inputs: InputOption::Joints, ..defaults() };
+    let free = FileOptions { base: Base::Free, inputs: InputOption::Joints, ..default_options() };
     check_with(
         &free,
         "<robot><link name='any &amp; name'/></robot>",
         "body any & name\nFree root_joint: ground -> any & name",
     );
-    let text = joint("root_joint", "fixed", "a", "root_joint2", "");
+    let text = joint_element("root_joint", "fixed", "a", "root_joint2", "");
     check_robot(
-        &(link("a") + &link("root_joint2") + &text),
+        &(massless_link("a") + &massless_link("root_joint2") + &text),
         "body a
          body root_joint2
          Weld root_joint3: ground -> a
@@ -46,7 +46,7 @@ fn the_root_is_held_or_free() {
 
 #[test]
 fn what_is_not_mechanics_is_ignored() {
-    check(
+    check_import(
         r#"<?xml version="1.0"?> <!-- <robot> --> <robot name="r" xmlns:drake="d" version="1.0">
            <material name="grey"><color rgba="0 0 0 1"/></material>
            <link name="a"><visual><origin xyz="x"/></visual><collision/><drake:inertial/></link>
@@ -60,8 +60,9 @@ fn what_is_not_mechanics_is_ignored() {
 
 #[test]
 fn names_are_given_once() {
-    let text = [link("a"), link("b"), link("a")].join("\n");
-    let joints = [joint("j", "fixed", "a", "b", ""), joint("j", "fixed", "b", "a", "")].join("\n");
+    let text = [massless_link("a"), massless_link("b"), massless_link("a")].join("\n");
+    let joints =
+        [joint_element("j", "fixed", "a", "b", ""), joint_element("j", "fixed", "b", "a", "")].join("\n");
     check_robot(
         &format!("{text}\n{joints}"),
         "r.urdf:4:13: second link with the name `a`
@@ -69,24 +70,24 @@ fn names_are_given_once() {
          r.urdf:6:14: second joint with the name `j`
          = help: the first is at r.urdf:5:14",
     );
-    let links = [link("a"), link("ground")].join("\n");
+    let links = [massless_link("a"), massless_link("ground")].join("\n");
     check_robot(
-        &format!("{links}\n{}", joint("j", "fixed", "a", "ground", "")),
+        &format!("{links}\n{}", joint_element("j", "fixed", "a", "ground", "")),
         "body a
          body ground_link
          Weld root_joint: ground -> a
          Weld j: a -> ground_link",
     );
     check_robot(
-        &format!("{links}\n{}", link("ground")),
+        &format!("{links}\n{}", massless_link("ground")),
         "r.urdf:4:13: second link with the name `ground`
          = help: the first is at r.urdf:3:13",
     );
-    let free = FileOptions { base: Base::Free, inputs: InputOption::Joints, ..defaults() };
-    let both = [link("ground"), link("ground_link")].concat();
+    let free = FileOptions { base: Base::Free, inputs: InputOption::Joints, ..default_options() };
+    let both = [massless_link("ground"), massless_link("ground_link")].concat();
     check_with(
         &free,
-        &format!("<robot>{both}{}</robot>", joint("j", "fixed", "ground", "ground_link", "")),
+        &format!("<robot>{both}{}</robot>", joint_element("j", "fixed", "ground", "ground_link", "")),
         "body ground_link2
          body ground_link
          Free root_joint: ground -> ground_link2
@@ -94,7 +95,7 @@ fn names_are_given_once() {
     );
     // A fixed root of this name is the ground.
     check_robot(
-        &format!("{links}\n{}", joint("j", "fixed", "ground", "a", "")),
+        &format!("{links}\n{}", joint_element("j", "fixed", "ground", "a", "")),
         "the root is the ground\nbody a\nWeld j: ground -> a",
     );
     check_robot(
@@ -110,21 +111,25 @@ fn names_are_given_once() {
 
 #[test]
 fn joints_join_links_that_are_there() {
-    let joints = [joint("j", "fixed", "base", "arms", ""), joint("k", "fixed", "arm", "arm", "")].join("\n");
+    let joints =
+        [joint_element("j", "fixed", "base", "arms", ""), joint_element("k", "fixed", "arm", "arm", "")]
+            .join("\n");
     check_robot(
-        &format!("{}{}\n{joints}", link("base"), link("arm")),
+        &format!("{}{}\n{joints}", massless_link("base"), massless_link("arm")),
         "r.urdf:3:64: unknown link `arms`
          = help: did you mean `arm`?
          r.urdf:4:63: joint `k` connects a link to itself",
     );
-    check("<robot/>", "r.urdf:1:1: robot without a link\n= help: expected `<link name=\"…\"/>`");
+    check_import("<robot/>", "r.urdf:1:1: robot without a link\n= help: expected `<link name=\"…\"/>`");
 }
 
 /// Files with joints from `world` need not declare this link.
 #[test]
 fn the_world_is_known() {
-    let links = link("a") + &link("b");
-    let joints = [joint("j", "fixed", "world", "a", ""), joint("k", "fixed", "world", "b", "")].concat();
+    let links = massless_link("a") + &massless_link("b");
+    let joints =
+        [joint_element("j", "fixed", "world", "a", ""), joint_element("k", "fixed", "world", "b", "")]
+            .concat();
     check_robot(
         &(links.clone() + &joints),
         "body world
@@ -135,7 +140,7 @@ fn the_world_is_known() {
          Weld k: world -> b",
     );
     check_robot(
-        &format!("{links}\n{}", joint("j", "fixed", "a", "world", "")),
+        &format!("{links}\n{}", joint_element("j", "fixed", "a", "world", "")),
         "r.urdf:3:61: unknown link `world`
          = help: expected `a` or `b`",
     );
@@ -143,11 +148,11 @@ fn the_world_is_known() {
 
 #[test]
 fn a_link_hangs_from_one_joint() {
-    let links = ["a", "b", "c"].map(link).concat();
+    let links = ["a", "b", "c"].map(massless_link).concat();
     let joints = [
-        joint("ab", "fixed", "a", "b", ""),
-        joint("ac", "fixed", "a", "c", ""),
-        joint("bc", "fixed", "b", "c", ""),
+        joint_element("ab", "fixed", "a", "b", ""),
+        joint_element("ac", "fixed", "a", "c", ""),
+        joint_element("bc", "fixed", "b", "c", ""),
     ];
     check_robot(
         &format!("{links}\n{}", joints.join("\n")),
@@ -161,31 +166,32 @@ fn a_link_hangs_from_one_joint() {
 /// child.
 #[test]
 fn joints_close_loops() {
-    let options = FileOptions { close_loops: true, ..defaults() };
+    let options = FileOptions { close_loops: true, ..default_options() };
     let robot_with_joints = |joints: &[String]| {
-        format!("<robot name='r'>{}{}</robot>", ["a", "b", "c"].map(link).concat(), joints.concat())
+        format!("<robot name='r'>{}{}</robot>", ["a", "b", "c"].map(massless_link).concat(), joints.concat())
     };
-    let (ab, ac) = (joint("ab", "fixed", "a", "b", ""), joint("ac", "fixed", "a", "c", ""));
-    let (bc, cb) = (joint("bc", "floating", "b", "c", ""), joint("cb", "continuous", "c", "b", ""));
+    let (ab, ac) = (joint_element("ab", "fixed", "a", "b", ""), joint_element("ac", "fixed", "a", "c", ""));
+    let (bc, cb) =
+        (joint_element("bc", "floating", "b", "c", ""), joint_element("cb", "continuous", "c", "b", ""));
     let expected_tree =
         |joints: &str| format!("body a\nbody b\nbody c\nWeld root_joint: ground -> a\n{joints}");
     let last = expected_tree("Weld ab: a -> b\nWeld ac: a -> c\nPin cb: c -> b about [1, 0, 0]");
     check_with(&options, &robot_with_joints(&[ab.clone(), ac, cb.clone()]), &last);
     let first = expected_tree("Weld ab: a -> b\nFree bc: b -> c\nPin cb: c -> b about [1, 0, 0]");
     check_with(&options, &robot_with_joints(&[cb.clone(), ab, bc.clone()]), &first);
-    let without_root = run(&options, &robot_with_joints(&[bc, cb]));
+    let without_root = import_as_text(&options, &robot_with_joints(&[bc, cb]));
     assert!(without_root.contains("links `b`, `c` form a cycle"), "{without_root}");
 }
 
 #[test]
 fn there_is_one_root() {
-    let links = ["a", "b", "c", "d"].map(link).join("\n");
+    let links = ["a", "b", "c", "d"].map(massless_link).join("\n");
     check_robot(
-        &(links.clone() + &joint("j", "fixed", "a", "b", "")),
+        &(links.clone() + &joint_element("j", "fixed", "a", "b", "")),
         "r.urdf:4:13: expected one link that is not the child of a joint, found `a`, `c`, `d`
          = help: every link but one needs a joint that has it as its child",
     );
-    let many: String = (0..20).map(|k| link(&format!("l{k}"))).collect();
+    let many: String = (0..20).map(|k| massless_link(&format!("l{k}"))).collect();
     check_robot(
         &many,
         "r.urdf:2:30: expected one link that is not the child of a joint, found `l0`, `l1`, `l2`, `l3`, `l4`, `l5`, `l6`, `l7`, …
@@ -195,35 +201,36 @@ fn there_is_one_root() {
 
 #[test]
 fn links_do_not_hang_from_one_another() {
-    let links = ["a", "b", "c"].map(link).concat();
+    let links = ["a", "b", "c"].map(massless_link).concat();
     let joints = [
-        joint("ba", "fixed", "b", "a", ""),
-        joint("cb", "fixed", "c", "b", ""),
-        joint("ac", "fixed", "a", "c", ""),
+        joint_element("ba", "fixed", "b", "a", ""),
+        joint_element("cb", "fixed", "c", "b", ""),
+        joint_element("ac", "fixed", "a", "c", ""),
     ];
     let circle = format!("{links}\n{}", joints.join("\n"));
     let expected = "r.urdf:3:45: links `a`, `b`, `c` form a cycle
                     = help: joint `ba` closes the cycle; a tree has a root";
     check_robot(&circle, expected);
-    let tail = link("root") + &link("tail") + &joint("at", "fixed", "a", "tail", "");
+    let tail =
+        massless_link("root") + &massless_link("tail") + &joint_element("at", "fixed", "a", "tail", "");
     check_robot(&(circle + &tail), expected);
 }
 
 #[test]
 fn a_long_chain_needs_no_stack() {
     let joints = vec![("revolute", "<mimic joint='j1000'/>"); 999];
-    let text = chain(&[joints, vec![("revolute", "")]].concat());
-    let imported = import_text(&text, &defaults(), &mut Diagnostics::new());
+    let text = chain_of_links(&[joints, vec![("revolute", "")]].concat());
+    let imported = import_text(&text, &default_options(), &mut Diagnostics::new());
     assert!(imported.is_some_and(|imported| imported.joints.len() == 1001 && imported.bodies.len() == 1001));
 }
 
 #[test]
 fn a_crowd_is_refused() {
-    let crowd: String = (0..2000).map(|k| link(&format!("l{k}"))).collect();
-    let column = 1 + (0..1024).map(|k| link(&format!("l{k}")).len()).sum::<usize>();
+    let crowd: String = (0..2000).map(|k| massless_link(&format!("l{k}"))).collect();
+    let column = 1 + (0..1024).map(|k| massless_link(&format!("l{k}")).len()).sum::<usize>();
     check_robot(&crowd, &format!("r.urdf:2:{column}: more than 1024 elements `<link>`"));
     let crowd = "<joint/>".repeat(2000);
-    let messages = run(&defaults(), &format!("<robot>{crowd}</robot>"));
+    let messages = import_as_text(&default_options(), &format!("<robot>{crowd}</robot>"));
     assert_eq!(messages.matches("r.urdf:1:").count(), 32);
     assert!(messages.ends_with("`r.urdf` has more errors; these are the first 32"), "{messages}");
 }

@@ -1,7 +1,7 @@
 //! Attributes of MJCF: each attribute that may affect the motion changes the imported description or is
 //! rejected.
 
-use super::mjcf::mjcf;
+use super::mjcf::mjcf_options;
 use super::*;
 use crate::import::mjcf::schema;
 use std::collections::{BTreeMap, BTreeSet};
@@ -37,13 +37,12 @@ const LISTS: [(&str, &str); 4] = [
 ];
 
 /// MJCF elements that are rejected, with all their attributes.
-const REFUSED: [&str; 8] =
-    ["intvelocity", "damper", "cylinder", "muscle", "adhesion", "orientation", "pid", "dcmotor"];
+const REFUSED: [&str; 2] = ["adhesion", "orientation"];
 
 /// Returns the imported description as text, or the errors.
-fn answer(text: &str) -> String {
+fn import_mjcf_as_text(text: &str) -> String {
     let mut cx = Diagnostics::new();
-    match import_text(text, &mjcf(), &mut cx) {
+    match import_text(text, &mjcf_options(), &mut cx) {
         Some(imported) => format!("{imported:?}"),
         None => cx.messages().join("\n"),
     }
@@ -51,11 +50,11 @@ fn answer(text: &str) -> String {
 
 /// Returns the results of a file with and without an attribute. Spaces replace the attribute, so that source
 /// positions are equal.
-fn answers(file: &str, attribute: &str, value: &str) -> [String; 2] {
+fn results_with_and_without(file: &str, attribute: &str, value: &str) -> [String; 2] {
     let said = format!("{attribute}=\"{value}\"");
     let file = file.replace('$', CLASS).replace('#', BODIES);
     [said.clone(), " ".repeat(said.len())]
-        .map(|said| answer(&format!("<mujoco>{}</mujoco>", file.replace('@', &said))))
+        .map(|said| import_mjcf_as_text(&format!("<mujoco>{}</mujoco>", file.replace('@', &said))))
 }
 
 #[test]
@@ -76,7 +75,7 @@ fn each_attribute_that_may_change_a_motion_is_read_or_refused() {
         let list = LISTS.iter().find(|(name, _)| *name == line).map_or(line, |(_, list)| list);
         for (attribute, value) in list.split("; ").filter_map(|one| one.split_once('=')) {
             known.insert(attribute);
-            let [with, without] = answers(file, attribute, value);
+            let [with, without] = results_with_and_without(file, attribute, value);
             if with == without || with.contains("unknown attribute") {
                 silent.push(format!("{element} {attribute}=\"{value}\""));
             }
@@ -86,7 +85,7 @@ fn each_attribute_that_may_change_a_motion_is_read_or_refused() {
         if REFUSED.iter().any(|kind| element == format!("actuator/{kind}")) {
             let text =
                 format!("<mujoco>{BODIES}<actuator><{}/></actuator></mujoco>", &element["actuator/".len()..]);
-            assert!(answer(&text).contains("is not supported"), "{element}");
+            assert!(import_mjcf_as_text(&text).contains("is not supported"), "{element}");
             continue;
         }
         let known = shown.get(element.as_str());
@@ -100,13 +99,47 @@ fn each_attribute_that_may_change_a_motion_is_read_or_refused() {
     assert!(silent.is_empty(), "attributes that change nothing:\n{}", silent.join("\n"));
 }
 
+/// Each element of MuJoCo is in the importer's list of attributes, or in its list of elements that are left
+/// out, which the guide names.
+#[test]
+fn elements_and_attributes_are_those_of_mujoco() {
+    let ours = schema::read();
+    let list = include_str!("mujoco_schema.txt").replace("\n    ", " ");
+    let mut missing = Vec::new();
+    for line in list.lines().skip_while(|line| !line.starts_with("mujoco:")) {
+        let (elements, attributes) = line.split_once(':').expect("a colon follows the elements");
+        let (parent, names) =
+            elements.rsplit_once('/').map_or(("", elements), |(parent, names)| (parent, names));
+        for name in names.split(',') {
+            let path = if parent.is_empty() { name.to_string() } else { format!("{parent}/{name}") };
+            let is_whole = path.split('/').any(|part| schema::WHOLE.contains(&part));
+            match ours.get(&path) {
+                None if !is_whole => missing.push(path),
+                None => {}
+                Some(known) => missing.extend(
+                    attributes
+                        .split_ascii_whitespace()
+                        .filter(|one| !known.moving.contains(one) && !known.idle.contains(one))
+                        .map(|one| format!("{path} {one}")),
+                ),
+            }
+        }
+    }
+    assert!(missing.is_empty(), "not in the schema of the importer: {}", missing.join(", "));
+    let guide = concat!(env!("CARGO_MANIFEST_DIR"), "/../../runtime/guide/robots.md");
+    let guide = std::fs::read_to_string(guide).expect("the guide is in the repository");
+    let unnamed: Vec<&str> =
+        schema::WHOLE.into_iter().filter(|name| !guide.contains(&format!("`{name}`"))).collect();
+    assert!(unnamed.is_empty(), "not in the guide: {}", unnamed.join(", "));
+}
+
 #[test]
 fn attributes_that_change_no_motion_are_accepted() {
     for (element, attribute) in
         [("joint", "margin"), ("geom", "rgba"), ("site", "user"), ("geom", "castshadow")]
     {
         let import_with_attribute = |said: &str| {
-            answer(&format!(
+            import_mjcf_as_text(&format!(
                 "<mujoco><worldbody><body><joint/><geom size='1'/><{element} {said}/></body></worldbody>\
                  </mujoco>"
             ))
@@ -164,7 +197,7 @@ fn what_mjcf_does_not_have_is_refused() {
         ),
     ] {
         let column = inside.find(at).expect("it stands there") + 1;
-        let answer = run(&mjcf(), &format!("<mujoco>\n{inside}\n</mujoco>"));
+        let answer = import_as_text(&mjcf_options(), &format!("<mujoco>\n{inside}\n</mujoco>"));
         let expected = format!("r.xml:2:{column}: unknown {message}");
         assert!(answer.starts_with(&expected) && answer.contains(help), "{inside}\n{answer}");
         assert_eq!(answer.matches("r.xml:").count(), 1, "{answer}");
@@ -194,7 +227,7 @@ fn names_are_taken_once() {
             "second equality with the name `m`",
         ),
     ] {
-        let answer = run(&mjcf(), &format!("<mujoco>{inside}</mujoco>"));
+        let answer = import_as_text(&mjcf_options(), &format!("<mujoco>{inside}</mujoco>"));
         assert!(answer.contains(message), "{inside}\n{answer}");
     }
 }

@@ -2,13 +2,13 @@
 
 use super::*;
 
-fn sdf() -> FileOptions {
-    FileOptions { format: FileFormat::Sdf, path: name("r.sdf"), ..defaults() }
+fn sdf_options() -> FileOptions {
+    FileOptions { format: FileFormat::Sdf, path: test_name("r.sdf"), ..default_options() }
 }
 
 /// Compares the result for the elements of a model. The elements begin on the second line.
 fn check_model(inside: &str, expected: &str) {
-    check_with(&sdf(), &format!("<sdf><model name='m'>\n{inside}\n</model></sdf>"), expected);
+    check_with(&sdf_options(), &format!("<sdf><model name='m'>\n{inside}\n</model></sdf>"), expected);
 }
 
 #[test]
@@ -48,7 +48,7 @@ fn frames_carry_joints_and_joints_close_loops() {
 #[test]
 fn what_stands_in_the_world_is_listed() {
     check_with(
-        &sdf(),
+        &sdf_options(),
         "<sdf><world name='w'><gravity>0 0 -1</gravity><model name='f'><static>1</static><link name='f'/>\
          </model><model name='m'><link name='a'/></model></world></sdf>",
         "body a mass=1 inertia=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]
@@ -82,8 +82,10 @@ fn poses_name_frames_that_there_are() {
             "r.sdf:2:16: a quaternion of length 0 has no direction",
         ),
     ] {
-        let answer =
-            run(&sdf(), &format!("<sdf><model name='m'>\n{}\n</model></sdf>", model_with_pose(pose)));
+        let answer = import_as_text(
+            &sdf_options(),
+            &format!("<sdf><model name='m'>\n{}\n</model></sdf>", model_with_pose(pose)),
+        );
         let lines: Vec<&str> = answer.lines().filter(|line| !line.is_empty()).collect();
         let (found, expected) = (lines.join("\n"), expected.lines().collect::<Vec<_>>().join("\n"));
         assert!(found.starts_with(&expected), "{found}");
@@ -192,7 +194,7 @@ fn another_format_is_named() {
              joints of their world connect: put the others into files of their own",
         ),
     ] {
-        check_with(&sdf(), text, expected);
+        check_with(&sdf_options(), text, expected);
     }
 }
 
@@ -207,15 +209,15 @@ const FILE: &str = r#"<?xml version="1.0"?><sdf version="1.9"><world name="w"><g
 
 #[test]
 fn damage_never_panics() {
-    super::fuzz::damage_gets_an_answer(&sdf(), FILE, "root_joint");
+    super::fuzz::damage_gets_an_answer(&sdf_options(), FILE, "root_joint");
 }
 
 #[test]
 fn every_beginning_of_a_file_gets_an_answer() {
     for end in 0..FILE.len() {
-        assert!(!run(&sdf(), &FILE[..end]).contains("root_joint"));
+        assert!(!import_as_text(&sdf_options(), &FILE[..end]).contains("root_joint"));
     }
-    assert!(run(&sdf(), FILE).contains("root_joint"));
+    assert!(import_as_text(&sdf_options(), FILE).contains("root_joint"));
 }
 
 /// The model of an included file replaces the `<include>`, with the name and pose of the `<include>`. The
@@ -251,14 +253,15 @@ fn included_models_stand_in_the_place_of_their_elements() {
          </name>{near}<uri>model://parts</uri></include><include><uri>wheel.sdf</uri></include>"
     );
     let whole = format!("{joints}{}{}", nested_model("left", near), nested_model("wheel", far));
-    let answer = folder.answer(&sdf(), &wrap_in_model(&included));
-    let expected = folder.answer(&sdf(), &wrap_in_model(&whole)).replace("0 files", "2 files");
+    let answer = folder.import_as_text(&sdf_options(), &wrap_in_model(&included));
+    let expected =
+        folder.import_as_text(&sdf_options(), &wrap_in_model(&whole)).replace("0 files", "2 files");
     assert_eq!(answer, expected);
     assert!(answer.contains("Pin i: hull.at([1, 0, 1]) -> left::rim"), "{answer}");
     // Nested includes, and includes in a world, which may refer to missing files.
     let world = "<sdf><world name='w'><include><uri>model://ground_plane</uri></include><include>\
                  <uri>two.sdf</uri></include></world></sdf>";
-    let answer = folder.answer(&sdf(), world);
+    let answer = folder.import_as_text(&sdf_options(), world);
     assert!(answer.contains("body wheel::rim") && answer.contains("not next to the file: 1"), "{answer}");
     for (inside, expected) in [
         ("<include><uri>bad.sdf</uri></include>", "bad.sdf:2:17: unknown element `<lnk>`"),
@@ -274,7 +277,7 @@ fn included_models_stand_in_the_place_of_their_elements() {
         ),
         ("<include><uri>wheel.sdf</uri><nam/></include>", "r.sdf:2:30: unknown element `<nam>`"),
     ] {
-        let answer = folder.answer(&sdf(), &wrap_in_model(inside));
+        let answer = folder.import_as_text(&sdf_options(), &wrap_in_model(inside));
         assert!(answer.starts_with(expected), "{answer}");
     }
 }
@@ -312,10 +315,10 @@ fn axes_of_old_versions_are_in_the_model() {
             "body a {ONE}\nbody b {ONE}\nWeld root_joint: ground -> a\nSleeve j: \
              a.rotated(z(1.5707963267948966)) -> b along {along}"
         );
-        check_with(&sdf(), &model_with_axis(version, axis), &expected);
+        check_with(&sdf_options(), &model_with_axis(version, axis), &expected);
     }
     check_with(
-        &sdf(),
+        &sdf_options(),
         &model_with_axis("1.7", &of_model),
         "r.sdf:1:204: `<use_parent_model_frame>` has another name since version 1.7 of SDF\n= help: write \
          `<xyz expressed_in=\"__model__\">`",
@@ -342,7 +345,7 @@ fn included_files_are_read_in_their_own_version() {
         let text = format!(
             "<sdf version='{outer}'><model name='m'><include><uri>{file}.sdf</uri></include></model></sdf>"
         );
-        let answer = folder.answer(&sdf(), &text);
+        let answer = folder.import_as_text(&sdf_options(), &text);
         assert!(answer.contains(&format!("arm::b along {along}")), "{answer}");
     }
 }
@@ -370,32 +373,35 @@ fn poses_of_old_versions_name_frames() {
         let model_with_inertial_pose = |inertial: &str| model_with_poses(version, placed, inertial);
         let expected_with_com = |com: &str| expected_model("[0, 0, 1]", com);
         check_with(
-            &sdf(),
+            &sdf_options(),
             &model_with_inertial_pose("<pose>1 0 0 0 0 0</pose>"),
             &expected_with_com("[1, 0, 0]"),
         );
         check_with(
-            &sdf(),
+            &sdf_options(),
             &model_with_inertial_pose("<pose frame='a'>1 0 0 0 0 0</pose>"),
             &expected_with_com("[1, 0, -1]"),
         );
         check_with(
-            &sdf(),
+            &sdf_options(),
             &model_with_inertial_pose("<pose frame='f'>1 0 0 0 0 0</pose>"),
             &expected_with_com("[1, 3, 0]"),
         );
         check_with(
-            &sdf(),
+            &sdf_options(),
             &model_with_inertial_pose("<pose frame=''>1 0 0 0 0 0</pose>"),
             &expected_with_com("[1, 0, 0]"),
         );
     }
-    let answer = run(&sdf(), &model_with_poses("1.7", placed, ""));
+    let answer = import_as_text(&sdf_options(), &model_with_poses("1.7", placed, ""));
     assert!(
         answer.starts_with("r.sdf:1:151: `frame` of a pose has another name since version 1.7 of SDF"),
         "{answer}"
     );
-    let answer = run(&sdf(), &model_with_poses("1.7", "", "<pose relative_to='a'>1 0 0 0 0 0</pose>"));
+    let answer = import_as_text(
+        &sdf_options(),
+        &model_with_poses("1.7", "", "<pose relative_to='a'>1 0 0 0 0 0</pose>"),
+    );
     assert!(answer.contains("the pose of an `<inertial>` is relative to its link"), "{answer}");
 }
 
@@ -462,16 +468,18 @@ fn joints_of_the_world_hold_models() {
     ] {
         let trimmed_lines =
             |text: &str| -> Vec<String> { text.lines().map(|line| line.trim().to_string()).collect() };
-        let (mut found, mut expected) =
-            (trimmed_lines(&run(&sdf(), &world_with_joint(&inside))), trimmed_lines(&expected));
+        let (mut found, mut expected) = (
+            trimmed_lines(&import_as_text(&sdf_options(), &world_with_joint(&inside))),
+            trimmed_lines(&expected),
+        );
         // The order of bodies depends on the names of the joints.
         found.sort();
         expected.sort();
         assert_eq!(found, expected);
     }
-    let answer = run(&sdf(), &world_with_joint(&prismatic_joint("m::b", "")));
+    let answer = import_as_text(&sdf_options(), &world_with_joint(&prismatic_joint("m::b", "")));
     assert!(answer.contains("unknown frame `b`"), "{answer}");
-    let answer = run(&sdf(), &world_with_joint("<jont name='x'/>"));
+    let answer = import_as_text(&sdf_options(), &world_with_joint("<jont name='x'/>"));
     assert!(
         answer.contains("unknown element `<jont>`") && answer.contains("did you mean `<joint>`?"),
         "{answer}"
@@ -488,11 +496,14 @@ fn screws_of_old_versions_advance_by_their_thread() {
              </sdf>"
         )
     };
-    let imported =
-        import_text(&model_with_thread_pitch("-4"), &sdf(), &mut Diagnostics::new()).expect("a robot");
-    let lead = imported.joints.iter().find_map(|joint| joint.lead.as_ref()).and_then(Expr::literal);
+    let imported = import_text(&model_with_thread_pitch("-4"), &sdf_options(), &mut Diagnostics::new())
+        .expect("a robot");
+    let lead = imported.joints.iter().find_map(|joint| joint.lead.as_ref()).and_then(Expr::literal_number);
     assert_eq!(lead, Some(std::f64::consts::FRAC_PI_2));
-    assert!(run(&sdf(), &model_with_thread_pitch("0")).contains("advances infinitely far in a turn"));
+    assert!(
+        import_as_text(&sdf_options(), &model_with_thread_pitch("0"))
+            .contains("advances infinitely far in a turn")
+    );
 }
 
 #[test]
@@ -509,9 +520,9 @@ fn versions_are_numbers() {
              > converted.sdf`",
         ),
     ] {
-        check_with(&sdf(), &format!("<sdf version='{version}'>{model}</sdf>"), expected);
+        check_with(&sdf_options(), &format!("<sdf version='{version}'>{model}</sdf>"), expected);
     }
-    let answer = run(&sdf(), &format!("<gazebo version='1.2'>{model}</gazebo>"));
+    let answer = import_as_text(&sdf_options(), &format!("<gazebo version='1.2'>{model}</gazebo>"));
     assert!(answer.contains("files of versions 1.0 and 1.2 begin so"), "{answer}");
     // Values that are written as attributes, as in version 1.0 or in URDF, are not replaced by defaults.
     for (inside, expected) in [
@@ -527,7 +538,10 @@ fn versions_are_numbers() {
             "unknown attribute `xyz` of `<axis>`",
         ),
     ] {
-        let answer = run(&sdf(), &format!("<sdf version='1.9'><model name='m'>{inside}</model></sdf>"));
+        let answer = import_as_text(
+            &sdf_options(),
+            &format!("<sdf version='1.9'><model name='m'>{inside}</model></sdf>"),
+        );
         assert!(answer.contains(expected), "{answer}");
     }
 }
@@ -541,10 +555,11 @@ fn gravity_of_old_worlds_is_that_of_their_physics() {
              <model name='m'><link name='a'/></model></world></sdf>"
         )
     };
-    let imported = import_text(&world_of_version("1.4"), &sdf(), &mut Diagnostics::new()).expect("a robot");
+    let imported =
+        import_text(&world_of_version("1.4"), &sdf_options(), &mut Diagnostics::new()).expect("a robot");
     assert_eq!(imported.gravity.map(|gravity| render_expr(&gravity)), Some("[0, 0, -3]".to_string()));
     assert!(
-        run(&sdf(), &world_of_version("1.6"))
+        import_as_text(&sdf_options(), &world_of_version("1.6"))
             .contains("`<gravity>` is an element of the world since version 1.6 of SDF")
     );
 }
@@ -611,8 +626,10 @@ fn parts_in_the_place_of_others_are_errors() {
             "r.sdf:3:80: unexpected `<damping>` in `<limit>`",
         ),
     ] {
-        let actual =
-            run(&sdf(), &format!("<sdf><model name='m'>\n{}\n</model></sdf>", model_with_joint(inside)));
+        let actual = import_as_text(
+            &sdf_options(),
+            &format!("<sdf><model name='m'>\n{}\n</model></sdf>", model_with_joint(inside)),
+        );
         assert!(actual.starts_with(&format!("{found}\n")) && !actual.contains("\nr.sdf"), "{actual}");
     }
 }
@@ -659,7 +676,7 @@ fn what_a_joint_cannot_have_is_listed() {
 fn gravity_is_that_of_the_models_world() {
     let text = "<sdf><world name='a'><gravity>0 0 -1</gravity></world><world name='b'>\
                 <gravity>0 0 -5</gravity><model name='m'><link name='a'/></model></world></sdf>";
-    let imported = import_text(text, &sdf(), &mut Diagnostics::new()).expect("a robot");
+    let imported = import_text(text, &sdf_options(), &mut Diagnostics::new()).expect("a robot");
     assert_eq!(imported.gravity.map(|e| render_expr(&e)).as_deref(), Some("[0, 0, -5]"));
 }
 
@@ -669,9 +686,9 @@ fn plugins_of_included_models_are_listed() {
     let arm = "<sdf><model name='arm'><link name='a'/></model></sdf>";
     let folder = Folder::new("plugins", &[("arm.sdf", arm)]);
     let text = "<sdf><model name='m'><include><uri>arm.sdf</uri><plugin name='p'/></include></model></sdf>";
-    let answer = folder.answer(&sdf(), text);
+    let answer = folder.import_as_text(&sdf_options(), text);
     assert!(answer.contains("left out plug-ins, and their effect on the motion: 1\n"), "{answer}");
     let twice = text.replace("<plugin name='p'/>", "<uri>leg.sdf</uri>");
-    let answer = folder.answer(&sdf(), &twice);
+    let answer = folder.import_as_text(&sdf_options(), &twice);
     assert!(answer.starts_with("r.sdf:1:49: second `<uri>` of one element\n"), "{answer}");
 }

@@ -1,10 +1,10 @@
 //! Tests of spatial tendons and of actuators on sites in MJCF files.
 
-use super::mjcf::mjcf;
+use super::mjcf::mjcf_options;
 use super::*;
 
 /// Returns a file with a body, sites, a sphere, a cylinder and these tendons and actuators.
-fn model(tendon: &str, actuator: &str) -> String {
+fn model_with_tendon(tendon: &str, actuator: &str) -> String {
     format!(
         "<mujoco><compiler angle='radian'/><worldbody><site name='w' pos='0 0 1'/><body name='b' pos='0 0 2'>\
          <joint name='j' axis='0 1 0' springref='1'/><site name='s' pos='3 0 0'/><site name='side' pos='-1 0 9'/>\
@@ -15,31 +15,34 @@ fn model(tendon: &str, actuator: &str) -> String {
 }
 
 /// Returns the lines of the result that describe forces, or the errors.
-fn drives(tendon: &str, actuator: &str) -> Vec<String> {
-    let text = run(&mjcf(), &model(tendon, actuator));
+fn drive_lines(tendon: &str, actuator: &str) -> Vec<String> {
+    let text = import_as_text(&mjcf_options(), &model_with_tendon(tendon, actuator));
     let is_relevant = |line: &&str| line.contains(" on ") || line.contains("r.xml") || line.contains("help");
     text.lines().filter(is_relevant).map(|line| line.trim().to_string()).collect()
 }
 
 /// Returns the forces of a motor that pulls a cable from the wall to the site `s`.
-fn cable(around: &str) -> Vec<String> {
+fn motor_on_cable(around: &str) -> Vec<String> {
     let tendon = format!("<spatial name='t'><site site='w'/>{around}<site site='s'/></spatial>");
-    drives(&tendon, "<motor tendon='t' name='m'/>")
+    drive_lines(&tendon, "<motor tendon='t' name='m'/>")
 }
 
 #[test]
 fn paths_are_lengths_of_cables() {
     let ends = "ground.at([0, 0, 1]) / b.at([3, 0, 0])";
-    assert_eq!(cable(""), [format!("m: input in N on norm(r(({ends})))")]);
-    assert_eq!(cable("<geom geom='ball'/>"), [format!("m: input in N on cable(({ends}), b.sphere(0.5))")]);
+    assert_eq!(motor_on_cable(""), [format!("m: input in N on norm(r(({ends})))")]);
+    assert_eq!(
+        motor_on_cable("<geom geom='ball'/>"),
+        [format!("m: input in N on cable(({ends}), b.sphere(0.5))")]
+    );
     let expected_cable = |sign: &str| format!("cable(({ends}), b.cylinder(0.5, [0, {sign}1, 0]))");
     assert_eq!(
-        cable("<geom geom='drum'/>"),
+        motor_on_cable("<geom geom='drum'/>"),
         [format!("m: input in N on min({}, {})", expected_cable(""), expected_cable("-"))]
     );
     // Viewed along y, the cable runs clockwise from below the drum over its upper side to the right.
     assert_eq!(
-        cable("<geom geom='drum' sidesite='side'/>"),
+        motor_on_cable("<geom geom='drum' sidesite='side'/>"),
         [format!("m: input in N on {}", expected_cable(""))]
     );
 }
@@ -51,7 +54,7 @@ fn pulleys_and_gears_are_factors() {
                   <site site='side'/></spatial>";
     let expected_length = |end: &str| format!("norm(r((ground.at([0, 0, 1]) / b.at([{end}]))))");
     assert_eq!(
-        drives(tendon, "<motor tendon='t' name='m' gear='3'/>"),
+        drive_lines(tendon, "<motor tendon='t' name='m' gear='3'/>"),
         [format!(
             "m: input in N on (3 * ({} + (0.25 * {})))",
             expected_length("3, 0, 0"),
@@ -64,7 +67,7 @@ fn pulleys_and_gears_are_factors() {
 #[test]
 fn springs_are_free_at_rest() {
     let drives_with_spring = |more: &str| {
-        drives(
+        drive_lines(
             &format!("<spatial name='t' stiffness='5' {more}><site site='w'/><site site='s'/></spatial>"),
             "",
         )
@@ -85,7 +88,8 @@ fn springs_are_free_at_rest() {
 
 #[test]
 fn sites_are_pushed_and_turned() {
-    let drives_with_site_motor = |words: &str| drives("", &format!("<motor name='m' site='s' {words}/>"));
+    let drives_with_site_motor =
+        |words: &str| drive_lines("", &format!("<motor name='m' site='s' {words}/>"));
     assert_eq!(
         drives_with_site_motor("gear='1 2 0 0 0 3'"),
         ["m: input in N on b.at([3, 0, 0]) by 1 2 0, 0 0 3"]
@@ -101,7 +105,7 @@ fn sites_are_pushed_and_turned() {
     );
     // The length of an actuator on a single site is zero: a servo's spring reduces to its constant force.
     assert_eq!(
-        drives("", "<general name='m' site='s' biastype='affine' biasprm='4 -5 -6'/>"),
+        drive_lines("", "<general name='m' site='s' biastype='affine' biasprm='4 -5 -6'/>"),
         [
             "m: input in any on b.at([3, 0, 0]) by 1 0 0, 0 0 0",
             "m: push 4 on b.at([3, 0, 0]) by 1 0 0, 0 0 0",
@@ -115,43 +119,72 @@ fn sites_are_pushed_and_turned() {
 fn what_of_a_path_is_not_taken_over_is_said_where_it_matters() {
     let side =
         "<spatial name='t'><site site='w'/><geom geom='ball' sidesite='side'/><site site='s'/></spatial>";
-    assert_eq!(drives(side, ""), Vec::<String>::new());
+    assert_eq!(drive_lines(side, ""), Vec::<String>::new());
     let assert_message_found = |found: Vec<String>, message: &str| {
         let found = found.join("\n");
         assert!(found.contains(message), "{found}");
     };
     let inputs = "= help: to ignore the actuators of the file, write";
     assert_message_found(
-        drives(side, "<motor tendon='t'/>"),
+        drive_lines(side, "<motor tendon='t'/>"),
         "the side on which a tendon passes the sphere `ball` is not supported",
     );
-    assert_message_found(drives(side, "<motor tendon='t'/>"), inputs);
+    assert_message_found(drive_lines(side, "<motor tendon='t'/>"), inputs);
     assert_message_found(
-        cable("<geom geom='box'/>"),
+        motor_on_cable("<geom geom='box'/>"),
         "a tendon wraps around spheres and cylinders, but `box` is neither",
     );
-    assert_message_found(cable("<geom geom='bal'/>"), "unknown geom `bal`");
+    assert_message_found(motor_on_cable("<geom geom='bal'/>"), "unknown geom `bal`");
     assert_message_found(
-        cable("<geom geom='ball'/><geom geom='drum'/>"),
+        motor_on_cable("<geom geom='ball'/><geom geom='drum'/>"),
         "a tendon runs around a shape between two sites",
     );
-    assert_message_found(cable("<site site='x'/>"), "unknown site `x`");
+    assert_message_found(motor_on_cable("<site site='x'/>"), "unknown site `x`");
     assert_message_found(
-        cable("<site site='s'/><pulley divisor='0'/><site site='w'/>"),
+        motor_on_cable("<site site='s'/><pulley divisor='0'/><site site='w'/>"),
         "a pulley with the divisor 0",
     );
-    assert_message_found(cable("<wheel/>"), "unknown element `<wheel>`");
+    assert_message_found(motor_on_cable("<wheel/>"), "unknown element `<wheel>`");
     assert_message_found(
-        drives("", "<motor site='w' refsite='s'/>"),
+        drive_lines("", "<motor site='w' refsite='s'/>"),
         "a `refsite` that does not carry the site `w` is not supported",
     );
     assert_message_found(
-        drives("", "<position site='s' refsite='w' kp='1' gear='0 0 0 1 0 0'/>"),
+        drive_lines("", "<position site='s' refsite='w' kp='1' gear='0 0 0 1 0 0'/>"),
         "a servo on the orientation of a site is not supported",
     );
     assert_message_found(
-        drives("", "<motor body='b'/>"),
+        drive_lines("", "<motor body='b'/>"),
         "an actuator on no joint, tendon or site is not supported",
     );
-    assert_message_found(drives("", "<muscle joint='j'/>"), "actuator `<muscle>` is not supported");
+    assert_message_found(drive_lines("", "<muscle joint='j'/>"), "a muscle without `force` is not supported");
+    assert_message_found(
+        drive_lines("", "<muscle joint='j' force='1'/>"),
+        "a muscle without `lengthrange` is not supported",
+    );
+    assert_message_found(
+        drive_lines("", "<muscle joint='j' force='1' lengthrange='0 1' lmin='2'/>"),
+        "a muscle needs an increasing `range`, lmin < 1 < lmax, vmax > 0 and fvmax > 1",
+    );
+    assert_message_found(
+        drive_lines("", "<pid joint='j' ki='1' imax='2'/>"),
+        "`imax` is not supported: the rate of its state is not continuous",
+    );
+    assert_message_found(
+        drive_lines("", "<pid joint='j' input='vel pos'/>"),
+        "`input` `vel pos` is not a list of inputs",
+    );
+    assert_message_found(
+        drive_lines("", "<pid joint='j' ki='1' input='vel'/>"),
+        "`ki` without the input `pos`",
+    );
+    assert_message_found(
+        drive_lines("", "<dcmotor joint='j' motorconst='1'/>"),
+        "a motor needs a positive `resistance`, or `nominal` values from which it follows",
+    );
+    assert_message_found(
+        drive_lines("", "<dcmotor joint='j' resistance='1' motorconst='1' controller='1'/>"),
+        "the gains of `controller` have no effect without an input that it controls",
+    );
+    assert_message_found(drive_lines("", "<general joint='j' dyntype='pid'/>"), "`pid` with other types");
 }

@@ -23,7 +23,7 @@ fn check_turns(options: &FileOptions, text: &str, place: &str, help: &str) {
     );
     check_with(options, &degrees, &said);
     for turn in ["6.2832", "-6.283185307179586", "6.3", "9.42477796076938"] {
-        let answer = run(options, &text.replace('…', turn));
+        let answer = import_as_text(options, &text.replace('…', turn));
         assert!(!answer.contains("full turn"), "{answer}");
     }
 }
@@ -38,26 +38,26 @@ fn degrees_in_a_urdf_are_told_once() {
         )
     };
     let help = "`rpy` is in radians: write the angle that is meant, everywhere in the file";
-    check_turns(&defaults(), &robot_with_origin("<origin rpy='0 0 …'/>"), "r.urdf:1:71", help);
+    check_turns(&default_options(), &robot_with_origin("<origin rpy='0 0 …'/>"), "r.urdf:1:71", help);
     let joint = robot_with_origin("<origin xyz='90 0 0' rpy='0 0 …'/>").replacen('…', "1.5", 1);
-    check_turns(&defaults(), &joint, "r.urdf:2:59", help);
+    check_turns(&default_options(), &joint, "r.urdf:2:59", help);
 }
 
 #[test]
 fn degrees_in_an_sdf_say_so() {
-    let options = FileOptions { format: FileFormat::Sdf, path: name("r.sdf"), ..defaults() };
+    let options = FileOptions { format: FileFormat::Sdf, path: test_name("r.sdf"), ..default_options() };
     let model_with_pose =
         |pose: &str| format!("<sdf><model name='m'><link name='a'>{pose}</link></model></sdf>");
     let help = "a pose is in radians: write the angle that is meant, or `<pose degrees=\"true\">`, \
                 everywhere in the file";
     check_turns(&options, &model_with_pose("<pose>90 0 0 … 0 0</pose>"), "r.sdf:1:43", help);
-    let answer = run(&options, &model_with_pose("<pose degrees='true'>0 0 0 0 0 90</pose>"));
+    let answer = import_as_text(&options, &model_with_pose("<pose degrees='true'>0 0 0 0 0 90</pose>"));
     assert!(answer.contains("body a mass=1"), "{answer}");
 }
 
 #[test]
 fn degrees_in_an_mjcf_are_what_the_file_says() {
-    let options = FileOptions { format: FileFormat::Mjcf, path: name("r.xml"), ..defaults() };
+    let options = FileOptions { format: FileFormat::Mjcf, path: test_name("r.xml"), ..default_options() };
     let model_with_angle_unit = |unit: &str, turn: &str| {
         format!(
             "<mujoco><compiler angle='{unit}'/><worldbody>\n<body name='b' {turn}><joint/>\
@@ -68,7 +68,7 @@ fn degrees_in_an_mjcf_are_what_the_file_says() {
                 `angle=\"degree\"`";
     for (turn, place) in [("euler='0 … 0'", "r.xml:2:23"), ("axisangle='0 0 20 …'", "r.xml:2:27")] {
         check_turns(&options, &model_with_angle_unit("radian", turn), place, help);
-        let answer = run(&options, &model_with_angle_unit("degree", &turn.replace('…', "90")));
+        let answer = import_as_text(&options, &model_with_angle_unit("degree", &turn.replace('…', "90")));
         assert!(answer.contains("body b mass=1"), "{answer}");
     }
 }

@@ -4,7 +4,8 @@ use super::origin::read_origin;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::{
-    Node, check_attributes, children, elements, name, number, numbers, place, required,
+    Node, check_attributes, child_elements, element_position, known_children, read_name_attribute,
+    read_number_attribute, read_numbers_attribute, required_child,
 };
 use crate::import::imported::Placed;
 use crate::import::mesh;
@@ -16,16 +17,16 @@ use std::path::Path;
 const SHAPES: [&str; 5] = ["sphere", "box", "cylinder", "capsule", "mesh"];
 
 /// Reads all collision geometry of a link. Paths of meshes are relative to `folder`.
-pub(super) fn read(link: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Vec<FileCollision> {
-    let parts = elements(link).filter(|node| node.tag_name().name() == "collision");
+pub(super) fn read_collisions(link: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Vec<FileCollision> {
+    let parts = child_elements(link).filter(|node| node.tag_name().name() == "collision");
     parts.filter_map(|part| read_part(part, folder, cx)).collect()
 }
 
 fn read_part(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<FileCollision> {
-    let [origin, geometry] = children(node, ["origin", "geometry"], cx);
+    let [origin, geometry] = known_children(node, ["origin", "geometry"], cx);
     let origin = read_origin(origin, node, cx);
-    let geometry = required(geometry, node, "geometry", &[], cx)?;
-    let [sphere, cuboid, cylinder, capsule, mesh] = children(geometry, SHAPES, cx);
+    let geometry = required_child(geometry, node, "geometry", &[], cx)?;
+    let [sphere, cuboid, cylinder, capsule, mesh] = known_children(geometry, SHAPES, cx);
     report_several(&[sphere, cuboid, cylinder, capsule, mesh], cx);
     let mut vertices = None;
     let shape = match (sphere, cuboid, cylinder, capsule, mesh) {
@@ -35,9 +36,9 @@ fn read_part(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<FileColli
         }
         (_, Some(cuboid), ..) => {
             check_attributes(cuboid, &["size"], &[], cx);
-            let size: Placed<[f64; 3]> = numbers(cuboid, "size", cx)?;
+            let size: Placed<[f64; 3]> = read_numbers_attribute(cuboid, "size", cx)?;
             for x in size.value {
-                positive(x, &size.place, cx)?;
+                check_positive(x, &size.place, cx)?;
             }
             Shape::Cuboid(size.value)
         }
@@ -52,9 +53,9 @@ fn read_part(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<FileColli
         }
         (.., Some(mesh)) => {
             check_attributes(mesh, &["filename"], &["scale"], cx);
-            let path = name(mesh, "filename", cx)?;
+            let path = read_name_attribute(mesh, "filename", cx)?;
             let scale = match mesh.has_attribute("scale") {
-                true => numbers(mesh, "scale", cx)?.value,
+                true => read_numbers_attribute(mesh, "scale", cx)?.value,
                 false => [1.0; 3],
             };
             let paths = mesh::candidates(folder, &path.text);
@@ -64,30 +65,30 @@ fn read_part(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<FileColli
         _ => {
             let message = "collision geometry without a supported shape";
             let help = "supported are `<sphere>`, `<box>`, `<cylinder>`, `<capsule>` and `<mesh>`";
-            cx.error(&place(geometry, cx), message.to_string(), |d| d.help(help));
+            cx.report_error(&element_position(geometry, cx), message.to_string(), |d| d.add_help(help));
             return None;
         }
     };
-    Some(FileCollision { origin, shape, mesh: vertices, place: place(node, cx) })
+    Some(FileCollision { origin, shape, mesh: vertices, place: element_position(node, cx) })
 }
 
 /// Reports the shapes of a geometry after the first one.
 fn report_several(shapes: &[Option<Node<'_>>], cx: &mut Cx<'_>) {
     if let Some(second) = shapes.iter().flatten().nth(1) {
         let help = "write a `<collision>` for each shape";
-        cx.error(&place(*second, cx), "second shape of one geometry", |d| d.help(help));
+        cx.report_error(&element_position(*second, cx), "second shape of one geometry", |d| d.add_help(help));
     }
 }
 
 fn length(node: Node<'_>, attribute: &str, cx: &mut Cx<'_>) -> Option<f64> {
-    let read = number(node, attribute, cx)?;
-    positive(read.value, &read.place, cx)
+    let read = read_number_attribute(node, attribute, cx)?;
+    check_positive(read.value, &read.place, cx)
 }
 
-fn positive(x: f64, place: &Place, cx: &mut Cx<'_>) -> Option<f64> {
+fn check_positive(x: f64, place: &Place, cx: &mut Cx<'_>) -> Option<f64> {
     if x <= 0.0 {
         let help = "sizes of collision geometry are lengths in m";
-        cx.error(place, format!("this length must be positive, but it is {x}"), |d| d.help(help));
+        cx.report_error(place, format!("this length must be positive, but it is {x}"), |d| d.add_help(help));
         return None;
     }
     Some(x)

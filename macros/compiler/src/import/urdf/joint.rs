@@ -3,9 +3,10 @@
 use super::limit::read_limits;
 use super::origin::read_origin;
 use crate::diag::Place;
-use crate::import::context::{Cx, quote};
+use crate::import::context::{Cx, quote_word};
 use crate::import::element::{
-    Node, check_attributes, check_only, children, name, number, numbers, place, required,
+    Node, check_attributes, check_only, element_position, known_children, read_name_attribute,
+    read_number_attribute, read_numbers_attribute, required_child,
 };
 use crate::import::imported::Placed;
 use crate::import::misplaced;
@@ -41,10 +42,10 @@ pub(super) fn read_joint(
     cx: &mut Cx<'_>,
 ) -> Option<FileJoint> {
     check_attributes(node, &["name", "type"], &[], cx);
-    let joint = name(node, "name", cx);
+    let joint = read_name_attribute(node, "name", cx);
     let kind = read_type(node, cx);
-    let [origin, parent, child, axis, dynamics, mimic, limit] = children(node, PARTS, cx);
-    misplaced::check(node, &PARTS, ELEMENTS, cx);
+    let [origin, parent, child, axis, dynamics, mimic, limit] = known_children(node, PARTS, cx);
+    misplaced::check_misplaced(node, &PARTS, ELEMENTS, cx);
     let origin = read_origin(origin, node, cx);
     let parent = read_end(parent, node, "parent", cx);
     let child = read_end(child, node, "child", cx);
@@ -89,33 +90,33 @@ fn read_type(node: Node<'_>, cx: &mut Cx<'_>) -> Option<(&'static str, JointKind
     let found = node.attribute_node("type")?;
     let known = TYPES.iter().find(|(word, _)| *word == found.value());
     if known.is_none() {
-        let place = cx.place(found.range_value().start);
-        let message = format!("unknown joint type {}", quote(found.value()));
-        cx.error(&place, message, |d| d.suggest(found.value(), TYPES.map(|(word, _)| word)));
+        let place = cx.source_position(found.range_value().start);
+        let message = format!("unknown joint type {}", quote_word(found.value()));
+        cx.report_error(&place, message, |d| d.suggest_name(found.value(), TYPES.map(|(word, _)| word)));
     }
     known.copied()
 }
 
 /// Reads the name of the parent or child link of a joint.
 fn read_end(end: Option<Node<'_>>, node: Node<'_>, which: &str, cx: &mut Cx<'_>) -> Option<Name> {
-    let end = required(end, node, which, &["link"], cx)?;
+    let end = required_child(end, node, which, &["link"], cx)?;
     check_only(end, &["link"], &[], &[], cx);
-    name(end, "link", cx)
+    read_name_attribute(end, "link", cx)
 }
 
 /// Reads the axis of a joint; the default of URDF is x.
 fn read_axis(axis: Option<Node<'_>>, node: Node<'_>, cx: &mut Cx<'_>) -> Placed<[f64; 3]> {
     let default_axis = |place: Place| Placed { value: [1.0, 0.0, 0.0], place };
     let Some(axis) = axis else {
-        return default_axis(place(node, cx));
+        return default_axis(element_position(node, cx));
     };
     // Some exporters add an identity orientation to the axis.
     let has_rpy =
         axis.attribute("rpy").is_some_and(|rpy| rpy.split_whitespace().all(|x| x.parse() == Ok(0.0)));
     check_only(axis, &["xyz"], &[], if has_rpy { &["rpy"] } else { &[] }, cx);
-    let axis = numbers(axis, "xyz", cx).unwrap_or(default_axis(place(axis, cx)));
+    let axis = read_numbers_attribute(axis, "xyz", cx).unwrap_or(default_axis(element_position(axis, cx)));
     if axis.value == [0.0; 3] {
-        cx.error(&axis.place, "axis of zero length has no direction", |d| d);
+        cx.report_error(&axis.place, "axis of zero length has no direction", |d| d);
     }
     axis
 }
@@ -127,15 +128,15 @@ fn read_dynamics(node: Option<Node<'_>>, word: &str, kind: JointKind, cx: &mut C
     };
     check_only(node, &[], &["damping", "friction"], &OF_CONTROLLERS, cx);
     ["damping", "friction"].map(|which| {
-        let found = number(node, which, cx).filter(|found| found.value != 0.0)?;
+        let found = read_number_attribute(node, which, cx).filter(|found| found.value != 0.0)?;
         if found.value < 0.0 {
             let message = format!("negative {which} `{}`", found.value);
-            cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+            cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
         } else if !matches!(kind, JointKind::Pin | JointKind::Sleeve) {
             let message = format!("`{which}` of a `{word}` joint is not supported");
-            cx.error(&found.place, message, |d| d.help(IGNORE_PASSIVE));
+            cx.report_error(&found.place, message, |d| d.add_help(IGNORE_PASSIVE));
         }
-        Some(Expr::number(found.value, &found.place))
+        Some(Expr::number_at(found.value, &found.place))
     })
 }
 
@@ -143,7 +144,7 @@ const IGNORE_PASSIVE: &str = "to ignore damping and friction, write `#[mechanism
 
 fn read_mimic(node: Node<'_>, cx: &mut Cx<'_>) -> Option<Mimic> {
     check_only(node, &["joint"], &["multiplier", "offset"], &[], cx);
-    let multiplier = number(node, "multiplier", cx).map_or(1.0, |found| found.value);
-    let offset = number(node, "offset", cx).map_or(0.0, |found| found.value);
-    Some(Mimic { joint: name(node, "joint", cx)?, multiplier, offset })
+    let multiplier = read_number_attribute(node, "multiplier", cx).map_or(1.0, |found| found.value);
+    let offset = read_number_attribute(node, "offset", cx).map_or(0.0, |found| found.value);
+    Some(Mimic { joint: read_name_attribute(node, "joint", cx)?, multiplier, offset })
 }

@@ -1,7 +1,7 @@
 //! `<limit>` of a joint → bounds of its coordinate, velocity and force.
 
-use crate::import::context::{Cx, quote};
-use crate::import::element::{Node, check_only, number};
+use crate::import::context::{Cx, quote_word};
+use crate::import::element::{Node, check_only, read_number_attribute};
 use crate::import::imported::Placed;
 use crate::import::robot::{FileLimits, IGNORE_LIMITS};
 use crate::syntax::Name;
@@ -33,20 +33,22 @@ pub(super) fn read_limits(
     let Some(node) = node else { return FileLimits::default() };
     check_only(node, &[], &BOUNDS, &OF_OTHERS, cx);
     let ends = !continuous && ["lower", "upper"].iter().any(|which| node.has_attribute(*which));
-    let mut end = |which: &str, infinite: &str| ends.then(|| bound(node, which, infinite, cx)).flatten();
+    let mut end = |which: &str, infinite: &str| ends.then(|| read_bound(node, which, infinite, cx)).flatten();
     let (lower, upper) = (end("lower", "-inf"), end("upper", "inf"));
-    let name = joint.map_or_else(String::new, |name| format!(" of joint {}", quote(&name.text)));
+    let name = joint.map_or_else(String::new, |name| format!(" of joint {}", quote_word(&name.text)));
     if let (Some(low), Some(high)) = (&lower, &upper)
         && low.value > high.value
     {
         let message = format!("`lower`{name} is {}, above its `upper`, which is {}", low.value, high.value);
-        cx.error(&low.place, message, |d| d.help("without one of the two it is 0").help(IGNORE_LIMITS));
+        cx.report_error(&low.place, message, |d| {
+            d.add_help("without one of the two it is 0").add_help(IGNORE_LIMITS)
+        });
     }
     let mut size = |which: &str| {
-        let found = node.has_attribute(which).then(|| bound(node, which, "inf", cx)).flatten()?;
+        let found = node.has_attribute(which).then(|| read_bound(node, which, "inf", cx)).flatten()?;
         if found.value < 0.0 {
             let message = format!("negative `{which}`{name}: {}", found.value);
-            cx.error(&found.place, message, |d| d.help(IGNORE_LIMITS));
+            cx.report_error(&found.place, message, |d| d.add_help(IGNORE_LIMITS));
         }
         Some(found)
     };
@@ -55,13 +57,13 @@ pub(super) fn read_limits(
 }
 
 /// Reads a bound. Returns `None` for infinity, and 0 if the attribute is missing.
-fn bound(node: Node<'_>, which: &str, infinite: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
+fn read_bound(node: Node<'_>, which: &str, infinite: &str, cx: &mut Cx<'_>) -> Option<Placed<f64>> {
     let Some(text) = node.attribute(which) else {
-        return Some(Placed { value: 0.0, place: cx.place(node.range().start) });
+        return Some(Placed { value: 0.0, place: cx.source_position(node.range().start) });
     };
     let plain = text.trim().trim_start_matches('+').to_ascii_lowercase();
     if plain == infinite || plain == format!("{infinite}inity") {
         return None;
     }
-    number(node, which, cx)
+    read_number_attribute(node, which, cx)
 }

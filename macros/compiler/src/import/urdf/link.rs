@@ -1,10 +1,11 @@
 //! Conversion of a `<link>` element to a [`Body`].
 
 use super::origin::read_origin;
-use crate::diag::nearest;
+use crate::diag::nearest_candidate;
 use crate::import::context::Cx;
 use crate::import::element::{
-    Node, check_attributes, check_only, children, elements, name, number, place, required, tag,
+    Node, check_attributes, check_only, child_elements, element_position, known_children, quoted_tag,
+    read_name_attribute, read_number_attribute, required_child,
 };
 use crate::import::misplaced;
 use crate::import::robot::{Origin, bare_link};
@@ -33,16 +34,16 @@ pub(super) fn read_link(
     cx: &mut Cx<'_>,
 ) -> Option<Body> {
     check_attributes(node, &["name"], &[], cx);
-    misplaced::check(
+    misplaced::check_misplaced(
         node,
         &["inertial"],
         "a link has mass properties by `<inertial>`, and its position by a joint",
         cx,
     );
-    let name = name(node, "name", cx);
+    let name = read_name_attribute(node, "name", cx);
     let [inertial] = match options.inertias {
         Inertias::None => [None],
-        _ => children(node, ["inertial"], cx),
+        _ => known_children(node, ["inertial"], cx),
     };
     let stands = name.as_ref().is_some_and(|name| stands(&name.text));
     let mut body = bare_link(name?);
@@ -54,22 +55,22 @@ pub(super) fn read_link(
 
 /// Reads mass, centre of mass and inertia. If all values are zero, the body has no mass properties.
 fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>) {
-    let [origin, mass, inertia] = children(node, PARTS, cx);
+    let [origin, mass, inertia] = known_children(node, PARTS, cx);
     check_parts(node, cx);
     let origin = read_origin(origin, node, cx);
     let mut found = |child, element, attributes: &[&str]| match stands {
         true => child,
-        false => required(child, node, element, attributes, cx),
+        false => required_child(child, node, element, attributes, cx),
     };
     let (mass, inertia) = (found(mass, "mass", &["value"]), found(inertia, "inertia", &INERTIA));
     if let Some(mass) = mass {
         check_only(mass, &["value"], &[], &[], cx);
-        body.mass = number(mass, "value", cx).map(|m| Expr::number(m.value, &m.place));
+        body.mass = read_number_attribute(mass, "value", cx).map(|m| Expr::number_at(m.value, &m.place));
     }
     if let Some(inertia) = inertia {
         body.inertia = read_inertia(inertia, &origin, cx);
     }
-    body.com = origin.position();
+    body.com = origin.nonzero_position();
     if is_zero(body.mass.as_ref()) && body.inertia.is_none() {
         (body.mass, body.com) = (None, None);
     }
@@ -78,13 +79,13 @@ fn read_inertial(node: Node<'_>, stands: bool, body: &mut Body, cx: &mut Cx<'_>)
 /// Reports contents of `<inertial>` other than its known child elements.
 fn check_parts(node: Node<'_>, cx: &mut Cx<'_>) {
     let help = "expected `<origin>`, `<mass>` and `<inertia>`";
-    for child in elements(node).filter(|child| !PARTS.contains(&child.tag_name().name())) {
-        if nearest(child.tag_name().name(), &PARTS).is_none() {
-            let message = format!("unexpected {} in `<inertial>`", tag(child));
-            cx.error(&place(child, cx), message, |d| d.help(help));
+    for child in child_elements(node).filter(|child| !PARTS.contains(&child.tag_name().name())) {
+        if nearest_candidate(child.tag_name().name(), &PARTS).is_none() {
+            let message = format!("unexpected {} in `<inertial>`", quoted_tag(child));
+            cx.report_error(&element_position(child, cx), message, |d| d.add_help(help));
         }
     }
-    misplaced::check(node, &PARTS, help, cx);
+    misplaced::check_misplaced(node, &PARTS, help, cx);
 }
 
 fn is_zero(expr: Option<&Expr>) -> bool {
@@ -95,30 +96,30 @@ fn is_zero(expr: Option<&Expr>) -> bool {
 /// `None` if the matrix is zero.
 fn read_inertia(node: Node<'_>, origin: &Origin, cx: &mut Cx<'_>) -> Option<Expr> {
     check_only(node, &INERTIA, &[], &BELOW_DIAGONAL.map(|(entry, _)| entry), cx);
-    let read = INERTIA.map(|entry| number(node, entry, cx));
+    let read = INERTIA.map(|entry| read_number_attribute(node, entry, cx));
     let largest = read.iter().flatten().fold(0.0, |largest: f64, entry| largest.max(entry.value.abs()));
     for (entry, other) in BELOW_DIAGONAL {
-        let Some(found) = number(node, entry, cx) else { continue };
+        let Some(found) = read_number_attribute(node, entry, cx) else { continue };
         let above = INERTIA.iter().position(|known| *known == other).and_then(|k| read[k].as_ref());
         if above.is_some_and(|above| (above.value - found.value).abs() > ASYMMETRY * largest) {
             let message = format!("`{entry}` differs from `{other}`: an inertia matrix is symmetric");
-            cx.error(&found.place, message, |d| d.help(format!("remove `{entry}`")));
+            cx.report_error(&found.place, message, |d| d.add_help(format!("remove `{entry}`")));
         }
     }
     if read.iter().flatten().all(|entry| entry.value == 0.0) {
         return None;
     }
-    let whole = place(node, cx);
+    let whole = element_position(node, cx);
     let [xx, xy, xz, yy, yz, zz] = read.map(|entry| match entry {
-        Some(entry) => Expr::number(entry.value, &entry.place),
-        None => Expr::number(0.0, &whole),
+        Some(entry) => Expr::number_at(entry.value, &entry.place),
+        None => Expr::number_at(0.0, &whole),
     });
     let rows = [[xx, xy.clone(), xz.clone()], [xy, yy, yz.clone()], [xz, yz, zz]];
     let rows = rows.map(|row| Expr { kind: ExprKind::Array(row.into()), place: whole.clone() });
     let matrix = Expr { kind: ExprKind::Array(rows.into()), place: whole };
-    let turns = origin.rotated();
+    let turns = origin.nonzero_rotations();
     if turns.is_empty() {
         return Some(matrix);
     }
-    Some(Expr { place: origin.rpy.place.clone(), ..Expr::method(matrix, "rotated", turns) })
+    Some(Expr { place: origin.rpy.place.clone(), ..Expr::method_call(matrix, "rotated", turns) })
 }

@@ -5,7 +5,7 @@
 //! missing joint creates roots and cycles that are not in the file.
 
 use super::context::Cx;
-use super::element::{Node, check_element_name, elements, place, tag};
+use super::element::{Node, check_element_name, child_elements, element_position, quoted_tag};
 use super::misplaced;
 use crate::import::imported::Imported;
 use crate::import::robot::{self, MAX_ELEMENTS, Robot};
@@ -21,7 +21,7 @@ mod standing;
 mod visual;
 
 /// Reads the root element of a URDF file in `folder`.
-pub(super) fn read(
+pub(super) fn read_root_element(
     node: Node<'_>,
     folder: &Path,
     options: &FileOptions,
@@ -34,12 +34,12 @@ pub(super) fn read(
     robot::check_names(&robot, options.format, cx);
     robot::declare_world(&mut robot);
     robot::rename_ground(&mut robot, options.base);
-    if options.close_loops && !cx.failed() {
+    if options.close_loops && !cx.has_errors() {
         robot::close_loops(&mut robot, cx);
     }
     robot::check_ends(&robot, options.format, cx);
     robot::check_locks(&robot.joints, &options.lock, cx);
-    if cx.failed() {
+    if cx.has_errors() {
         return None;
     }
     let order = robot::order_joints(&robot, cx);
@@ -47,12 +47,15 @@ pub(super) fn read(
     let (Some(order), Some(motions)) = (order, motions) else {
         return None;
     };
-    let standing = standing::links(node, options).into_iter().map(ToString::to_string).collect::<Vec<_>>();
+    let standing = standing::links_fixed_to_ground(node, options)
+        .into_iter()
+        .map(ToString::to_string)
+        .collect::<Vec<_>>();
     let closing = std::mem::take(&mut robot.closing);
     let mut imported = robot::assemble(robot, &order, motions, options, cx);
     robot::make_fields(&mut imported, &standing, options, cx);
     imported.joints.extend(closing);
-    (!cx.failed()).then_some(imported)
+    (!cx.has_errors()).then_some(imported)
 }
 
 /// Returns true if the root element is `<robot>`; otherwise reports an error.
@@ -61,26 +64,26 @@ fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
     if name == "robot" {
         return true;
     }
-    let message = format!("expected `<robot>`, found {}", tag(node));
-    cx.error(&place(node, cx), message, |d| match name {
-        "sdf" => d.help("this is an SDF file: write `sdf = \"…\"` instead of `urdf = \"…\"`"),
-        "mujoco" => d.help("this is an MJCF file: write `mjcf = \"…\"` instead of `urdf = \"…\"`"),
-        _ => d.suggest(name, ["robot"]),
+    let message = format!("expected `<robot>`, found {}", quoted_tag(node));
+    cx.report_error(&element_position(node, cx), message, |d| match name {
+        "sdf" => d.add_help("this is an SDF file: write `sdf = \"…\"` instead of `urdf = \"…\"`"),
+        "mujoco" => d.add_help("this is an MJCF file: write `mjcf = \"…\"` instead of `urdf = \"…\"`"),
+        _ => d.suggest_name(name, ["robot"]),
     });
     false
 }
 
 fn read_robot(node: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Robot> {
     let mut counts = [0, 0];
-    let standing = standing::links(node, options);
+    let standing = standing::links_fixed_to_ground(node, options);
     let mut robot = Robot::default();
-    misplaced::check(
+    misplaced::check_misplaced(
         node,
         &["link", "joint"],
         "expected `<link>` and `<joint>`, which describe all moving parts",
         cx,
     );
-    for child in elements(node) {
+    for child in child_elements(node) {
         let kind = match child.tag_name().name() {
             "link" => 0,
             "joint" => 1,
@@ -91,7 +94,11 @@ fn read_robot(node: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<
         };
         counts[kind] += 1;
         if counts[kind] > MAX_ELEMENTS {
-            cx.error(&place(child, cx), format!("more than {MAX_ELEMENTS} elements {}", tag(child)), |d| d);
+            cx.report_error(
+                &element_position(child, cx),
+                format!("more than {MAX_ELEMENTS} elements {}", quoted_tag(child)),
+                |d| d,
+            );
             return None;
         }
         match kind {
@@ -99,21 +106,26 @@ fn read_robot(node: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<
                 let number = robot.links.len();
                 robot.links.extend(link::read_link(child, |link| standing.contains(link), options, cx));
                 if options.visuals {
-                    robot.visuals.extend(visual::read(child, cx).into_iter().map(|part| (number, part)));
+                    robot
+                        .visuals
+                        .extend(visual::read_visuals(child, cx).into_iter().map(|part| (number, part)));
                 }
                 if options.collisions {
-                    let parts = collision::read(child, folder, cx).into_iter();
+                    let parts = collision::read_collisions(child, folder, cx).into_iter();
                     robot.collisions.extend(parts.map(|part| (number, part)));
                 }
             }
             _ => robot.joints.extend(joint::read_joint(child, options, &mut robot.left_out, cx)),
         }
     }
-    if let Some(tolerance) = options.snap.filter(|_| !cx.failed()) {
-        robot.snapped = robot.joints.iter_mut().flat_map(|joint| robot::snap(joint, tolerance)).collect();
+    if let Some(tolerance) = options.snap.filter(|_| !cx.has_errors()) {
+        robot.snapped =
+            robot.joints.iter_mut().flat_map(|joint| robot::snap_joint_frame(joint, tolerance)).collect();
     }
-    if counts[0] == 0 && !cx.failed() {
-        cx.error(&place(node, cx), "robot without a link", |d| d.help("expected `<link name=\"…\"/>`"));
+    if counts[0] == 0 && !cx.has_errors() {
+        cx.report_error(&element_position(node, cx), "robot without a link", |d| {
+            d.add_help("expected `<link name=\"…\"/>`")
+        });
     }
     Some(robot)
 }

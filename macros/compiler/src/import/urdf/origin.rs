@@ -1,7 +1,7 @@
 //! Conversion of an element `<origin xyz="…" rpy="…"/>` to an [`Origin`].
 
 use crate::import::context::Cx;
-use crate::import::element::{Node, check_only, check_radians, numbers, place};
+use crate::import::element::{Node, check_only, check_radians, element_position, read_numbers_attribute};
 use crate::import::imported::Placed;
 use crate::import::robot::Origin;
 
@@ -9,19 +9,21 @@ const RADIANS: &str = "`rpy` is in radians: write the angle that is meant, every
 
 /// Reads the `<origin>` of `owner`. Without an `<origin>`, the pose is the identity.
 pub(super) fn read_origin(node: Option<Node<'_>>, owner: Node<'_>, cx: &mut Cx<'_>) -> Origin {
-    let zero_vector_at_node = |node| Placed { value: [0.0; 3], place: place(node, cx) };
+    let zero_vector_at_node = |node| Placed { value: [0.0; 3], place: element_position(node, cx) };
     let Some(node) = node else {
         return Origin { xyz: zero_vector_at_node(owner), rpy: zero_vector_at_node(owner) };
     };
     let (no_xyz, no_rpy) = (zero_vector_at_node(node), zero_vector_at_node(node));
     if let Some(found) = node.attribute_node("quat_xyzw") {
-        let place = cx.place(found.range().start);
-        cx.error(&place, "`quat_xyzw` is not supported", |d| d.help("expected `rpy=\"roll pitch yaw\"`"));
+        let place = cx.source_position(found.range().start);
+        cx.report_error(&place, "`quat_xyzw` is not supported", |d| {
+            d.add_help("expected `rpy=\"roll pitch yaw\"`")
+        });
     } else {
         check_only(node, &[], &["xyz", "rpy"], &[], cx);
     }
-    let xyz = numbers(node, "xyz", cx).unwrap_or(no_xyz);
-    let rpy = numbers(node, "rpy", cx).unwrap_or(no_rpy);
+    let xyz = read_numbers_attribute(node, "xyz", cx).unwrap_or(no_xyz);
+    let rpy = read_numbers_attribute(node, "rpy", cx).unwrap_or(no_rpy);
     check_radians(&rpy.value, &rpy.place, RADIANS, cx);
     Origin { xyz, rpy }
 }

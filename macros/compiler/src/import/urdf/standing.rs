@@ -1,21 +1,21 @@
 //! Links that are fixed to the ground. They are found before the links are read, because their mass
 //! properties appear in no equation and may be incomplete.
 
-use crate::import::element::{Node, elements};
+use crate::import::element::{Node, child_elements};
 use crate::syntax::{Base, FileOptions};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Returns the names of the links that fixed and locked joints connect to a fixed root. If the file's tree is
 /// invalid, the result may contain other links.
-pub(super) fn links<'a>(robot: Node<'a>, options: &FileOptions) -> BTreeSet<&'a str> {
+pub(super) fn links_fixed_to_ground<'a>(robot: Node<'a>, options: &FileOptions) -> BTreeSet<&'a str> {
     let mut standing = BTreeSet::new();
     if options.base == Base::Free {
         return standing;
     }
     let (mut below, mut carried) = (BTreeMap::<&str, Vec<&str>>::new(), BTreeSet::new());
-    for joint in elements(robot).filter(|node| node.tag_name().name() == "joint") {
+    for joint in child_elements(robot).filter(|node| node.tag_name().name() == "joint") {
         let link_of_joint_end = |name| {
-            let end = elements(joint).find(|node| node.tag_name().name() == name)?;
+            let end = child_elements(joint).find(|node| node.tag_name().name() == name)?;
             end.attribute("link")
         };
         let (Some(parent), Some(child)) = (link_of_joint_end("parent"), link_of_joint_end("child")) else {
@@ -28,7 +28,7 @@ pub(super) fn links<'a>(robot: Node<'a>, options: &FileOptions) -> BTreeSet<&'a 
             below.entry(parent).or_default().push(child);
         }
     }
-    let links = elements(robot).filter(|node| node.tag_name().name() == "link");
+    let links = child_elements(robot).filter(|node| node.tag_name().name() == "link");
     let mut open: Vec<&str> = links.filter_map(|link| link.attribute("name")).collect();
     open.retain(|link| !carried.contains(link));
     // Links that are used as a parent but not declared are roots, too.

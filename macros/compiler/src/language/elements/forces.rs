@@ -89,7 +89,7 @@ table! {
             arguments: &[Key::Stiffness, Key::Force, Key::Energy, FreeLength, FreeAngle],
             laws: &[Key::Force, Key::Energy, Key::Stiffness],
             required: &[(Key::Stiffness, "k")],
-            relations: &[Relation::excludes(
+            relations: &[Relation::exclusion_relation(
                 FreeAngle,
                 &[FreeLength],
                 "a spring has one of `free_length` and `free_angle`",
@@ -234,14 +234,14 @@ const ATTRACTING: Words = &[
 
 impl ForceKind {
     /// Returns the names of all arguments, as messages list them.
-    pub fn keys(self) -> Vec<&'static str> {
+    pub fn argument_names(self) -> Vec<&'static str> {
         let row = self.row();
         let targets = [("on", row.on), ("between", row.between)].into_iter().filter(|(_, takes)| *takes);
         targets.map(|(word, _)| word).chain(row.arguments.iter().map(|key| key.name())).collect()
     }
 
     /// Returns the name with its article: `an Inerter`.
-    pub fn phrase(self) -> String {
-        super::phrase(self.name())
+    pub fn name_with_article(self) -> String {
+        super::word_with_article(self.name())
     }
 }

@@ -56,7 +56,7 @@ const ABOUT: &str = "#[joint(parent -> child, about = z)]";
 const ALONG: &str = "#[joint(parent -> child, along = x)]";
 const BARE: &str = "#[joint(parent -> child)]";
 
-const fn row(
+const fn joint_row(
     name: &'static str,
     synonyms: &'static str,
     arguments: &'static [&'static str],
@@ -71,42 +71,42 @@ table! {
     /// A kind of joint.
     JointKind: JointRow {
         /// Rotation about an axis (revolute, hinge).
-        Pin = row("Pin",
+        Pin = joint_row("Pin",
             "revolute hinge continuous rotary rotational rotation rotating pivot axle bearing turn turning \
              swivel",
             &["about"], ANGLE, HINGE, ABOUT);
         /// Translation along an axis (prismatic).
-        Sleeve = row("Sleeve",
+        Sleeve = joint_row("Sleeve",
             "prismatic slider slide sliding translational translation linear rail piston telescopic",
             &["along"], LENGTH, SLIDE, ALONG);
         /// Rotation about and translation along one axis, coupled by a pitch (helical).
-        Screw = row("Screw", "helical helix leadscrew ballscrew nut",
+        Screw = joint_row("Screw", "helical helix leadscrew ballscrew nut",
             &["about", "along", "pitch", "lead"], ANGLE, HINGE, ABOUT);
         /// Rotation about and translation along one axis, independent (cylindrical).
-        Collar = row("Collar", "cylindrical cylinder",
+        Collar = joint_row("Collar", "cylindrical cylinder",
             &["about", "along"], SLIDE_AND_TURN, HINGE, ABOUT);
         /// Translation along one axis, then rotation about another.
-        Slot = row("Slot", "",
+        Slot = joint_row("Slot", "",
             &["about", "along"], SLIDE_AND_TURN, SLIDE, ABOUT);
         /// Successive rotations about two axes.
-        Universal = row("Universal", "cardan hooke gimbal cv",
+        Universal = joint_row("Universal", "cardan hooke gimbal cv",
             &["about"], Plain(&[("first", true), ("second", true)]), BALL, ABOUT);
         /// All rotations (spherical).
-        Ball = row("Ball", "spherical socket ballsocket ballandsocket quaternion",
+        Ball = joint_row("Ball", "spherical socket ballsocket ballandsocket quaternion",
             &[], CoordinateNames::Ball, BALL, BARE);
         /// Two translations and a rotation about their normal (dual sleeve-pin).
-        Planar = row("Planar", "dualsleevepin planar2d",
+        Planar = joint_row("Planar", "dualsleevepin planar2d",
             &["about", "along"], Plain(&[("x", false), ("y", false), ("angle", true)]), HINGE, ABOUT);
         /// Two or three translations (x-y and x-y-z stage).
-        Stage = row("Stage",
+        Stage = joint_row("Stage",
             "xystage xyzstage xy xyz cartesian gantry translation3d",
             &["along"], CoordinateNames::PerAxis(&[("x", false), ("y", false), ("z", false)]), SLIDE, ALONG);
         /// All motions (six degrees of freedom).
-        Free = row("Free",
+        Free = joint_row("Free",
             "floating floatingbase freebase sixdof 6dof freeflyer freeflying unconstrained bushing",
             &[], CoordinateNames::Free, None, BARE);
         /// No motion (fixed).
-        Weld = row("Weld", "fixed rigid weld welded locked lock glue fix",
+        Weld = joint_row("Weld", "fixed rigid weld welded locked lock glue fix",
             &[], Plain(&[]), None, BARE);
     }
 }
@@ -114,7 +114,7 @@ table! {
 impl JointKind {
     /// Returns the plain coordinates of a joint with `along` translation axes: names (empty for the name of
     /// the joint), and true for an angle.
-    fn plain(self, along: usize) -> Option<&'static [(&'static str, bool)]> {
+    fn plain_coordinates(self, along: usize) -> Option<&'static [(&'static str, bool)]> {
         match self.row().coordinates {
             Plain(all) => Some(all),
             CoordinateNames::PerAxis(all) => all.get(..along.clamp(2, all.len())),
@@ -124,7 +124,7 @@ impl JointKind {
 
     /// Returns the names of the entries of `q` and `v`; an empty name is that of the joint.
     pub fn coordinate_names(self, along: usize) -> (Vec<&'static str>, Vec<&'static str>) {
-        if let Some(plain) = self.plain(along) {
+        if let Some(plain) = self.plain_coordinates(along) {
             let names: Vec<&str> = plain.iter().map(|(name, _)| *name).collect();
             return (names.clone(), names);
         }
@@ -138,7 +138,7 @@ impl JointKind {
 
     /// Returns true for a joint that only rotates about one axis, false for a joint that only translates
     /// along one axis, and `None` for others.
-    pub fn rotates(self) -> Option<bool> {
+    pub fn rotates_about_one_axis(self) -> Option<bool> {
         match (self.row().coordinates, self.row().arguments) {
             (Plain([("", true)]), ["about"]) => Some(true),
             (Plain([("", false)]), ["along"]) => Some(false),
@@ -150,12 +150,12 @@ impl JointKind {
 
     /// True if a plain coordinate is an angle, false if it is a length.
     pub fn is_angle(self, coordinate: &str) -> bool {
-        let plain = self.plain(usize::MAX).unwrap_or_default();
+        let plain = self.plain_coordinates(usize::MAX).unwrap_or_default();
         plain.iter().any(|(name, angle)| *name == coordinate && *angle)
     }
 
     /// Returns the name with its article: `a Pin`.
-    pub fn phrase(self) -> String {
+    pub fn name_with_article(self) -> String {
         format!("a {}", self.name())
     }
 }

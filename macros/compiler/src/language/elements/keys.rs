@@ -44,7 +44,7 @@ pub enum ArgumentQuantity {
     Load,
 }
 
-const fn key(name: &'static str, quantity: ArgumentQuantity) -> KeyRow {
+const fn key_row(name: &'static str, quantity: ArgumentQuantity) -> KeyRow {
     KeyRow { name, synonyms: "", quantity }
 }
 
@@ -52,63 +52,63 @@ table! {
     /// An argument of a force element, a contact, a limit or a pair of slipping surfaces.
     Key: KeyRow {
         /// Stiffness of a spring.
-        Stiffness = key("stiffness", Stiffness);
+        Stiffness = key_row("stiffness", Stiffness);
         /// Force, as an expression of the stretch or the speed.
-        Force = key("force", Force);
+        Force = key_row("force", Force);
         /// Energy, as an expression of the stretch.
-        Energy = key("energy", Energy);
+        Energy = key_row("energy", Energy);
         /// Length at which the force of a spring is zero.
-        FreeLength = key("free_length", Coordinate);
+        FreeLength = key_row("free_length", Coordinate);
         /// Angle at which the torque of a spring is zero.
-        FreeAngle = key("free_angle", Coordinate);
+        FreeAngle = key_row("free_angle", Coordinate);
         /// Coefficient of a dashpot.
-        Damping = key("damping", Damping);
+        Damping = key_row("damping", Damping);
         /// Inertance of an inerter.
-        Inertance = key("inertance", Inertance);
+        Inertance = key_row("inertance", Inertance);
         /// Force of sliding friction.
-        Coulomb = key("coulomb", Force);
+        Coulomb = key_row("coulomb", Force);
         /// Force at breakaway.
-        Stiction = key("stiction", Force);
+        Stiction = key_row("stiction", Force);
         /// Speed at which the force has fallen from breakaway to sliding.
-        StribeckSpeed = key("stribeck_speed", Speed);
+        StribeckSpeed = key_row("stribeck_speed", Speed);
         /// Viscous coefficient.
-        Viscous = key("viscous", Damping);
+        Viscous = key_row("viscous", Damping);
         /// Speed of the regularisation.
-        Speed = key("speed", Speed);
+        Speed = key_row("speed", Speed);
         /// Gravitational constant, for two bodies with mass.
-        Constant = key("constant", Fixed(GRAVITATION, ""));
+        Constant = key_row("constant", Fixed(GRAVITATION, ""));
         /// Gravitational parameter of the attracting body.
-        Mu = key("mu", Fixed(ATTRACTION, ""));
+        Mu = key_row("mu", Fixed(ATTRACTION, ""));
         /// Force times the square of the distance.
-        Strength = key("strength", Fixed(STRENGTH, ""));
+        Strength = key_row("strength", Fixed(STRENGTH, ""));
         /// Coefficient of friction while surfaces slide.
-        Friction = key("friction", PLAIN_NUMBER);
+        Friction = key_row("friction", PLAIN_NUMBER);
         /// Coefficient of friction at rest.
-        StaticFriction = key("stiction", PLAIN_NUMBER);
+        StaticFriction = key_row("stiction", PLAIN_NUMBER);
         /// Maximum friction moment about the normal per unit normal force.
-        TorsionalFriction = key("torsional", METERS);
+        TorsionalFriction = key_row("torsional", METERS);
         /// Maximum friction moment about the tangents per unit normal force.
-        RollingFriction = key("rolling", METERS);
+        RollingFriction = key_row("rolling", METERS);
         /// Coefficient of restitution: `e`, a ratio of velocities, or `poisson(e)`, a ratio of impulses.
-        Restitution = key("restitution", PLAIN_NUMBER);
+        Restitution = key_row("restitution", PLAIN_NUMBER);
         /// Stiffness of round bodies (Hertz).
-        Hertz = key("hertz", HertzStiffness);
+        Hertz = key_row("hertz", HertzStiffness);
         /// Dissipation per speed of approach (Hunt and Crossley).
-        Dissipation = key("dissipation", Fixed(SLOWNESS, "s/m"));
+        Dissipation = key_row("dissipation", Fixed(SLOWNESS, "s/m"));
         /// Lower bound of a limit.
-        From = key("from", Coordinate);
+        From = key_row("from", Coordinate);
         /// Upper bound of a limit.
-        To = key("to", Coordinate);
+        To = key_row("to", Coordinate);
         /// Maximum speed, in both directions.
-        MaxSpeed = key("max_speed", Speed);
+        MaxSpeed = key_row("max_speed", Speed);
         /// Maximum force or torque, in both directions.
-        MaxEffort = key("max_effort", Force);
+        MaxEffort = key_row("max_effort", Force);
         /// Direction of a force on a body.
-        Along = key("along", Direction);
+        Along = key_row("along", Direction);
         /// Direction of a torque on a body.
-        About = key("about", Direction);
+        About = key_row("about", Direction);
         /// Value of a force or a torque.
-        Value = key("value", Load);
+        Value = key_row("value", Load);
     }
 }
 
@@ -132,7 +132,7 @@ pub struct Relation {
 
 impl Relation {
     /// Returns the condition that an argument is not given together with others.
-    pub const fn excludes(
+    pub const fn exclusion_relation(
         key: Key,
         others: &'static [Key],
         message: &'static str,
@@ -142,7 +142,7 @@ impl Relation {
     }
 
     /// Returns the condition that an argument is given together with one of the others.
-    pub const fn needs(
+    pub const fn requirement_relation(
         key: Key,
         others: &'static [Key],
         message: &'static str,

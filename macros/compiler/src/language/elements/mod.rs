@@ -80,7 +80,7 @@ impl ElementKind {
     }
 
     /// Returns the names of all types of elements.
-    pub fn names() -> impl Iterator<Item = &'static str> {
+    pub fn element_names() -> impl Iterator<Item = &'static str> {
         [BODY, PARTICLE]
             .into_iter()
             .chain(JointKind::names())
@@ -89,7 +89,7 @@ impl ElementKind {
     }
 
     /// Returns the name of the type.
-    pub fn name(self) -> &'static str {
+    pub fn element_name(self) -> &'static str {
         match self {
             ElementKind::Body => BODY,
             ElementKind::Particle => PARTICLE,
@@ -100,12 +100,12 @@ impl ElementKind {
     }
 
     /// Returns the name with its article: `an Inerter`.
-    pub fn phrase(self) -> String {
-        phrase(self.name())
+    pub fn name_with_article(self) -> String {
+        word_with_article(self.element_name())
     }
 
     /// Returns the attributes of the language that belong to an element.
-    pub fn attributes(self) -> &'static [&'static str] {
+    pub fn element_attributes(self) -> &'static [&'static str] {
         match self {
             ElementKind::Body => &["body"],
             ElementKind::Particle => &["particle"],
@@ -116,13 +116,13 @@ impl ElementKind {
     }
 
     /// Returns the words of other tools for the types of elements, each with the type's name.
-    pub fn synonyms() -> impl Iterator<Item = (&'static str, &'static str)> {
+    pub fn element_synonyms() -> impl Iterator<Item = (&'static str, &'static str)> {
         let massive = MASSIVE.iter().copied();
         massive.chain(JointKind::synonyms()).chain(ForceKind::synonyms()).chain(OtherKind::synonyms())
     }
 
     /// Returns the words of other tools for the arguments of an element.
-    pub fn words(self) -> Words {
+    pub fn argument_synonyms(self) -> Words {
         match self {
             ElementKind::Body => BODY_WORDS,
             ElementKind::Particle => PARTICLE_WORDS,
@@ -133,7 +133,7 @@ impl ElementKind {
     }
 
     /// Returns an example of the element's declaration.
-    pub fn example(self) -> &'static str {
+    pub fn declaration_example(self) -> &'static str {
         match self {
             ElementKind::Body => "#[body(mass = m, com = l / 2 * y, inertia = rod(m, l, y))]",
             ElementKind::Particle => "#[particle(mass = m, at = body.at(l * x))]",
@@ -149,6 +149,6 @@ pub fn article(word: &str) -> &'static str {
     if word.starts_with(['A', 'I']) { "an" } else { "a" }
 }
 
-fn phrase(word: &str) -> String {
+fn word_with_article(word: &str) -> String {
     format!("{} {word}", article(word))
 }

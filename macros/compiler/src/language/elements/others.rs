@@ -74,7 +74,7 @@ table! {
         Limit = OtherRow {
             own: &["on"],
             arguments: &[From, To, MaxSpeed, MaxEffort, Restitution],
-            relations: &[Relation::needs(
+            relations: &[Relation::requirement_relation(
                 Restitution,
                 &[From, To],
                 "a restitution needs a bound",
@@ -201,27 +201,27 @@ const AXES: &[&str] = &["resolved_in"];
 
 /// Conditions on the arguments of rigid and of compliant contact surfaces, which exclude each other.
 const COMPLIANCE: &[Relation] = &[
-    Relation::excludes(
+    Relation::exclusion_relation(
         Hertz,
         &[Stiffness],
         "`NAME` has two stiffnesses",
         "`stiffness` is force per penetration depth, `hertz` force per depth to the power 3/2: give one",
     ),
-    Relation::needs(Dissipation, &[Stiffness, Hertz], RIGID, ADD_STIFFNESS),
-    Relation::needs(Speed, &[Stiffness, Hertz], RIGID, ADD_STIFFNESS),
-    Relation::excludes(
+    Relation::requirement_relation(Dissipation, &[Stiffness, Hertz], RIGID, ADD_STIFFNESS),
+    Relation::requirement_relation(Speed, &[Stiffness, Hertz], RIGID, ADD_STIFFNESS),
+    Relation::exclusion_relation(
         Restitution,
         &[Stiffness, Hertz],
         "compliant surfaces have no coefficient of restitution",
         "use `dissipation`, s/m, for the energy loss of their impacts",
     ),
-    Relation::excludes(
+    Relation::exclusion_relation(
         StaticFriction,
         &[Stiffness, Hertz],
         "the friction of compliant surfaces is smooth in the slip velocity and has no stiction",
         "remove `stiffness` or `hertz`, or remove `stiction`",
     ),
-    Relation::needs(
+    Relation::requirement_relation(
         StaticFriction,
         &[Friction],
         "`NAME` has stiction, but no sliding friction",
@@ -233,7 +233,7 @@ const ADD_STIFFNESS: &str = "add `stiffness = …`, N/m, for compliant surfaces"
 
 impl OtherKind {
     /// Returns the names of all arguments, as messages list them.
-    pub fn keys(self) -> Vec<&'static str> {
+    pub fn argument_names(self) -> Vec<&'static str> {
         let row = self.row();
         row.own.iter().copied().chain(row.arguments.iter().map(|key| key.name())).collect()
     }

@@ -50,7 +50,7 @@ impl Pairs {
     }
 
     /// Removes a sum from the list of a pair.
-    pub(super) fn remove(&mut self, pair: Pair, sum: usize) {
+    pub(super) fn remove_sum_from_pair(&mut self, pair: Pair, sum: usize) {
         let Some(list) = self.lists.get_mut(&pair) else { return };
         self.shared.remove(&(list.len(), Reverse(pair)));
         list.retain(|other| *other != sum);
@@ -76,24 +76,24 @@ impl Pair {
     /// Returns the pair of two terms in ascending order, except that the number 1 comes second, because a sum
     /// begins with a value.
     pub(super) fn new(a: (Key, f64), b: (Key, f64)) -> Pair {
-        let [x, y] = [a.0.number(), b.0.number()];
+        let [x, y] = [a.0.key_number(), b.0.key_number()];
         let swap = x == 0 || (y != 0 && y < x);
         let ((x, c), (y, d)) = if swap { ((y, b.1), (x, a.1)) } else { ((x, a.1), (y, b.1)) };
         Pair(u128::from(x) << 96 | u128::from(y) << 64 | u128::from((d / c).to_bits()))
     }
 
     /// Returns the number of the pair's first key.
-    pub(super) fn first(self) -> u32 {
+    pub(super) fn first_key(self) -> u32 {
         (self.0 >> 96) as u32
     }
 
     /// Returns the number of the pair's second key.
-    pub(super) fn second(self) -> u32 {
+    pub(super) fn second_key(self) -> u32 {
         (self.0 >> 64) as u32
     }
 
     /// Returns the coefficient of the second term divided by that of the first.
-    pub(super) fn ratio(self) -> f64 {
+    pub(super) fn coefficient_ratio(self) -> f64 {
         f64::from_bits(self.0 as u64)
     }
 }

@@ -15,8 +15,8 @@
 use super::super::crba::{Matrix, momentum};
 use super::super::rnea;
 use super::ForceDerivatives;
-use super::columns::{Column, columns, motions, rate_columns};
-use super::subtree::{Subtree, subtrees};
+use super::columns::{Column, derivative_columns, link_motions, rate_columns};
+use super::subtree::{Subtree, subtree_sums};
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{Joint, Spatial, time_derivative, twists, velocity_gradient};
 use crate::mechanism::Model;
@@ -31,12 +31,13 @@ pub fn inverse_dynamics<'g>(
     a: &[Expr<'g>],
     most: usize,
 ) -> ForceDerivatives<'g> {
-    let motions = motions(model, joints, v, a);
-    let columns: Vec<Vec<Column<'g>>> = joints.iter().zip(&motions).map(|(j, m)| columns(j, m)).collect();
+    let motions = link_motions(model, joints, v, a);
+    let columns: Vec<Vec<Column<'g>>> =
+        joints.iter().zip(&motions).map(|(j, m)| derivative_columns(j, m)).collect();
     let twists: Vec<Spatial<'g>> = motions.iter().map(|m| m.own.twist()).collect();
     let wrenches = rnea::wrenches(model, joints, v, Some(a));
-    let sums = subtrees(model, joints, &twists, &wrenches, 2.0);
-    entries(model, joints, &columns, &sums, most)
+    let sums = subtree_sums(model, joints, &twists, &wrenches, 2.0);
+    derivative_entries(model, joints, &columns, &sums, most)
 }
 
 /// Returns a matrix `C` such that `C v` are the Coriolis and centrifugal forces and `Ṁ − 2 C` is
@@ -51,8 +52,8 @@ pub fn coriolis_matrix<'g>(
     let columns: Vec<Vec<Column<'g>>> =
         joints.iter().zip(&twists).map(|(j, t)| rate_columns(model, j, t)).collect();
     let still = vec![Spatial::zero(model); joints.len()];
-    let sums = subtrees(model, joints, &twists, &still, 1.0);
-    let mut matrix = entries(model, joints, &columns, &sums, most).by_v;
+    let sums = subtree_sums(model, joints, &twists, &still, 1.0);
+    let mut matrix = derivative_entries(model, joints, &columns, &sums, most).by_v;
     add_inertances(model, &mut matrix);
     matrix
 }
@@ -62,7 +63,7 @@ fn add_inertances<'g>(model: &Model<'g>, matrix: &mut Matrix<'g>) {
     for element in &model.inertances {
         let gradient = velocity_gradient(element.rate);
         for (j, d) in &gradient {
-            let change = element.inertance * time_derivative(model.space(), *d);
+            let change = element.inertance * time_derivative(model.configuration_space(), *d);
             for (i, d) in &gradient {
                 matrix[*i][*j] += *d * change;
             }
@@ -72,7 +73,7 @@ fn add_inertances<'g>(model: &Model<'g>, matrix: &mut Matrix<'g>) {
 
 /// Returns the derivatives for all pairs of degrees of freedom on one path to the root, with up to `most`
 /// paths in lanes.
-fn entries<'g>(
+fn derivative_entries<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     columns: &[Vec<Column<'g>>],
@@ -82,8 +83,8 @@ fn entries<'g>(
     let zero_matrix = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
     let out = ForceDerivatives { by_q: zero_matrix(), by_v: zero_matrix() };
     let paths = Paths::new(joints, most);
-    let mut entries = Entries { columns, all: columns.concat(), links: paths.links(), sums, out };
-    paths.propagate(&mut entries);
+    let mut entries = Entries { columns, all: columns.concat(), links: paths.links_of_freedoms(), sums, out };
+    paths.propagate_to_root(&mut entries);
     entries.out
 }
 
@@ -111,8 +112,10 @@ impl<'g> Visitor<'g> for Entries<'_, 'g> {
 
     fn visit(&mut self, group: &LaneGroup<Changes<'g>>) {
         for other in &self.columns[group.link] {
-            let [above, below] = group.item.meet(&other.map(&|e| group.spread(e)));
-            let pair_entries_by_dof = |[by_q, by_v]: [Expr<'g>; 2]| group.parts(by_q).zip(group.parts(by_v));
+            let [above, below] =
+                group.item.derivatives_with_ancestor(&other.map(&|e| group.repeat_for_members(e)));
+            let pair_entries_by_dof =
+                |[by_q, by_v]: [Expr<'g>; 2]| group.lanes_of_members(by_q).zip(group.lanes_of_members(by_v));
             for ((dof, by_q), (_, by_v)) in pair_entries_by_dof(above) {
                 self.out.add(other, &self.all[dof], by_q, by_v);
             }
@@ -148,7 +151,7 @@ impl<'g> Changes<'g> {
 
     /// Returns the derivatives of the force of an ancestor's degree of freedom with respect to `q` and `v` of
     /// this degree of freedom, then the derivatives with the two degrees of freedom exchanged.
-    fn meet(&self, other: &Column<'g>) -> [[Expr<'g>; 2]; 2] {
+    fn derivatives_with_ancestor(&self, other: &Column<'g>) -> [[Expr<'g>; 2]; 2] {
         let s = &other.subspace;
         let by_q = self.momentum.dot(&other.second) + self.moment.dot(other.first.angular);
         let by_v = self.momentum.dot(&other.rate) + self.moment.dot(s.angular);

@@ -22,13 +22,13 @@ pub struct State<'g> {
 
 impl<'g> State<'g> {
     /// Returns the state of the ground: no velocity, and the acceleration opposite to gravity.
-    pub fn ground(model: &Model<'g>) -> State<'g> {
+    pub fn state_of_ground(model: &Model<'g>) -> State<'g> {
         let zero = Vec3::zero(model.graph);
         State { v: zero, w: zero, dw: zero, a: -model.gravity }
     }
 
     /// Returns `U = [ẇ]× + [w]×[w]×`: a point at `r` has the acceleration `a + U r`.
-    pub fn matrix(&self) -> Mat3<'g> {
+    pub fn acceleration_matrix(&self) -> Mat3<'g> {
         let ([x, y, z], dw) = (self.w.0, self.dw);
         let (xx, yy, zz) = (x * x, y * y, z * z);
         let (yz, zx, xy) = (y * z, z * x, x * y);
@@ -55,7 +55,7 @@ pub struct LinkMotion<'g> {
 }
 
 /// Returns the motions of all links by the outward recursion.
-pub fn motions<'g>(
+pub fn link_motions<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     v: &[Expr<'g>],
@@ -63,15 +63,15 @@ pub fn motions<'g>(
 ) -> Vec<LinkMotion<'g>> {
     let mut motions: Vec<LinkMotion<'g>> = Vec::with_capacity(joints.len());
     for joint in joints {
-        let above = joint.parent.map_or(State::ground(model), |p| motions[p.0].own);
+        let above = joint.parent.map_or(State::state_of_ground(model), |p| motions[p.0].own);
         let (turn, p) = (&joint.rotation, joint.translation);
         let parent = State {
             v: turn.to_child(above.v + above.w.cross(p)),
             w: turn.to_child(above.w),
             dw: turn.to_child(above.dw),
-            a: turn.to_child(above.a + above.matrix() * p),
+            a: turn.to_child(above.a + above.acceleration_matrix() * p),
         };
-        let (rate, change) = (joint.twist(model, v), joint.relative(model, a));
+        let (rate, change) = (joint.total_relative_twist(model, v), joint.relative_twist(model, a));
         let w = parent.w;
         let own = State {
             v: parent.v + rate.linear,
@@ -119,11 +119,11 @@ impl<'g> Column<'g> {
 }
 
 /// Returns the columns of a link for the derivatives of inverse dynamics.
-pub fn columns<'g>(joint: &Joint<'g>, motion: &LinkMotion<'g>) -> Vec<Column<'g>> {
+pub fn derivative_columns<'g>(joint: &Joint<'g>, motion: &LinkMotion<'g>) -> Vec<Column<'g>> {
     let (above, single) = (&motion.parent, joint.dofs.len() == 1);
     // The rotation about an axis changes neither the product of U with the axis nor V × S if S is the only
     // degree of freedom.
-    let u = if single { motion.own.matrix() } else { above.matrix() };
+    let u = if single { motion.own.acceleration_matrix() } else { above.acceleration_matrix() };
     let derivative_column = |dof: &Dof<'g>| {
         let s = &dof.subspace;
         let first = cross(&above.twist(), s);

@@ -5,7 +5,7 @@
 //! Van Loan, *Matrix Computations*, 2013, § 4.4).
 
 use super::super::crba::Matrix;
-use super::super::ldl::{elimination_order, inverses};
+use super::super::ldl::{elimination_order, pivot_inverses};
 use crate::expr::Expr;
 use crate::kinematics::Joint;
 
@@ -29,12 +29,12 @@ impl<'g> Factor<'g> {
         let n = mass.len();
         match (0..n).all(|i| (0..i).all(|j| mass[i][j] == mass[j][i])) {
             true => Factor::in_order(mass, &order),
-            false => Factor::unsymmetric(mass, &order),
+            false => Factor::factorise_unsymmetric(mass, &order),
         }
     }
 
     /// Factorises a matrix that need not be symmetric.
-    fn unsymmetric(mass: &Matrix<'g>, order: &[usize]) -> Factor<'g> {
+    fn factorise_unsymmetric(mass: &Matrix<'g>, order: &[usize]) -> Factor<'g> {
         let mut m = mass.clone();
         let (mut rows, mut columns) = (vec![Vec::new(); m.len()], vec![Vec::new(); m.len()]);
         let mut inverse: Vec<Expr<'g>> = (0..m.len()).map(|k| m[k][k].num(1.0)).collect();
@@ -64,7 +64,7 @@ impl<'g> Factor<'g> {
         let mut known = Vec::new().into_iter();
         for (step, &k) in order.iter().enumerate() {
             inverse[k] = known.next().unwrap_or_else(|| {
-                known = inverses(&m, &order[step..]).into_iter();
+                known = pivot_inverses(&m, &order[step..]).into_iter();
                 known.next().unwrap_or(m[k][k])
             });
             let rest: Vec<usize> =
@@ -83,12 +83,12 @@ impl<'g> Factor<'g> {
     }
 
     /// Returns the solution `M⁻¹ r` of a linear system.
-    pub fn solve(&self, r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
-        self.complete(self.reduced(r))
+    pub fn solve_factored(&self, r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+        self.apply_remaining_factors(self.apply_first_factor(r))
     }
 
     /// Returns `L⁻ᵀ r`, or `U⁻¹ r` for an unsymmetric matrix.
-    fn reduced(&self, mut r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+    fn apply_first_factor(&self, mut r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         let columns = self.columns.as_ref().unwrap_or(&self.rows);
         for &k in &self.order {
             for (i, factor) in &columns[k] {
@@ -99,7 +99,7 @@ impl<'g> Factor<'g> {
     }
 
     /// Returns `L⁻¹ D⁻¹ r`.
-    fn complete(&self, mut r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+    fn apply_remaining_factors(&self, mut r: Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         for &k in self.order.iter().rev() {
             r[k] = self.rows[k].iter().fold(r[k] * self.inverse[k], |x, (i, factor)| x - *factor * r[*i]);
         }
@@ -107,10 +107,12 @@ impl<'g> Factor<'g> {
     }
 
     /// Returns `M⁻¹ Gᵀ`, then `G M⁻¹ Gᵀ`, column by column, for the rows of `G`.
-    pub fn responses(&self, rows: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
+    pub fn constraint_responses(&self, rows: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
         let Some(zero) = self.inverse.first().map(|d| d.zero()) else { return Vec::new() };
-        let reduced: Vec<Vec<Expr<'g>>> = rows.iter().map(|row| self.reduced(row.clone())).collect();
-        let mut out: Vec<Expr<'g>> = reduced.iter().flat_map(|row| self.complete(row.clone())).collect();
+        let reduced: Vec<Vec<Expr<'g>>> =
+            rows.iter().map(|row| self.apply_first_factor(row.clone())).collect();
+        let mut out: Vec<Expr<'g>> =
+            reduced.iter().flat_map(|row| self.apply_remaining_factors(row.clone())).collect();
         let weighted: Vec<Vec<Expr<'g>>> =
             reduced.iter().map(|row| row.iter().zip(&self.inverse).map(|(r, d)| *r * *d).collect()).collect();
         for i in 0..rows.len() {
@@ -132,7 +134,7 @@ impl<'g> Factor<'g> {
         if self.columns.is_some() {
             let unit =
                 |c: usize| (0..n).map(|k| self.inverse[k].num(if k == c { 1.0 } else { 0.0 })).collect();
-            let columns: Matrix<'g> = (0..n).map(|c| self.solve(unit(c))).collect();
+            let columns: Matrix<'g> = (0..n).map(|c| self.solve_factored(unit(c))).collect();
             return (0..n).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
         }
         let mut out: Matrix<'g> = self.inverse.iter().map(|d| vec![d.zero(); n]).collect();

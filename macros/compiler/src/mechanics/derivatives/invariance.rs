@@ -15,7 +15,7 @@ use super::{ForceDerivatives, symbolic};
 use crate::expr::diff::Derivative;
 use crate::expr::{Expr, Mat3, Symbol, Vec3};
 use crate::kinematics::{Joint, Spatial, symbols_in};
-use crate::mechanics::{accelerations, rnea, velocities};
+use crate::mechanics::{acceleration_symbols, rnea, velocity_symbols};
 use crate::mechanism::{Inertia, Link, Model, Motion, Quantity};
 
 /// Columns of a matrix that invariance determines, each with its index.
@@ -89,7 +89,7 @@ impl Base {
             if joint.dofs.iter().any(|dof| (self.v..self.v + 6).contains(&dof.index)) {
                 return false;
             }
-            all.extend(joint.rotation.matrix().0.as_flattened());
+            all.extend(joint.rotation.rotation_matrix().0.as_flattened());
             all.extend(joint.translation.0);
             let mut add = |s: &Spatial<'g>| all.extend(s.linear.0.iter().chain(&s.angular.0));
             joint.dofs.iter().for_each(|dof| add(&dof.subspace));
@@ -97,11 +97,11 @@ impl Base {
                 [&drift.twist, &drift.acceleration].into_iter().chain(&drift.subspace_rates).for_each(add);
             }
         }
-        !symbols_in(&all).into_iter().any(|s| self.owns(s))
+        !symbols_in(&all).into_iter().any(|s| self.is_symbol_of_base(s))
     }
 
     /// Returns true for a coordinate or a velocity of the base.
-    fn owns(&self, symbol: Symbol) -> bool {
+    fn is_symbol_of_base(&self, symbol: Symbol) -> bool {
         match Quantity::from_symbol(symbol) {
             Quantity::Configuration(k) => (self.q..self.q + 7).contains(&k),
             Quantity::Velocity(k) => (self.v..self.v + 6).contains(&k),
@@ -125,14 +125,14 @@ impl<'g> NoninertialTerms<'g> {
         for link in &mut massless.links {
             link.inertia = Inertia::zero(model.graph);
         }
-        let (v, a) = (velocities(model), accelerations(model));
+        let (v, a) = (velocity_symbols(model), acceleration_symbols(model));
         let forces = rnea::inverse_dynamics(&massless, joints, &v, Some(&a));
         let forces_depend_on_acceleration = |k: usize| {
             let mut d = Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
             forces.iter().any(|force| !d.differentiate(*force).is_zero())
         };
         let inertial = (0..model.nv()).map(forces_depend_on_acceleration).collect();
-        NoninertialTerms { forces: symbolic::derivatives(model, &forces), inertial }
+        NoninertialTerms { forces: symbolic::force_derivatives(model, &forces), inertial }
     }
 
     /// Returns true if no inertia except that of the links acts on the linear acceleration of the base whose
@@ -150,7 +150,7 @@ fn are_free(of: &[Vec<Expr<'_>>], first: usize) -> bool {
 impl<'g> InvariantColumns<'g> {
     /// Replaces the columns of the force derivatives by the known columns of the acceleration derivatives;
     /// the other columns of the acceleration derivatives are computed from the force derivatives.
-    pub fn replace(&self, forces: &mut ForceDerivatives<'g>) {
+    pub fn replace_known_columns(&self, forces: &mut ForceDerivatives<'g>) {
         for (to, from) in [(&mut forces.by_q, &self.by_q), (&mut forces.by_v, &self.by_v)] {
             for (k, column) in from {
                 for (row, entry) in to.iter_mut().zip(column) {
@@ -161,12 +161,12 @@ impl<'g> InvariantColumns<'g> {
     }
 
     /// Returns all known columns, concatenated: columns of `∂v̇/∂q`, then columns of `∂v̇/∂v`.
-    pub fn all(&self) -> Vec<Expr<'g>> {
+    pub fn all_known_columns(&self) -> Vec<Expr<'g>> {
         self.by_q.iter().chain(&self.by_v).flat_map(|(_, column)| column.iter().copied()).collect()
     }
 
     /// Returns the indices of the known columns of `∂v̇/∂q` and of `∂v̇/∂v`.
-    pub fn indices(&self) -> [Vec<usize>; 2] {
+    pub fn known_column_indices(&self) -> [Vec<usize>; 2] {
         [&self.by_q, &self.by_v].map(|columns| columns.iter().map(|(k, _)| *k).collect())
     }
 }

@@ -2,7 +2,7 @@
 //! differentiation.
 
 use super::super::crba::Matrix;
-use super::super::{accelerations, added_mass, crba, forces, rnea, velocities};
+use super::super::{acceleration_symbols, added_mass, crba, forces, rnea, velocity_symbols};
 use super::Factor;
 use crate::expr::Expr;
 use crate::expr::diff::Derivative;
@@ -12,16 +12,16 @@ use crate::mechanism::{Model, Quantity};
 
 /// Returns the columns of `∂τ/∂p` of inverse dynamics, one for each parameter `p`.
 pub fn inverse_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
-    let a = accelerations(model);
-    columns(model, &rnea::inverse_dynamics(model, joints, &velocities(model), Some(&a)))
+    let a = acceleration_symbols(model);
+    parameter_derivatives(model, &rnea::inverse_dynamics(model, joints, &velocity_symbols(model), Some(&a)))
 }
 
 /// Returns the columns of `∂τ/∂p` of the input forces.
 pub fn generalized_forces<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Matrix<'g> {
-    columns(model, &forces::generalized_forces(model, joints))
+    parameter_derivatives(model, &forces::generalized_forces(model, joints))
 }
 
-fn columns<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Matrix<'g> {
+fn parameter_derivatives<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Matrix<'g> {
     let parameter_derivative = |k| Derivative::with_respect_to(Quantity::Parameter(k).symbol(), model.graph);
     let derivative_column = |mut d: Derivative<'g>| values.iter().map(|e| d.differentiate(*e)).collect();
     (0..model.parameters.len()).map(|k| derivative_column(parameter_derivative(k))).collect()
@@ -29,16 +29,17 @@ fn columns<'g>(model: &Model<'g>, values: &[Expr<'g>]) -> Matrix<'g> {
 
 /// Returns the columns of `∂v̇/∂p = −M⁻¹ ∂τ/∂p` of forward dynamics under the forces `tau`, at `a = v̇`.
 pub fn forward_dynamics<'g>(model: &Model<'g>, joints: &[Joint<'g>], tau: &[Expr<'g>]) -> Matrix<'g> {
-    let factor = Factor::new(&added_mass::effective(model, &crba::mass_matrix(model, joints)), joints);
-    let bias = rnea::inverse_dynamics(model, joints, &velocities(model), None);
-    let a = factor.solve(tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect());
+    let factor =
+        Factor::new(&added_mass::effective_mass_matrix(model, &crba::mass_matrix(model, joints)), joints);
+    let bias = rnea::inverse_dynamics(model, joints, &velocity_symbols(model), None);
+    let a = factor.solve_factored(tau.iter().zip(&bias).map(|(t, h)| *t - *h).collect());
     let acceleration_of_symbol = |s| match Quantity::from_symbol(s) {
         Quantity::Acceleration(k) => Some(a[k]),
         _ => None,
     };
     let columns = inverse_dynamics(model, joints);
     let solve_for_accelerations = |column: &Vec<Expr<'g>>| {
-        factor.solve(replace_all(column, &acceleration_of_symbol).iter().map(|e| -*e).collect())
+        factor.solve_factored(replace_all(column, &acceleration_of_symbol).iter().map(|e| -*e).collect())
     };
     columns.iter().map(solve_for_accelerations).collect()
 }

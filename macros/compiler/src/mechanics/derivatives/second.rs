@@ -24,9 +24,9 @@
 //! plus the terms that result from the change of the outer direction itself.
 
 use super::super::crba::{Matrix, momentum};
-use super::super::{accelerations, constraints, rnea, velocities};
-use super::columns::{Column, columns, cross, motions};
-use super::subtree::{Subtree, of_body, subtrees};
+use super::super::{acceleration_symbols, constraints, rnea, velocity_symbols};
+use super::columns::{Column, cross, derivative_columns, link_motions};
+use super::subtree::{Subtree, of_body, subtree_sums};
 use super::{analytic, is_analytic, symbolic};
 use crate::expr::{Expr, Sym3, Vec3};
 use crate::kinematics::{Joint, Spatial, twists};
@@ -48,7 +48,7 @@ pub struct Hessian<'g> {
 }
 
 /// Returns the factors `λ` of the forces as symbols of an argument.
-pub fn factors<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
+pub fn factor_symbols<'g>(model: &Model<'g>) -> Vec<Expr<'g>> {
     (0..model.nv()).map(|k| Quantity::Given(Supplied::Factor, k).expr(model.graph)).collect()
 }
 
@@ -58,8 +58,8 @@ pub fn by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) ->
     if !is_analytic(model) {
         return None;
     }
-    let (v, a, lambda) = (velocities(model), accelerations(model), factors(model));
-    let motions = motions(model, joints, &v, &a);
+    let (v, a, lambda) = (velocity_symbols(model), acceleration_symbols(model), factor_symbols(model));
+    let motions = link_motions(model, joints, &v, &a);
     let virtual_twists = twists(model, joints, &lambda);
     let columns: Vec<Vec<Directions<'g>>> = joints
         .iter()
@@ -69,33 +69,38 @@ pub fn by_recursion<'g>(model: &Model<'g>, joints: &[Joint<'g>], most: usize) ->
             let above = joint.parent.map_or(ground, |p| joint.twist_to_child(&virtual_twists[p.0]));
             let directions =
                 |column: Column<'g>| Directions { factor: cross(&above, &column.subspace), column };
-            columns(joint, motion).into_iter().map(directions).collect()
+            derivative_columns(joint, motion).into_iter().map(directions).collect()
         })
         .collect();
     let own: Vec<Spatial<'g>> = motions.iter().map(|m| m.own.twist()).collect();
     let wrenches = rnea::wrenches(model, joints, &v, Some(&a));
-    let sums = subtrees(model, joints, &own, &wrenches, 2.0);
-    let sums = contracted(model, joints, (&own, &virtual_twists), sums);
+    let sums = subtree_sums(model, joints, &own, &wrenches, 2.0);
+    let sums = contract_subtree_sums(model, joints, (&own, &virtual_twists), sums);
     let zero_matrix = || vec![vec![model.graph.zero(); model.nv()]; model.nv()];
     let out = Hessian { qq: zero_matrix(), qv: zero_matrix(), vv: zero_matrix(), qa: zero_matrix() };
     let paths = Paths::new(joints, most);
-    let mut entries =
-        Entries { columns: &columns, all: columns.concat(), links: paths.links(), sums: &sums, out };
-    paths.propagate(&mut entries);
+    let mut entries = Entries {
+        columns: &columns,
+        all: columns.concat(),
+        links: paths.links_of_freedoms(),
+        sums: &sums,
+        out,
+    };
+    paths.propagate_to_root(&mut entries);
     let mut out = entries.out;
-    out.add(&passive(model, &lambda));
+    out.add(&passive_hessian(model, &lambda));
     Some(out)
 }
 
 /// Returns the second derivatives of `λᵀ τ` of inverse dynamics by differentiation.
 pub fn by_differentiation<'g>(model: &Model<'g>, joints: &[Joint<'g>]) -> Hessian<'g> {
-    let (v, a) = (velocities(model), accelerations(model));
+    let (v, a) = (velocity_symbols(model), acceleration_symbols(model));
     let tau = rnea::inverse_dynamics(model, joints, &v, Some(&a));
-    of_power(model, &tau, &factors(model))
+    of_power(model, &tau, &factor_symbols(model))
 }
 
 /// Returns the second derivatives of the power of springs, dashpots, friction, potentials and loads.
-fn passive<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Hessian<'g> {
+fn passive_hessian<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Hessian<'g> {
     of_power(model, &passive_forces(model, true), lambda)
 }
 
@@ -103,15 +108,15 @@ fn passive<'g>(model: &Model<'g>, lambda: &[Expr<'g>]) -> Hessian<'g> {
 pub fn of_power<'g>(model: &Model<'g>, tau: &[Expr<'g>], lambda: &[Expr<'g>]) -> Hessian<'g> {
     let zero = model.graph.zero();
     let power = tau.iter().zip(lambda).fold(zero, |sum, (tau, factor)| sum + *tau * *factor);
-    let first = symbolic::derivatives(model, &[power]);
+    let first = symbolic::force_derivatives(model, &[power]);
     let by_q = first.by_q.into_iter().next().unwrap_or_default();
     let by_v = first.by_v.into_iter().next().unwrap_or_default();
-    let mut second = symbolic::derivatives(model, &by_q);
-    symmetrise(model, &mut second.by_q);
+    let mut second = symbolic::force_derivatives(model, &by_q);
+    symmetrise_block(model, &mut second.by_q);
     Hessian {
         qq: second.by_q,
         qv: second.by_v,
-        vv: symbolic::derivatives(model, &by_v).by_v,
+        vv: symbolic::force_derivatives(model, &by_v).by_v,
         qa: symbolic::by_acceleration(model, &by_q),
     }
 }
@@ -130,11 +135,11 @@ pub struct InputHessian<'g> {
 
 /// Returns the second derivatives of the power `λᵀ τ` of the input forces `tau`.
 pub fn of_inputs<'g>(model: &Model<'g>, tau: &[Expr<'g>]) -> InputHessian<'g> {
-    let lambda = factors(model);
+    let lambda = factor_symbols(model);
     let zero = model.graph.zero();
     let power = tau.iter().zip(&lambda).fold(zero, |sum, (tau, factor)| sum + *tau * *factor);
     let by_u = symbolic::by_input(model, &[power]).into_iter().next().unwrap_or_default();
-    let mixed = symbolic::derivatives(model, &by_u);
+    let mixed = symbolic::force_derivatives(model, &by_u);
     let transposed_matrix =
         |m: Matrix<'g>| (0..model.nv()).map(|k| m.iter().map(|row| row[k]).collect()).collect();
     InputHessian {
@@ -162,17 +167,17 @@ pub fn of_constraints<'g>(model: &Model<'g>) -> ConstraintHessian<'g> {
     };
     let dot_product =
         |a: &[Expr<'g>], b: &[Expr<'g>]| a.iter().zip(b).fold(zero, |sum, (a, b)| sum + *a * *b);
-    let (lambda, w) = (constraints::multipliers(model), argument_expressions(Supplied::Direction, nv));
+    let (lambda, w) = (constraints::multiplier_symbols(model), argument_expressions(Supplied::Direction, nv));
     let (z, y) = (
         argument_expressions(Supplied::AccelerationFactor, nc),
         argument_expressions(Supplied::VelocityFactor, nc),
     );
-    let (rows, a) = (constraints::jacobian(model), accelerations(model));
+    let (rows, a) = (constraints::jacobian(model), acceleration_symbols(model));
     let along: Vec<Expr<'g>> = rows.iter().map(|row| dot_product(row, &w)).collect();
-    let biases = constraints::biases(model);
+    let biases = constraints::constraint_biases(model);
     let accelerated: Vec<Expr<'g>> =
         rows.iter().zip(biases).map(|(row, bias)| dot_product(row, &a) + bias).collect();
-    let sum = dot_product(&z, &accelerated) + dot_product(&y, &constraints::rates(model))
+    let sum = dot_product(&z, &accelerated) + dot_product(&y, &constraints::constraint_velocities(model))
         - dot_product(&lambda, &along);
     let by_q = symbolic::by_configuration(model, &along);
     let q_lambda = (0..nv).map(|i| by_q.iter().map(|row| -row[i]).collect()).collect();
@@ -181,7 +186,7 @@ pub fn of_constraints<'g>(model: &Model<'g>) -> ConstraintHessian<'g> {
 
 /// Symmetrises the configuration block `m`. If axes rotate, the result of two successive displacements
 /// depends on their order; the mean of both orders is the second derivative along their sum.
-pub fn symmetrise<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
+pub fn symmetrise_block<'g>(model: &Model<'g>, m: &mut Matrix<'g>) {
     for chart in &model.charts {
         let block = match *chart {
             Chart::Plain(..) => continue,
@@ -224,17 +229,17 @@ struct Sums<'g> {
 
 impl<'g> Sums<'g> {
     /// Returns the moment of `Q X + X ×* P`, which has no force.
-    fn moment(&self, x: &Spatial<'g>) -> Vec3<'g> {
-        self.change(x) + x.angular.cross(self.momentum.angular) + x.linear.cross(self.momentum.linear)
+    fn mapped_moment_with_momentum(&self, x: &Spatial<'g>) -> Vec3<'g> {
+        self.mapped_moment(x) + x.angular.cross(self.momentum.angular) + x.linear.cross(self.momentum.linear)
     }
 
     /// Returns the moment of `Q X`.
-    fn change(&self, x: &Spatial<'g>) -> Vec3<'g> {
+    fn mapped_moment(&self, x: &Spatial<'g>) -> Vec3<'g> {
         x.linear.cross(self.momentum.linear) + self.tensor * x.angular
     }
 }
 
-fn contracted<'g>(
+fn contract_subtree_sums<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     (own, virtual_twists): (&[Spatial<'g>], &[Spatial<'g>]),
@@ -251,7 +256,7 @@ fn contracted<'g>(
     }
     for (k, joint) in joints.iter().enumerate().rev() {
         if let Some(parent) = joint.parent {
-            changes[parent.0] = joint.composite(&changes[parent.0], &changes[k]);
+            changes[parent.0] = joint.composite_inertia(&changes[parent.0], &changes[k]);
             let [p, n] = wrenches[k];
             let above = wrenches[parent.0];
             wrenches[parent.0] = [joint.add_wrench(&above[0], &p), joint.add_wrench(&above[1], &n)];
@@ -305,13 +310,13 @@ impl<'g> Visitor<'g> for Entries<'_, 'g> {
         let changes = Changes::new(&own, sums);
         let out = &mut self.out;
         for other in &self.columns[self.links[dof]] {
-            let [qq, _, vq, _, _, aq] = changes.meet(other);
+            let [qq, _, vq, _, _, aq] = changes.entries_with_ancestor(other);
             // Half of the value for each of the two orders.
             out.add_entry(|h| &mut h.qq, &own, other, qq * 0.5);
             out.add_entry(|h| &mut h.qq, other, &own, qq * 0.5);
             out.add_entry(|h| &mut h.qv, other, &own, vq);
             out.add_entry(|h| &mut h.qa, other, &own, aq);
-            let vv = sums.change(&own.column.subspace).dot(other.column.subspace.angular)
+            let vv = sums.mapped_moment(&own.column.subspace).dot(other.column.subspace.angular)
                 + sums.momentum.linear.cross(own.column.subspace.angular).dot(other.column.subspace.linear);
             out.add_entry(|h| &mut h.vv, &own, other, vv);
         }
@@ -320,9 +325,9 @@ impl<'g> Visitor<'g> for Entries<'_, 'g> {
 
     fn visit(&mut self, group: &LaneGroup<Changes<'g>>) {
         for other in &self.columns[group.link] {
-            let met = group.item.meet(&other.map(&|e| group.spread(e)));
+            let met = group.item.entries_with_ancestor(&other.map(&|e| group.repeat_for_members(e)));
             for (part, entry) in met.into_iter().enumerate() {
-                for (dof, entry) in group.parts(entry) {
+                for (dof, entry) in group.lanes_of_members(entry) {
                     let own = &self.all[dof];
                     let out = &mut self.out;
                     match part {
@@ -401,10 +406,10 @@ impl<'g> Changes<'g> {
                 .plus(&analytic::cross_force(s, &plain.wrench)),
             factored: momentum_of_twist(&own.factor).plus(&analytic::cross_force(s, &sums.momentum)),
             moment_by_q: plain.transposed_map(&own.factor)
-                + sums.moment(&column.first)
+                + sums.mapped_moment_with_momentum(&column.first)
                 + s.angular.cross(sums.moment),
             by_v: momentum_of_twist(&column.rate).plus(&plain.map(s)),
-            moment_by_v: sums.moment(s),
+            moment_by_v: sums.mapped_moment_with_momentum(s),
             momentum: momentum_of_twist(s),
         }
     }
@@ -412,7 +417,7 @@ impl<'g> Changes<'g> {
     /// Returns the six entries with a degree of freedom of an ancestor, by the variation of this degree of
     /// freedom and that of the other: displacement and displacement; displacement and velocity; velocity and
     /// displacement; velocity and velocity; displacement and acceleration; acceleration and displacement.
-    fn meet(&self, other: &Directions<'g>) -> [Expr<'g>; 6] {
+    fn entries_with_ancestor(&self, other: &Directions<'g>) -> [Expr<'g>; 6] {
         let Column { subspace, first, second, rate, .. } = &other.column;
         [
             other.factor.dot(&self.by_q) + second.dot(&self.factored) + first.angular.dot(self.moment_by_q),

@@ -43,14 +43,14 @@ fn without_trace<'g>(k: &Mat3<'g>) -> Mat3<'g> {
 
 /// Returns the sums of all links for the given twists and wrenches. The velocity map is multiplied by
 /// `multiple / 2`.
-pub fn subtrees<'g>(
+pub fn subtree_sums<'g>(
     model: &Model<'g>,
     joints: &[Joint<'g>],
     twists: &[Spatial<'g>],
     wrenches: &[Spatial<'g>],
     multiple: f64,
 ) -> Vec<Subtree<'g>> {
-    let inertias = crba::composites(model, joints);
+    let inertias = crba::composite_inertias(model, joints);
     let bodies = model.links.iter().map(|link| &link.inertia);
     let mut sums: Vec<Subtree<'g>> =
         bodies.zip(twists).map(|(body, twist)| of_body(body, twist, multiple)).collect();
@@ -63,7 +63,8 @@ pub fn subtrees<'g>(
             let sum = &mut sums[parent.0];
             sum.wrench = joint.add_wrench(&sum.wrench, &child.wrench);
             let momentum = joint.rotation.to_parent(child.momentum);
-            let moments = joint.rotation.mat_to_parent(child.moments) + outer(momentum, joint.translation);
+            let moments =
+                joint.rotation.mat_to_parent(child.moments) + outer_product(momentum, joint.translation);
             sum.momentum += momentum.map(|c| joint.lane_sum(c));
             sum.moments = sum.moments + Mat3(moments.0.map(|row| row.map(|c| joint.lane_sum(c))));
         }
@@ -82,7 +83,7 @@ pub fn of_body<'g>(body: &Inertia<'g>, twist: &Spatial<'g>, multiple: f64) -> Su
         inertia: *body,
         wrench: Spatial { linear: zero, angular: zero },
         momentum: twist.linear * mass + twist.angular.cross(h),
-        moments: outer(twist.linear, h) + Mat3::skew(twist.angular) * j,
+        moments: outer_product(twist.linear, h) + Mat3::skew(twist.angular) * j,
     }
 }
 
@@ -93,6 +94,6 @@ fn second_moments<'g>(tensor: &Sym3<'g>) -> Sym3<'g> {
     Sym3 { diagonal: [half - x, half - y, half - z], off: tensor.off.map(|c| -c) }
 }
 
-fn outer<'g>(a: Vec3<'g>, b: Vec3<'g>) -> Mat3<'g> {
+fn outer_product<'g>(a: Vec3<'g>, b: Vec3<'g>) -> Mat3<'g> {
     Mat3::from_fn(|i, j| a[i] * b[j])
 }

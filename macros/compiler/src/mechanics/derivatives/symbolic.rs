@@ -10,13 +10,13 @@ use crate::mechanics::passive::passive_forces;
 use crate::mechanism::{Model, Quantity};
 
 /// Returns the derivatives of expressions with respect to configuration and velocity.
-pub fn derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> ForceDerivatives<'g> {
+pub fn force_derivatives<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> ForceDerivatives<'g> {
     ForceDerivatives { by_q: by_configuration(model, e), by_v: by_velocity(model, e) }
 }
 
 /// Returns the derivatives of springs, dashpots, friction, potentials and loads.
 pub fn of_passive_forces<'g>(model: &Model<'g>) -> ForceDerivatives<'g> {
-    derivatives(model, &passive_forces(model, true))
+    force_derivatives(model, &passive_forces(model, true))
 }
 
 /// Adds the derivatives of springs, dashpots, friction, potentials and loads.
@@ -32,8 +32,9 @@ pub fn add_passive_forces<'g>(model: &Model<'g>, out: &mut ForceDerivatives<'g>)
 /// Returns a column for each velocity: the time derivative of the expressions when that velocity is one and
 /// all other velocities are zero.
 pub fn by_configuration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
-    let rates: Vec<Expr<'g>> = (0..model.nq()).map(|k| configuration_rate(model.space(), k)).collect();
-    let turning = rotation_rates(model.space());
+    let rates: Vec<Expr<'g>> =
+        (0..model.nq()).map(|k| configuration_rate(model.configuration_space(), k)).collect();
+    let turning = rotation_rates(model.configuration_space());
     let configuration_derivative = |i: usize| {
         let mut by = Derivative::with_respect_to(Quantity::Velocity(i).symbol(), model.graph);
         let seed =
@@ -41,9 +42,10 @@ pub fn by_configuration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
         let own = rates.iter().enumerate().map(seed).filter(|(_, rate)| !rate.is_zero()).collect::<Vec<_>>();
         let given = model.passive.iter().flat_map(|passive| passive.changes_by_configuration(i));
         let known = turning.iter().map(|(entry, rate)| (*entry, by.differentiate(*rate))).collect::<Vec<_>>();
-        Derivative::with_rates(own.into_iter().chain(given).collect(), model.graph).knowing(known)
+        Derivative::with_rates(own.into_iter().chain(given).collect(), model.graph)
+            .with_preset_derivatives(known)
     };
-    columns(e, (0..model.nv()).map(configuration_derivative))
+    derivative_columns(e, (0..model.nv()).map(configuration_derivative))
 }
 
 fn by_velocity<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
@@ -52,27 +54,27 @@ fn by_velocity<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
         let own = [(Quantity::Velocity(k).symbol(), model.graph.one())];
         Derivative::with_rates(own.into_iter().chain(given).collect(), model.graph)
     };
-    columns(e, (0..model.nv()).map(velocity_derivative))
+    derivative_columns(e, (0..model.nv()).map(velocity_derivative))
 }
 
 /// Returns the derivatives of expressions with respect to the inputs.
 pub fn by_input<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let input_derivative = |k: usize| Derivative::with_respect_to(Quantity::Input(k).symbol(), model.graph);
-    columns(e, (0..model.nu()).map(input_derivative))
+    derivative_columns(e, (0..model.nu()).map(input_derivative))
 }
 
 /// Returns the derivatives of expressions with respect to the accelerations.
 pub fn by_acceleration<'g>(model: &Model<'g>, e: &[Expr<'g>]) -> Matrix<'g> {
     let acceleration_derivative =
         |k: usize| Derivative::with_respect_to(Quantity::Acceleration(k).symbol(), model.graph);
-    columns(e, (0..model.nv()).map(acceleration_derivative))
+    derivative_columns(e, (0..model.nv()).map(acceleration_derivative))
 }
 
-fn columns<'g>(e: &[Expr<'g>], directions: impl Iterator<Item = Derivative<'g>>) -> Matrix<'g> {
+fn derivative_columns<'g>(e: &[Expr<'g>], directions: impl Iterator<Item = Derivative<'g>>) -> Matrix<'g> {
     let mut rows = vec![Vec::new(); e.len()];
     for mut d in directions {
         for (row, e) in rows.iter_mut().zip(e) {
-            row.push(if e.value().is_some() { e.zero() } else { d.differentiate(*e) });
+            row.push(if e.constant_value().is_some() { e.zero() } else { d.differentiate(*e) });
         }
     }
     rows

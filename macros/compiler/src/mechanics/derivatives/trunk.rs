@@ -34,7 +34,7 @@ struct Limb {
 impl Trunk {
     /// Returns for each velocity whether its link, or a descendant of the link, has more than one child. A
     /// group of limbs in SIMD lanes is not divided further.
-    pub fn branching(joints: &[Joint<'_>], nv: usize) -> Vec<bool> {
+    pub fn branching_velocities(joints: &[Joint<'_>], nv: usize) -> Vec<bool> {
         let mut children = vec![0; joints.len()];
         let mut branches = vec![false; joints.len()];
         for (k, joint) in joints.iter().enumerate().rev() {
@@ -91,12 +91,12 @@ impl Trunk {
     }
 
     /// Returns the partition in which all velocities belong to the trunk.
-    pub fn whole(joints: &[Joint<'_>], nv: usize) -> Trunk {
+    pub fn whole_trunk(joints: &[Joint<'_>], nv: usize) -> Trunk {
         Trunk { velocities: elimination_order(joints, nv), limbs: Vec::new() }
     }
 
     /// Returns the velocities of each limb in ascending order.
-    pub fn limbs(&self) -> Vec<Vec<usize>> {
+    pub fn velocities_of_limbs(&self) -> Vec<Vec<usize>> {
         let sorted_velocities_of_limb = |limb: &Limb| {
             let mut velocities = limb.velocities.clone();
             velocities.sort_unstable();
@@ -115,7 +115,7 @@ impl Limb {
 
 /// Returns the terms of `M⁻¹` that remain to be computed if runtime loops do the remainder: `C⁻¹` in the
 /// columns of the limbs, and the trunk's columns of `M` in the order of the trunk's velocities.
-pub fn divided<'g>(mass: &Matrix<'g>, trunk: &Trunk) -> [Matrix<'g>; 2] {
+pub fn divided_inverse_terms<'g>(mass: &Matrix<'g>, trunk: &Trunk) -> [Matrix<'g>; 2] {
     let zero_row = |row: &Vec<Expr<'g>>| row.iter().map(|e| e.zero()).collect();
     let mut inverses: Matrix<'g> = mass.iter().map(zero_row).collect();
     for limb in &trunk.limbs {
@@ -149,12 +149,12 @@ impl<'a, 'g> Inverse<'a, 'g> {
             for &i in &limb.velocities {
                 parts[i].clone_from_slice(&inverse[i]);
                 for &t in &trunk.velocities {
-                    parts[i][t] = product(&limb.velocities, |k| (inverse[i][k], mass[k][t]), zero);
+                    parts[i][t] = sum_of_products(&limb.velocities, |k| (inverse[i][k], mass[k][t]), zero);
                 }
             }
             for (step, &i) in trunk.velocities.iter().enumerate() {
                 for &j in &trunk.velocities[..=step] {
-                    let taken = product(&limb.velocities, |k| (mass[i][k], parts[k][j]), zero);
+                    let taken = sum_of_products(&limb.velocities, |k| (mass[i][k], parts[k][j]), zero);
                     rest[i][j] -= limb.lane_sum(taken);
                     rest[j][i] = rest[i][j];
                 }
@@ -168,35 +168,35 @@ impl<'a, 'g> Inverse<'a, 'g> {
     }
 
     /// Returns the product `M⁻¹ r`.
-    pub fn solve(&self, r: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    pub fn solve_divided(&self, r: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let (parts, trunk) = (&self.parts, &self.trunk.velocities);
         let mut x = r.to_vec();
         for limb in &self.trunk.limbs {
             for &t in trunk {
-                let taken = product(&limb.velocities, |k| (parts[k][t], r[k]), r[t].zero());
+                let taken = sum_of_products(&limb.velocities, |k| (parts[k][t], r[k]), r[t].zero());
                 x[t] -= limb.lane_sum(taken);
             }
         }
         let forces: Vec<Expr<'g>> = x.clone();
         for &t in trunk {
-            x[t] = product(trunk, |k| (parts[t][k], forces[k]), r[t].zero());
+            x[t] = sum_of_products(trunk, |k| (parts[t][k], forces[k]), r[t].zero());
         }
         for limb in &self.trunk.limbs {
             for &i in &limb.velocities {
-                let own = product(&limb.velocities, |k| (parts[i][k], r[k]), r[i].zero());
-                x[i] = own - product(trunk, |t| (parts[i][t], x[t]), r[i].zero());
+                let own = sum_of_products(&limb.velocities, |k| (parts[i][k], r[k]), r[i].zero());
+                x[i] = own - sum_of_products(trunk, |t| (parts[i][t], x[t]), r[i].zero());
             }
         }
         x
     }
 
     /// Returns a matrix with the columns of `H` for the trunk and the columns of `C⁻¹` for the limbs.
-    pub fn columns(&self) -> Matrix<'g> {
+    pub fn inverse_columns(&self) -> Matrix<'g> {
         let (parts, trunk) = (&self.parts, &self.trunk.velocities);
         let mut columns = parts.clone();
         for &i in self.trunk.limbs.iter().flat_map(|limb| &limb.velocities) {
             for &t in trunk {
-                columns[i][t] = -product(trunk, |k| (parts[i][k], parts[k][t]), parts[i][t].zero());
+                columns[i][t] = -sum_of_products(trunk, |k| (parts[i][k], parts[k][t]), parts[i][t].zero());
             }
         }
         columns
@@ -204,7 +204,7 @@ impl<'a, 'g> Inverse<'a, 'g> {
 
     /// Returns the rows of `G` for the limbs, with zero rows for the trunk. The columns are in the order of
     /// the trunk's velocities.
-    pub fn factors(&self) -> Matrix<'g> {
+    pub fn limb_factor_rows(&self) -> Matrix<'g> {
         let mut factors: Matrix<'g> =
             self.parts.iter().map(|row| vec![row[0].zero(); self.trunk.velocities.len()]).collect();
         for &i in self.trunk.limbs.iter().flat_map(|limb| &limb.velocities) {
@@ -217,7 +217,11 @@ impl<'a, 'g> Inverse<'a, 'g> {
 }
 
 /// Returns the sum of products over some indices.
-fn product<'g>(over: &[usize], of: impl Fn(usize) -> (Expr<'g>, Expr<'g>), zero: Expr<'g>) -> Expr<'g> {
+fn sum_of_products<'g>(
+    over: &[usize],
+    of: impl Fn(usize) -> (Expr<'g>, Expr<'g>),
+    zero: Expr<'g>,
+) -> Expr<'g> {
     over.iter().fold(zero, |sum, &k| {
         let (a, b) = of(k);
         sum + a * b

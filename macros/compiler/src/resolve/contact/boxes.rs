@@ -68,15 +68,15 @@ fn select_vector<'g>(which: Expr<'g>, first: Vec3<'g>, second: Vec3<'g>) -> Vec3
 }
 
 fn absolute(x: Expr<'_>) -> Expr<'_> {
-    x.call(Function::Abs)
+    x.apply_function(Function::Abs)
 }
 
 fn maximum<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
-    a.extreme(Extreme::Max, b)
+    a.minimum_or_maximum(Extreme::Max, b)
 }
 
 fn minimum<'g>(a: Expr<'g>, b: Expr<'g>) -> Expr<'g> {
-    a.extreme(Extreme::Min, b)
+    a.minimum_or_maximum(Extreme::Min, b)
 }
 
 /// Returns the value that a selector of three selects.
@@ -110,7 +110,7 @@ impl<'g> Builder<'_, 'g> {
     ) -> Vec<PointContact<'g>> {
         let g = self.scope.graph;
         let block = |lengths: &[Expr<'g>; 3], center, rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>| OrientedBox {
-            axes: std::array::from_fn(|k| rotate(Vec3::axis(g, k))),
+            axes: std::array::from_fn(|k| rotate(Vec3::coordinate_axis(g, k))),
             half: lengths.map(|length| length * 0.5),
             center,
         };
@@ -188,7 +188,7 @@ impl<'g> BoxPair<'g> {
         let same = one - is_positive(absolute(size_difference) - self.size * TIE_TOLERANCE);
         let c = self.center_offset();
         let lower = -(c[0] * TIE_BREAK[0] + c[1] * TIE_BREAK[1] + c[2] * TIE_BREAK[2]);
-        let preference = (select(same, lower, size_difference)).call(Function::Signum);
+        let preference = (select(same, lower, size_difference)).apply_function(Function::Signum);
         let is_first = is_positive(first.distance - second.distance + preference * self.size * TIE_TOLERANCE);
         let which = std::array::from_fn(|k| select(is_first, first.first[k], second.first[k]));
         let distance = select(is_first, first.distance, second.distance);
@@ -273,7 +273,7 @@ impl<'g> BoxPair<'g> {
         let axis = select_axis(&edge.second, &self.b.axes);
         let across = own.cross(axis);
         let length = maximum(across.dot(across), one * PARALLEL).sqrt();
-        let normal = across * (c.dot(across).call(Function::Signum) / length);
+        let normal = across * (c.dot(across).apply_function(Function::Signum) / length);
         let (on_a, on_b) =
             (edge_middle(&self.a, &edge.first, -normal), edge_middle(&self.b, &edge.second, normal));
         let reach = [select_of_three(&edge.first, self.a.half), select_of_three(&edge.second, self.b.half)];
@@ -311,7 +311,7 @@ impl<'g> Face<'g> {
     ) -> Self {
         let [next, last] = [next_axis(which), next_axis(&next_axis(which))];
         let normal = select_axis(which, &holder.axes);
-        let normal = normal * normal.dot(c).call(Function::Signum);
+        let normal = normal * normal.dot(c).apply_function(Function::Signum);
         let sides = [&next, &last].map(|which| select_axis(which, &holder.axes));
         let half = [which, &next, &last].map(|which| select_of_three(which, holder.half));
         Face { axes: [normal, sides[0], sides[1]], half, size }
@@ -329,7 +329,7 @@ impl<'g> Face<'g> {
         let (mut from, mut to) = (-one, one);
         for k in [1, 2] {
             let slope = maximum(absolute(direction[k]), self.size * MIN_SLOPE);
-            let inverse_slope = direction[k].call(Function::Signum) / slope;
+            let inverse_slope = direction[k].apply_function(Function::Signum) / slope;
             let (center, reach) = (-(start[k] * inverse_slope), self.half[k] * (1.0 + TIE_TOLERANCE) / slope);
             (from, to) = (maximum(from, center - reach), minimum(to, center + reach));
         }
@@ -369,7 +369,7 @@ fn face_contacts<'g>(
     let third = is_positive(z - maximum(x, y) - one * TIE_TOLERANCE);
     let second = is_positive(y - x - one * TIE_TOLERANCE) * (one - third);
     let facing = [one - second - third, second, third];
-    let outward = select_of_three(&facing, cosines).call(Function::Signum);
+    let outward = select_of_three(&facing, cosines).apply_function(Function::Signum);
     let facing_axis = select_axis(&facing, &other.axes);
     let middle = c - facing_axis * (select_of_three(&facing, other.half) * outward);
     let side_axes = [next_axis(&facing), next_axis(&next_axis(&facing))];
@@ -461,14 +461,15 @@ pub(super) fn capsule_axis_contacts<'g>(
     let axis = select_axis(&edge, &block.axes);
     let across = own.cross(axis);
     let length = maximum(across.dot(across), one * PARALLEL).sqrt();
-    let normal = across * (c.dot(across).call(Function::Signum) / length);
+    let normal = across * (c.dot(across).apply_function(Function::Signum) / length);
     let middle = edge_middle(block, &edge, normal);
     let (near, far) = nearest(c - middle, (own, reach), (axis, select_of_three(&edge, block.half)));
     // If an end of the axis or of the edge is nearest, it touches as a sphere or as a corner.
     let separation = c - middle + own * near - axis * far;
     let length = separation.norm();
     let gap = edge_distance + length - absolute(edge_distance) - radius;
-    let towards = separation * (edge_distance.call(Function::Signum) / maximum(length, size * TIE_TOLERANCE));
+    let towards =
+        separation * (edge_distance.apply_function(Function::Signum) / maximum(length, size * TIE_TOLERANCE));
     let normal = select_vector(is_positive(length - size * TIE_TOLERANCE), towards, normal);
     points.push(PointContact {
         gap: select(by_edges, gap, maximum(gap, face_distance - edge_distance)),
@@ -484,7 +485,7 @@ pub(super) fn capsule_axis_contacts<'g>(
 fn edge_middle<'g>(block: &OrientedBox<'g>, which: &[Expr<'g>; 3], n: Vec3<'g>) -> Vec3<'g> {
     let one = which[0].num(1.0);
     (0..3).fold(Vec3::zero(one.graph()), |sum, k| {
-        let towards = block.axes[k].dot(n).call(Function::Signum);
+        let towards = block.axes[k].dot(n).apply_function(Function::Signum);
         sum + block.axes[k] * (block.half[k] * towards * (one - which[k]))
     })
 }

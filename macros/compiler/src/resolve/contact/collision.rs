@@ -19,16 +19,16 @@ impl<'g> Builder<'_, 'g> {
     ) -> Option<Vec<Surface<'g>>> {
         let known = &self.description.collisions;
         let frame = match link {
-            Some(link) => Some(self.scope.place(link, cx)?),
+            Some(link) => Some(self.scope.resolve_placement(link, cx)?),
             None => None,
         };
-        let name = link.and_then(|link| link.name());
+        let name = link.and_then(|link| link.as_name());
         let selected = select_collisions(e, known).unwrap_or_default();
         let parts: Vec<&Collision> = selected.into_iter().map(|k| &known[k]).collect();
         if parts.is_empty() {
             let whose = name.map_or_else(|| "this mechanism".to_string(), |name| format!("`{name}`"));
-            cx.error(e.place.clone(), format!("{whose} has no collision geometry"))
-                .help("only links of a file have it: name a surface instead, as in `foot.sphere(0.02)`");
+            cx.report_error(e.place.clone(), format!("{whose} has no collision geometry"))
+                .add_help("only links of a file have it: name a surface instead, as in `foot.sphere(0.02)`");
             return None;
         }
         let mut meshes: Vec<&Name> =
@@ -38,8 +38,8 @@ impl<'g> Builder<'_, 'g> {
             let names: Vec<String> = meshes.iter().map(|name| format!("`{}`", name.text)).collect();
             let message =
                 format!("the collision geometry of {} is a mesh without a convex hull", names.join(", "));
-            cx.error(e.place.clone(), message)
-                .help("approximate it by surfaces, as in `foot.sphere(0.02)`, or list the other links");
+            cx.report_error(e.place.clone(), message)
+                .add_help("approximate it by surfaces, as in `foot.sphere(0.02)`, or list the other links");
             return None;
         }
         let surfaces = parts.into_iter().map(|part| self.collision(part, frame.as_ref(), &e.place, cx));
@@ -59,11 +59,11 @@ impl<'g> Builder<'_, 'g> {
             Some(frame) => frame.clone(),
             None => {
                 let link = ExprKind::Name(part.on.body.text.clone());
-                self.scope.place(&syntax::Expr { kind: link, place: place.clone() }, cx)?
+                self.scope.resolve_placement(&syntax::Expr { kind: link, place: place.clone() }, cx)?
             }
         };
-        let pose = frame.pose.then(&self.endpoint(&part.on, cx)?);
-        let (z, length) = (Vec3::axis(g, 2), |x: f64| g.num(x));
+        let pose = frame.pose.compose_with(&self.frame_of_endpoint(&part.on, cx)?);
+        let (z, length) = (Vec3::coordinate_axis(g, 2), |x: f64| g.num(x));
         let form = match part.shape {
             Shape::Sphere(radius) => SurfaceForm::Sphere(length(radius)),
             Shape::Cuboid(edges) => SurfaceForm::Cuboid(edges.map(length)),
@@ -71,7 +71,7 @@ impl<'g> Builder<'_, 'g> {
             Shape::Capsule(radius, along) => SurfaceForm::Capsule(length(radius), length(along), z),
             Shape::Ellipsoid(radii) => SurfaceForm::Ellipsoid(radii.map(length)),
             Shape::Mesh => {
-                let vertices: Vec<Vec3<'g>> = part.hull.iter().map(|p| Vec3::numbers(g, *p)).collect();
+                let vertices: Vec<Vec3<'g>> = part.hull.iter().map(|p| Vec3::from_numbers(g, *p)).collect();
                 SurfaceForm::Hull(ConvexHull { shape: Hull::new(&part.hull, MAX_VERTICES).ok(), vertices })
             }
         };

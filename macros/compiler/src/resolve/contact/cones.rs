@@ -11,7 +11,7 @@ use super::SurfacePair;
 use super::surface::SurfaceForm;
 use crate::diag::Diagnostics;
 use crate::expr::Vec3;
-use crate::kinematics::perpendicular;
+use crate::kinematics::perpendicular_directions;
 use crate::mechanism::{Constraint, Measure, Rule};
 use crate::resolve::builder::Builder;
 use crate::resolve::rows::ConstraintRows;
@@ -36,21 +36,21 @@ impl<'g> Builder<'_, 'g> {
         let (sine_a, cosine_a) = (half.sin(), half.cos());
         let side = g.num(if inside { 1.0 } else { -1.0 });
         let sine = sine_b * cosine_a - side * cosine_b * sine_a;
-        if sine.value().is_some_and(|n| n <= 0.0) {
-            cx.error(constraint.value.place.clone(), "this cone does not fit into the funnel")
-                .help("give the funnel a larger half angle than the cone");
+        if sine.constant_value().is_some_and(|n| n <= 0.0) {
+            cx.report_error(constraint.value.place.clone(), "this cone does not fit into the funnel")
+                .add_help("give the funnel a larger half angle than the cone");
             return None;
         }
         let room = || format!("the sine of the angle between the surfaces of `{}`", constraint.name.text);
-        self.scope.require(Rule::Positive, room, &[sine]);
+        self.scope.record_requirement(Rule::Positive, room, &[sine]);
         let (a, b) = (self.first_direction(pair, axis), self.second_direction(pair, axis_b));
         // Rows of the apex: three positions, or one position and two velocities.
         let apex = match pair.b.form {
             SurfaceForm::Plane(n) => {
-                let [first, second] = perpendicular(n);
+                let [first, second] = perpendicular_directions(n);
                 [("normal", n, true), (first.0, first.1, false), (second.0, second.1, false)]
             }
-            _ => [0, 1, 2].map(|k| (["x", "y", "z"][k], Vec3::axis(g, k), true)),
+            _ => [0, 1, 2].map(|k| (["x", "y", "z"][k], Vec3::coordinate_axis(g, k), true)),
         };
         let (away, slip) = (pair.center.value - pair.base.value, self.slip(pair, Vec3::zero(g)));
         let (name, place) = (&constraint.name.text, &constraint.name.place);
@@ -58,18 +58,23 @@ impl<'g> Builder<'_, 'g> {
         for (word, e, is_place) in apex {
             let e = self.second_direction(pair, e).value;
             let gap = is_place.then(|| e.dot(away));
-            rows.push(self.row((format!("{name}.{word}"), place), Measure::Length, gap, e.dot(slip)));
+            rows.push(self.constraint_row(
+                (format!("{name}.{word}"), place),
+                Measure::Length,
+                gap,
+                e.dot(slip),
+            ));
         }
         // The angle by which the wide end is lifted, to first order.
         let cosine = cosine_b * cosine_a + side * sine_b * sine_a;
         let lifted = side / sine;
         let tilt = (a.value.dot(b.value) - cosine) * lifted;
         let rate = (a.rate.dot(b.value) + a.value.dot(b.rate)) * lifted;
-        let tilt = self.row((format!("{name}.tilt"), place), Measure::Angle, Some(tilt), rate);
+        let tilt = self.constraint_row((format!("{name}.tilt"), place), Measure::Angle, Some(tilt), rate);
         let normal = (b.value * cosine_a - a.value * cosine_b) * lifted;
         let [w_a, w_b] = self.angular_velocities(pair);
         let spin = normal.dot(w_a - w_b);
-        let spin = self.row((format!("{name}.spin"), place), Measure::Angle, None, spin);
+        let spin = self.constraint_row((format!("{name}.spin"), place), Measure::Angle, None, spin);
         rows.extend([tilt, spin].map(|row| Constraint { group: 1, ..row }));
         Some(ConstraintRows { rows, ..ConstraintRows::default() })
     }

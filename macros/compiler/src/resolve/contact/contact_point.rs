@@ -25,7 +25,7 @@ impl<'g> Builder<'_, 'g> {
     ) -> Option<Sheet<'g>> {
         let (first, second) = (self.parameter(u, cx), self.parameter(w, cx));
         let context = Context::new(Allowed::Placement, Some((frame.link, frame.pose.clone())));
-        let terms = self.scope.in_context(context, |scope| scope.terms(point, cx));
+        let terms = self.scope.in_context(context, |scope| scope.resolve_terms(point, cx));
         let (first, second, terms) = (first?, second?, terms?);
         let zero = Vec3::zero(self.scope.graph);
         let in_link = self.scope.kinematics.resolve(&terms, frame.link, zero);
@@ -35,8 +35,11 @@ impl<'g> Builder<'_, 'g> {
             q => matches!(q, Quantity::Parameter(_)),
         };
         if !symbols_in(&position.0).into_iter().all(|s| is_allowed(Quantity::from_symbol(s))) {
-            cx.error(point.place.clone(), "the points of a surface depend only on its two coordinates")
-                .help("parameters and the axes of the body of the surface are allowed as well");
+            cx.report_error(
+                point.place.clone(),
+                "the points of a surface depend only on its two coordinates",
+            )
+            .add_help("parameters and the axes of the body of the surface are allowed as well");
             return None;
         }
         let derivatives = |c: &Coordinate| {
@@ -46,11 +49,11 @@ impl<'g> Builder<'_, 'g> {
         };
         let tangents = [derivatives(&first), derivatives(&second)];
         if tangents[0].cross(tangents[1]).is_zero() {
-            cx.error(
+            cx.report_error(
                 point.place.clone(),
                 "these points do not form a surface: they do not depend on both coordinates",
             )
-            .help(
+            .add_help(
                 "write the points as a function of two coordinates, as in `surface(u, w, u * x + w * y + u * \
                  w / size * z)`",
             );
@@ -63,13 +66,13 @@ impl<'g> Builder<'_, 'g> {
     fn parameter(&self, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Coordinate> {
         let kinematics = &self.scope.kinematics;
         let coordinate_names = || self.description.coordinates.iter().map(|c| c.name.text.as_str());
-        let name = e.name().unwrap_or("");
+        let name = e.as_name().unwrap_or("");
         let found =
             kinematics.coordinates.iter().find(|(n, ..)| n == name && coordinate_names().any(|k| k == name));
         if found.is_none() && (name.is_empty() || self.scope.is_first_report(name, cx)) {
-            cx.error(e.place.clone(), "expected a coordinate of the surface")
-                .suggest(name, coordinate_names())
-                .help("declare it as a field of its own: `u: Coordinate`");
+            cx.report_error(e.place.clone(), "expected a coordinate of the surface")
+                .suggest_name(name, coordinate_names())
+                .add_help("declare it as a field of its own: `u: Coordinate`");
         }
         found.map(|(_, c, _)| *c)
     }

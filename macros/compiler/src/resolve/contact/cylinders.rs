@@ -51,7 +51,7 @@ struct DrumPoint<'g> {
 impl<'g> DrumPoint<'g> {
     /// Returns the position relative to the nearest point of the cylinder; zero inside.
     fn offset(&self) -> Vec3<'g> {
-        let outside = |distance: Expr<'g>| distance.extreme(Extreme::Max, distance.zero());
+        let outside = |distance: Expr<'g>| distance.minimum_or_maximum(Extreme::Max, distance.zero());
         self.radial * outside(self.side) + self.axial * outside(self.end)
     }
 }
@@ -61,12 +61,12 @@ impl<'g> Drum<'g> {
         let height = self.axis.dot(p);
         let outward = p - self.axis * height;
         let least = self.radius * ON_SURFACE;
-        let size = outward.dot(outward).extreme(Extreme::Max, least.square()).sqrt();
+        let size = outward.dot(outward).minimum_or_maximum(Extreme::Max, least.square()).sqrt();
         DrumPoint {
             side: size - self.radius,
-            end: height.call(Function::Abs) - self.half,
+            end: height.apply_function(Function::Abs) - self.half,
             radial: outward.map(|x| x / size),
-            axial: self.axis * height.call(Function::Signum),
+            axial: self.axis * height.apply_function(Function::Signum),
         }
     }
 
@@ -75,11 +75,14 @@ impl<'g> Drum<'g> {
     fn distance(&self, p: Vec3<'g>) -> (Expr<'g>, Vec3<'g>) {
         let DrumPoint { side, end, radial, axial } = self.locate(p);
         let (zero, least) = (side.zero(), self.radius * ON_SURFACE);
-        let (over, beyond) = (side.extreme(Extreme::Max, zero), end.extreme(Extreme::Max, zero));
-        let distance = (over.square() + beyond.square()).extreme(Extreme::Max, least.square()).sqrt();
+        let (over, beyond) =
+            (side.minimum_or_maximum(Extreme::Max, zero), end.minimum_or_maximum(Extreme::Max, zero));
+        let distance =
+            (over.square() + beyond.square()).minimum_or_maximum(Extreme::Max, least.square()).sqrt();
         let outside = (radial * over + axial * beyond).map(|x| x / distance);
         let inside = radial + (axial - radial) * is_positive(end - side);
-        let (depth, is_outside) = (side.extreme(Extreme::Max, end), is_positive(distance - least * 1.5));
+        let (depth, is_outside) =
+            (side.minimum_or_maximum(Extreme::Max, end), is_positive(distance - least * 1.5));
         (depth + (distance - depth) * is_outside, inside + (outside - inside) * is_outside)
     }
 
@@ -101,9 +104,9 @@ impl<'g> Drum<'g> {
         let mut t = low;
         for _ in 0..FALSE_POSITIONS {
             let (first, last) = (slope(low), slope(high));
-            let rise = (last - first).extreme(Extreme::Max, reach.num(LEAST_RISE));
+            let rise = (last - first).minimum_or_maximum(Extreme::Max, reach.num(LEAST_RISE));
             t = low - first * ((high - low) / rise);
-            t = t.extreme(Extreme::Max, low).extreme(Extreme::Min, high);
+            t = t.minimum_or_maximum(Extreme::Max, low).minimum_or_maximum(Extreme::Min, high);
             narrow(&mut low, &mut high, t);
         }
         t
@@ -114,11 +117,11 @@ impl<'g> Drum<'g> {
     fn side_crossings(&self, c: Vec3<'g>, own: Vec3<'g>, reach: Expr<'g>) -> [Expr<'g>; 2] {
         let across = |v: Vec3<'g>| v - self.axis * self.axis.dot(v);
         let (start, direction) = (across(c), across(own));
-        let a = direction.dot(direction).extreme(Extreme::Max, reach.num(MIN_SLOPE));
+        let a = direction.dot(direction).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
         let b = start.dot(direction);
         let discriminant = b.square() - a * (start.dot(start) - self.radius.square());
         let least = a * (self.radius * ON_SURFACE).square();
-        let root = discriminant.extreme(Extreme::Max, least).sqrt();
+        let root = discriminant.minimum_or_maximum(Extreme::Max, least).sqrt();
         [-root, root].map(|root| clamp((root - b) / a, reach))
     }
 
@@ -126,8 +129,8 @@ impl<'g> Drum<'g> {
     /// the segment are replaced by its ends.
     fn end_crossings(&self, c: Vec3<'g>, own: Vec3<'g>, reach: Expr<'g>) -> [Expr<'g>; 2] {
         let (height, rise) = (self.axis.dot(c), self.axis.dot(own));
-        let slope = rise.call(Function::Abs).extreme(Extreme::Max, reach.num(MIN_SLOPE));
-        let inverse = rise.call(Function::Signum) / slope;
+        let slope = rise.apply_function(Function::Abs).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
+        let inverse = rise.apply_function(Function::Signum) / slope;
         [-self.half, self.half].map(|end| clamp((end - height) * inverse, reach))
     }
 
@@ -169,7 +172,7 @@ impl<'g> Drum<'g> {
             contact(distance, e - c, -normal)
         };
         // The edges of the face that is opposite to an end.
-        let cosines = block.axes.map(|axis| axis.dot(self.axis).call(Function::Abs));
+        let cosines = block.axes.map(|axis| axis.dot(self.axis).apply_function(Function::Abs));
         let facing = largest(cosines);
         let face = Face::facing(block, &facing, c, self.half);
         let [_, first, second] = face.axes;
@@ -204,9 +207,9 @@ impl<'g> Drum<'g> {
         let separations = std::array::from_fn(|k| {
             let axis = block.axes[k];
             let cosine = axis.dot(self.axis);
-            let sine = (one - cosine.square()).extreme(Extreme::Max, zero.num(MIN_SLOPE)).sqrt();
-            let reach = self.half * cosine.call(Function::Abs) + self.radius * sine;
-            axis.dot(c).call(Function::Abs) - block.half[k] - reach
+            let sine = (one - cosine.square()).minimum_or_maximum(Extreme::Max, zero.num(MIN_SLOPE)).sqrt();
+            let reach = self.half * cosine.apply_function(Function::Abs) + self.radius * sine;
+            axis.dot(c).apply_function(Function::Abs) - block.half[k] - reach
         });
         let face = Face::facing(block, &largest(separations), c, self.half);
         let normal = face.axes[0];
@@ -214,18 +217,19 @@ impl<'g> Drum<'g> {
         let (down, along) = (directions[0] * self.radius, self.axis * self.half);
         let (start, direction) = (face.components(c + down), face.components(along));
         let [from, to] = face.clip_range(&start, &direction);
-        let outside = ((from - to) * self.half).extreme(Extreme::Min, self.half);
-        let line = [from.extreme(Extreme::Min, one), to.extreme(Extreme::Max, -one)].map(|t| {
-            let height = start[0] + direction[0] * t - face.half[0];
-            face.contact(height.extreme(Extreme::Max, outside), down + along * t)
-        });
-        let lower = along * -(self.axis.dot(normal).call(Function::Signum));
+        let outside = ((from - to) * self.half).minimum_or_maximum(Extreme::Min, self.half);
+        let line = [from.minimum_or_maximum(Extreme::Min, one), to.minimum_or_maximum(Extreme::Max, -one)]
+            .map(|t| {
+                let height = start[0] + direction[0] * t - face.half[0];
+                face.contact(height.minimum_or_maximum(Extreme::Max, outside), down + along * t)
+            });
+        let lower = along * -(self.axis.dot(normal).apply_function(Function::Signum));
         let rim = directions[1..].iter().map(|direction| {
             let point = lower + *direction * self.radius;
             let at = face.components(c + point);
-            let excess = |k: usize| at[k].call(Function::Abs) - face.half[k];
-            let outside = excess(1).extreme(Extreme::Max, excess(2));
-            face.contact((at[0] - face.half[0]).extreme(Extreme::Max, outside), point)
+            let excess = |k: usize| at[k].apply_function(Function::Abs) - face.half[k];
+            let outside = excess(1).minimum_or_maximum(Extreme::Max, excess(2));
+            face.contact((at[0] - face.half[0]).minimum_or_maximum(Extreme::Max, outside), point)
         });
         line.into_iter().chain(rim).collect()
     }
@@ -243,7 +247,7 @@ impl<'g> Drum<'g> {
         }
         std::array::from_fn(|k| {
             let axis = block.axes[k];
-            axis * (block.half[k] * axis.dot(point).call(Function::Signum))
+            axis * (block.half[k] * axis.dot(point).apply_function(Function::Signum))
         })
     }
 }
@@ -275,7 +279,7 @@ pub(super) fn capsule_on_pipe<'g>(
     rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
 ) -> Vec<PointContact<'g>> {
     let across = own - axis * axis.dot(own);
-    let square = across.dot(across).extreme(Extreme::Max, reach.num(MIN_SLOPE));
+    let square = across.dot(across).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
     let near = clamp(-(c.dot(across) / square), reach);
     let touches = [-reach, near, reach].into_iter().filter_map(|t| {
         let touch = sphere_contact(radius, pipe, c + own * t, rotate)?;
@@ -295,7 +299,7 @@ fn contact<'g>(gap: Expr<'g>, point: Vec3<'g>, normal: Vec3<'g>) -> PointContact
 fn largest(values: [Expr<'_>; 3]) -> [Expr<'_>; 3] {
     let [x, y, z] = values;
     let one = x.num(1.0);
-    let third = is_positive(z - x.extreme(Extreme::Max, y));
+    let third = is_positive(z - x.minimum_or_maximum(Extreme::Max, y));
     let second = is_positive(y - x) * (one - third);
     [one - second - third, second, third]
 }

@@ -3,7 +3,7 @@
 use super::surface::{Surface, SurfaceForm};
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Vec3};
-use crate::mechanism::drawing::{entries, rows};
+use crate::mechanism::drawing::{entries_by_row, entries_of_vectors};
 use crate::mechanism::{Piece, PieceKind, Role};
 use crate::resolve::builder::Builder;
 use crate::syntax::ExprKind;
@@ -13,7 +13,7 @@ impl<'g> Builder<'_, 'g> {
     /// terrains.
     pub fn draw_surfaces(&self, pieces: &mut Vec<Piece<'g>>) -> Vec<Expr<'g>> {
         let mut heights = Vec::new();
-        let mut silent = Diagnostics::unread();
+        let mut silent = Diagnostics::discarded_diagnostics();
         let before = pieces.len();
         let contacts = self.description.contacts.iter();
         let mut found: Vec<(&str, Surface<'g>)> = Vec::new();
@@ -26,7 +26,7 @@ impl<'g> Builder<'_, 'g> {
         for constraint in &self.description.constraints {
             if let ExprKind::Call(word, pair) = &constraint.value.kind
                 && word.id.is_some()
-                && word.id == constraint.kind.pair()
+                && word.id == constraint.kind.surface_pair_function()
             {
                 let surfaces = pair.iter().filter_map(|side| self.surface(side, "", &mut silent));
                 found.extend(surfaces.map(|surface| (constraint.name.text.as_str(), surface)));
@@ -49,10 +49,10 @@ impl<'g> Builder<'_, 'g> {
     /// Returns the edges of a hull as bars; its points if they depend on parameters.
     fn hull_pieces(&self, name: &str, Surface { frame, form }: &Surface<'g>) -> Vec<Piece<'g>> {
         let SurfaceForm::Hull(hull) = form else { return Vec::new() };
-        let Some((index, pose)) = self.anchor(frame.link, &frame.pose) else { return Vec::new() };
+        let Some((index, pose)) = self.anchor_of_pose(frame.link, &frame.pose) else { return Vec::new() };
         let position = |p: Vec3<'g>| pose.translation + pose.rotation.to_parent(p);
         let piece = |kind, frames, ends: &[Vec3<'g>]| {
-            let numbers = entries(&ends.iter().map(|p| position(*p)).collect::<Vec<_>>());
+            let numbers = entries_of_vectors(&ends.iter().map(|p| position(*p)).collect::<Vec<_>>());
             Piece { name: name.to_string(), role: Role::Surface, kind, frames, numbers }
         };
         match &hull.shape {
@@ -70,13 +70,15 @@ impl<'g> Builder<'_, 'g> {
         Surface { frame, form }: &Surface<'g>,
         heights: &mut Vec<Expr<'g>>,
     ) -> Option<Piece<'g>> {
-        let (index, pose) = self.anchor(frame.link, &frame.pose)?;
-        let at = entries(&[pose.translation]);
+        let (index, pose) = self.anchor_of_pose(frame.link, &frame.pose)?;
+        let at = entries_of_vectors(&[pose.translation]);
         let round = |axis, numbers: &[Expr<'g>]| {
-            [entries(&[pose.translation, pose.rotation.to_parent(axis)]), numbers.to_vec()].concat()
+            [entries_of_vectors(&[pose.translation, pose.rotation.to_parent(axis)]), numbers.to_vec()]
+                .concat()
         };
-        let along_axes =
-            |lengths: &[Expr<'g>; 3]| [at.clone(), rows(&pose.rotation.matrix()), lengths.to_vec()].concat();
+        let along_axes = |lengths: &[Expr<'g>; 3]| {
+            [at.clone(), entries_by_row(&pose.rotation.rotation_matrix()), lengths.to_vec()].concat()
+        };
         let (kind, numbers) = match form {
             SurfaceForm::Circle(r, n) => (PieceKind::Ring, round(*n, &[*r])),
             SurfaceForm::Torus(r, tube, n) => (PieceKind::Torus, round(*n, &[*r, *tube])),
@@ -96,7 +98,10 @@ impl<'g> Builder<'_, 'g> {
                 let known = heights.iter().position(|height| *height == terrain.height);
                 let number = known.unwrap_or(heights.len());
                 heights.extend(known.is_none().then_some(terrain.height));
-                (PieceKind::Terrain(number), [at.clone(), rows(&pose.rotation.matrix())].concat())
+                (
+                    PieceKind::Terrain(number),
+                    [at.clone(), entries_by_row(&pose.rotation.rotation_matrix())].concat(),
+                )
             }
             // A sheet is unbounded and has no axis of symmetry; a hull is drawn by its edges.
             SurfaceForm::Sheet(_) | SurfaceForm::Hull(_) => return None,

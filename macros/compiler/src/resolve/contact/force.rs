@@ -35,8 +35,8 @@ impl<'g> Scope<'_, 'g> {
         let kinematics = &self.kinematics;
         let moments = &kinematics.contact_loads.get(name)?.moments;
         if moments.is_empty() {
-            cx.error(call.arguments[0].place.clone(), format!("`{name}` has no moments of friction"))
-                .help("`torsional = …` and `rolling = …`, m, are moments per normal force");
+            cx.report_error(call.arguments[0].place.clone(), format!("`{name}` has no moments of friction"))
+                .add_help("`torsional = …` and `rolling = …`, m, are moments per normal force");
             return None;
         }
         Some(sum_by_axes(moments))
@@ -46,9 +46,9 @@ impl<'g> Scope<'_, 'g> {
     fn named_contact<'e>(&self, call: &Call<'e>, cx: &mut Diagnostics) -> Option<&'e str> {
         let kinematics = &self.kinematics;
         let contact_names = || kinematics.contact_loads.keys().map(String::as_str);
-        let [e] = call.take(cx)?;
-        let Some(name) = e.name() else {
-            cx.error(e.place.clone(), "expected a contact").suggest("", contact_names());
+        let [e] = call.take_arguments(cx)?;
+        let Some(name) = e.as_name() else {
+            cx.report_error(e.place.clone(), "expected a contact").suggest_name("", contact_names());
             return None;
         };
         if !self.check_allowed(Allowed::Reaction, "a force at a contact", call.place, cx) {
@@ -56,10 +56,10 @@ impl<'g> Scope<'_, 'g> {
         }
         if !kinematics.contact_loads.contains_key(name) {
             if self.is_first_report(name, cx) {
-                let error = cx.error(e.place.clone(), format!("unknown contact `{name}`"));
-                error.suggest(name, contact_names());
+                let error = cx.report_error(e.place.clone(), format!("unknown contact `{name}`"));
+                error.suggest_name(name, contact_names());
                 if error.is_bare() {
-                    error.help(
+                    error.add_help(
                         "name a field of type `Contact`; the forces of stops are among those of \
                          `contact::acting`",
                     );
@@ -104,7 +104,7 @@ pub(super) fn check_relative_rotation(
         checks.into_iter().filter(|(.., has_no_rotation)| *has_no_rotation && !contact.of_file)
     {
         let Some(e) = contact.arguments.get(key) else { continue };
-        cx.error(e.place.clone(), format!("no friction moment acts {about}"))
-            .help("`torsional` resists rotation about the normal, `rolling` rotation about the tangents");
+        cx.report_error(e.place.clone(), format!("no friction moment acts {about}"))
+            .add_help("`torsional` resists rotation about the normal, `rolling` rotation about the tangents");
     }
 }

@@ -1,7 +1,7 @@
 //! Functions of expressions that contacts of several surfaces use.
 
 use crate::expr::{Expr, Extreme, Function, Vec3};
-use crate::kinematics::perpendicular;
+use crate::kinematics::perpendicular_directions;
 
 /// Squared sine of the angle below which lines are treated as parallel.
 const PARALLEL: f64 = 1e-12;
@@ -11,7 +11,7 @@ pub(super) const FLAT_RIM: f64 = 1e-24;
 
 /// Returns one if `x` is positive, zero if it is negative.
 pub(super) fn is_positive(x: Expr<'_>) -> Expr<'_> {
-    (x.call(Function::Signum) + x.num(1.0)) * 0.5
+    (x.apply_function(Function::Signum) + x.num(1.0)) * 0.5
 }
 
 /// Returns the directions from the centre of a rim to its lowest point over a plane and to the points 90°,
@@ -22,7 +22,7 @@ pub(super) fn rim<'g>(
     normal: Vec3<'g>,
     rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
 ) -> [Vec3<'g>; 4] {
-    let [(_, fixed), _] = perpendicular(axis);
+    let [(_, fixed), _] = perpendicular_directions(axis);
     let (a, fixed) = (rotate(axis), rotate(fixed));
     let cosine = a.dot(normal);
     let down = a * cosine - normal + fixed * cosine.num(FLAT_RIM.sqrt());
@@ -34,7 +34,7 @@ pub(super) fn rim<'g>(
 
 /// Clamps `x` to the interval from `-limit` to `limit`.
 pub(super) fn clamp<'g>(x: Expr<'g>, limit: Expr<'g>) -> Expr<'g> {
-    x.extreme(Extreme::Max, -limit).extreme(Extreme::Min, limit)
+    x.minimum_or_maximum(Extreme::Max, -limit).minimum_or_maximum(Extreme::Min, limit)
 }
 
 /// Returns the closest points of two line segments, as signed distances from their centres along their unit
@@ -48,7 +48,7 @@ pub(super) fn nearest<'g>(
 ) -> (Expr<'g>, Expr<'g>) {
     let (cosine, first, second) = (own.dot(axis), own.dot(c), axis.dot(c));
     let one = cosine.num(1.0);
-    let across = (one - cosine * cosine).extreme(Extreme::Max, cosine.num(PARALLEL));
+    let across = (one - cosine * cosine).minimum_or_maximum(Extreme::Max, cosine.num(PARALLEL));
     let guess = clamp((cosine * second - first) / across, own_reach);
     let far = clamp(second + cosine * guess, reach);
     (clamp(cosine * far - first, own_reach), far)

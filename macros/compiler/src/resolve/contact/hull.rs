@@ -37,7 +37,7 @@ impl<'g> Builder<'_, 'g> {
             // The mesh could not be read; the error is reported.
             ExprKind::Text(_) => return None,
             _ => {
-                cx.error(place.clone(), "expected the points of a hull").help(EXAMPLE);
+                cx.report_error(place.clone(), "expected the points of a hull").add_help(EXAMPLE);
                 return None;
             }
         };
@@ -46,13 +46,14 @@ impl<'g> Builder<'_, 'g> {
             items.iter().map(|e| self.scope.in_context(context(), |s| s.own_vector(e, cx))).collect();
         let points: Vec<Vec3<'g>> = points.into_iter().collect::<Option<_>>()?;
         points.iter().flat_map(|p| p.0).for_each(|x| {
-            self.scope.require(Rule::Length, || "a point of a hull".to_string(), &[x]);
+            self.scope.record_requirement(Rule::Length, || "a point of a hull".to_string(), &[x]);
         });
         let too_many = |count: usize, cx: &mut Diagnostics| {
             let message = format!("a hull of {count} vertices, more than {MAX_VERTICES}");
-            cx.error(place.clone(), message).help("each vertex is a point of contact: write fewer");
+            cx.report_error(place.clone(), message)
+                .add_help("each vertex is a point of contact: write fewer");
         };
-        let numbers: Option<Vec<[f64; 3]>> = points.iter().map(|p| p.values()).collect();
+        let numbers: Option<Vec<[f64; 3]>> = points.iter().map(|p| p.constant_components()).collect();
         let hull = match numbers {
             // The coordinates depend on parameters, and so does which points are vertices.
             None if (4..=MAX_VERTICES).contains(&points.len()) => {
@@ -63,7 +64,8 @@ impl<'g> Builder<'_, 'g> {
                 return None;
             }
             None => {
-                cx.error(place.clone(), format!("a hull of {} points", points.len())).help(EXAMPLE);
+                cx.report_error(place.clone(), format!("a hull of {} points", points.len()))
+                    .add_help(EXAMPLE);
                 return None;
             }
             Some(numbers) => match Hull::new(&numbers, MAX_VERTICES) {
@@ -73,7 +75,7 @@ impl<'g> Builder<'_, 'g> {
                 }
                 Ok(shape) => {
                     let vertices =
-                        shape.vertices.iter().map(|p| Vec3::numbers(self.scope.graph, *p)).collect();
+                        shape.vertices.iter().map(|p| Vec3::from_numbers(self.scope.graph, *p)).collect();
                     ConvexHull { vertices, shape: Some(shape) }
                 }
                 Err(error) => {
@@ -82,7 +84,7 @@ impl<'g> Builder<'_, 'g> {
                         HullError::TooFew(count) => format!("a hull of {count} different points"),
                         HullError::Coplanar => "the points of this hull are in one plane".to_string(),
                     };
-                    cx.error(place.clone(), message).help(EXAMPLE);
+                    cx.report_error(place.clone(), message).add_help(EXAMPLE);
                     return None;
                 }
             },
@@ -102,19 +104,19 @@ pub(super) fn sphere_on_hull<'g>(
     let g = radius.graph();
     let p = Vec3(axes.map(|axis| axis.dot(c)));
     let planes: Vec<(Vec3<'g>, Expr<'g>)> =
-        hull.faces.iter().map(|face| (Vec3::numbers(g, face.normal), g.num(face.offset))).collect();
+        hull.faces.iter().map(|face| (Vec3::from_numbers(g, face.normal), g.num(face.offset))).collect();
     let (mut normal, mut height) = planes.first().map(|(n, offset)| (*n, n.dot(p) - *offset))?;
     for (n, offset) in &planes[1..] {
         let other = n.dot(p) - *offset;
         normal += (*n - normal) * is_positive(other - height);
-        height = height.extreme(Extreme::Max, other);
+        height = height.minimum_or_maximum(Extreme::Max, other);
     }
     let foot = p - normal * height;
     let outside = planes.iter().map(|(n, offset)| n.dot(foot) - *offset);
-    let outside = outside.reduce(|a, b| a.extreme(Extreme::Max, b))?;
+    let outside = outside.reduce(|a, b| a.minimum_or_maximum(Extreme::Max, b))?;
     let on_face = is_positive(g.num(ON_FACE * hull.size) - outside);
     let (offset, square) = offset_from_edges(hull, p)?;
-    let distance = square.extreme(Extreme::Max, g.num((ON_FACE * hull.size).powi(2))).sqrt();
+    let distance = square.minimum_or_maximum(Extreme::Max, g.num((ON_FACE * hull.size).powi(2))).sqrt();
     let from_edge = offset.map(|x| x / distance);
     let normal = from_edge + (normal - from_edge) * on_face;
     let normal = axes[0] * normal[0] + axes[1] * normal[1] + axes[2] * normal[2];
@@ -134,16 +136,16 @@ fn offset_from_edges<'g>(hull: &Hull, p: Vec3<'g>) -> Option<(Vec3<'g>, Expr<'g>
     for [from, to] in hull.edges.iter().map(|edge| edge.map(|k| hull.vertices[k])) {
         let along: [f64; 3] = std::array::from_fn(|k| to[k] - from[k]);
         let square = along.iter().map(|x| x * x).sum::<f64>();
-        let (along, offset) = (Vec3::numbers(g, along), p - Vec3::numbers(g, from));
+        let (along, offset) = (Vec3::from_numbers(g, along), p - Vec3::from_numbers(g, from));
         let t = along.dot(offset) * (1.0 / square);
-        let t = t.extreme(Extreme::Max, g.zero()).extreme(Extreme::Min, g.one());
+        let t = t.minimum_or_maximum(Extreme::Max, g.zero()).minimum_or_maximum(Extreme::Min, g.one());
         let offset = offset - along * t;
         let square = offset.dot(offset);
         nearest = Some(match nearest {
             None => (offset, square),
             Some((known, least)) => {
                 let is_nearer = is_positive(least - square);
-                (known + (offset - known) * is_nearer, least.extreme(Extreme::Min, square))
+                (known + (offset - known) * is_nearer, least.minimum_or_maximum(Extreme::Min, square))
             }
         });
     }

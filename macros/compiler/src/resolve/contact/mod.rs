@@ -29,7 +29,7 @@ use super::scope::Terms;
 use crate::diag::Diagnostics;
 use crate::expr::{Expr, Function, Vec3};
 use crate::kinematics::jet::{Moving, Relative};
-use crate::kinematics::{perpendicular, time_derivative};
+use crate::kinematics::{perpendicular_directions, time_derivative};
 use crate::language::Callable;
 use crate::mechanism::{Constraint, FrictionTerm, Measure};
 use crate::syntax::{self, ExprKind};
@@ -83,7 +83,12 @@ impl<'g> Builder<'_, 'g> {
         let [_, tangents @ ..] = contact.axes;
         for (word, e) in tangents {
             let name = format!("{}.{word}", constraint.name.text);
-            rows.push(self.row((name, &constraint.name.place), Measure::Length, None, e.dot(slip)));
+            rows.push(self.constraint_row(
+                (name, &constraint.name.place),
+                Measure::Length,
+                None,
+                e.dot(slip),
+            ));
         }
         let contact_point = Some(self.contact_position(&pair, contact.point));
         Some(ConstraintRows { rows, contact_point, ..ConstraintRows::default() })
@@ -103,13 +108,13 @@ impl<'g> Builder<'_, 'g> {
         // contact, their velocities change the distance as well.
         let rate = match contact.conditions.is_empty() {
             true => normal.dot(slip),
-            false => time_derivative(self.model.space(), contact.gap),
+            false => time_derivative(self.model.configuration_space(), contact.gap),
         };
         let name = |word| (format!("{}.{word}", constraint.name.text), place);
-        let distance = self.row(name(word), Measure::Length, Some(contact.gap), rate);
+        let distance = self.constraint_row(name(word), Measure::Length, Some(contact.gap), rate);
         let conditions = contact.conditions.iter().map(|(word, distance)| {
-            let rate = time_derivative(self.model.space(), *distance);
-            let row = self.row(name(word), Measure::Length, Some(*distance), rate);
+            let rate = time_derivative(self.model.configuration_space(), *distance);
+            let row = self.constraint_row(name(word), Measure::Length, Some(*distance), rate);
             Constraint { determines: true, ..row }
         });
         [Constraint { friction, ..distance }].into_iter().chain(conditions).collect()
@@ -118,7 +123,7 @@ impl<'g> Builder<'_, 'g> {
     /// Returns the position of a point given relative to the centre of the first surface.
     fn contact_position(&self, pair: &SurfacePair<'g>, point: Vec3<'g>) -> Terms<'g> {
         let frame = &pair.a.frame;
-        let mut place = self.scope.kinematics.position(frame.link, frame.pose.translation);
+        let mut place = self.scope.kinematics.position_of_point(frame.link, frame.pose.translation);
         place.push((pair.on_a.ancestor, point));
         place
     }
@@ -132,13 +137,13 @@ impl<'g> Builder<'_, 'g> {
     /// one that rolls.
     fn pair(&self, constraint: &syntax::Constraint, cx: &mut Diagnostics) -> Option<SurfacePair<'g>> {
         let e = &constraint.value;
-        let kind = constraint.kind.pair();
-        let known = kind.map_or("", Callable::verb);
+        let kind = constraint.kind.surface_pair_function();
+        let known = kind.map_or("", Callable::contact_verb);
         let example = format!("write `{known}(disk.circle(radius, y), ground.plane(z))`");
         let (first, second) = match &e.kind {
             ExprKind::Call(word, pair) if word.id == kind && pair.len() == 2 => (&pair[0], &pair[1]),
             _ => {
-                cx.error(e.place.clone(), format!("expected a pair that {known}")).help(example);
+                cx.report_error(e.place.clone(), format!("expected a pair that {known}")).add_help(example);
                 return None;
             }
         };
@@ -150,8 +155,8 @@ impl<'g> Builder<'_, 'g> {
         let b = self.surface(second, &example, cx);
         let pair = self.ordered_pair(a?, b?, SurfaceForm::rolls_on, second, cx)?;
         if !pair.a.form.rolls_on(&pair.b.form) {
-            cx.error(e.place.clone(), "the contact point of these surfaces is not supported")
-                .help(SUPPORTED_PAIRS);
+            cx.report_error(e.place.clone(), "the contact point of these surfaces is not supported")
+                .add_help(SUPPORTED_PAIRS);
             return None;
         }
         Some(pair)
@@ -167,28 +172,30 @@ impl<'g> Builder<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<SurfacePair<'g>> {
         if a.frame.link == b.frame.link {
-            cx.error(second.place.clone(), "these two surfaces do not move relative to each other")
-                .help("a contact is between surfaces of bodies that move relative to each other");
+            cx.report_error(second.place.clone(), "these two surfaces do not move relative to each other")
+                .add_help("a contact is between surfaces of bodies that move relative to each other");
             return None;
         }
         if !is_known(&a.form, &b.form) {
             std::mem::swap(&mut a, &mut b);
         }
-        let (on_a, on_b) =
-            (self.relative(a.frame.link, b.frame.link), self.relative(b.frame.link, a.frame.link));
-        let center = self.point(&on_a, a.frame.pose.translation);
-        let base = self.point(&on_b, b.frame.pose.translation);
+        let (on_a, on_b) = (
+            self.relative_motion(a.frame.link, b.frame.link),
+            self.relative_motion(b.frame.link, a.frame.link),
+        );
+        let center = self.motion_of_point(&on_a, a.frame.pose.translation);
+        let base = self.motion_of_point(&on_b, b.frame.pose.translation);
         Some(SurfacePair { a, b, on_a, on_b, center, base })
     }
 
     /// Returns a direction of the first body, with its rate, in the common axes.
     fn first_direction(&self, pair: &SurfacePair<'g>, v: Vec3<'g>) -> Moving<'g> {
-        self.direction(&pair.on_a, pair.a.frame.pose.rotation.to_parent(v))
+        self.motion_of_direction(&pair.on_a, pair.a.frame.pose.rotation.to_parent(v))
     }
 
     /// Returns a direction of the second body, with its rate, in the common axes.
     fn second_direction(&self, pair: &SurfacePair<'g>, v: Vec3<'g>) -> Moving<'g> {
-        self.direction(&pair.on_b, pair.b.frame.pose.rotation.to_parent(v))
+        self.motion_of_direction(&pair.on_b, pair.b.frame.pose.rotation.to_parent(v))
     }
 
     /// Returns the velocity of the first body relative to the second at a point given relative to the centre
@@ -213,7 +220,8 @@ impl<'g> Builder<'_, 'g> {
         match (&pair.a.form, &pair.b.form) {
             (_, SurfaceForm::Sheet(sheet)) => self.contact_point(pair, sheet),
             (a, SurfaceForm::Plane(n)) => {
-                let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, rotate_b(e)));
+                let [(first, e1), (second, e2)] =
+                    perpendicular_directions(*n).map(|(word, e)| (word, rotate_b(e)));
                 let normal = rotate_b(*n);
                 let point = -support_point(a, normal, 0.0, &rotate_a)?;
                 let gap = normal.dot(c + point);
@@ -303,7 +311,7 @@ fn support_point<'g>(
         SurfaceForm::Sphere(r) => n * *r,
         SurfaceForm::Ellipsoid(half) => {
             let g = n[0].graph();
-            let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| rotate(Vec3::axis(g, k)));
+            let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| rotate(Vec3::coordinate_axis(g, k)));
             let parts: [Expr<'g>; 3] = std::array::from_fn(|k| half[k] * axes[k].dot(n));
             let size = Vec3(parts).norm();
             (0..3).fold(Vec3::zero(g), |sum, k| sum + axes[k] * (half[k] * parts[k] / size))
@@ -316,7 +324,7 @@ fn support_point<'g>(
 /// revisited*, 2017).
 fn tangents_of(n: Vec3<'_>) -> (Vec3<'_>, Vec3<'_>) {
     let [x, y, z] = n.0;
-    let sign = z.call(Function::Signum);
+    let sign = z.apply_function(Function::Signum);
     let a = -((sign + z).num(1.0) / (sign + z));
     let b = x * y * a;
     let one = z.num(1.0);

@@ -21,7 +21,7 @@ impl<'g> Builder<'_, 'g> {
         let found = (self.pair(constraint, cx), self.friction(constraint, cx));
         let (Some(pair), Some((coefficient, speed))) = found else { return None };
         let Some(contact) = self.contact(&pair) else {
-            cx.error(constraint.value.place.clone(), "these surfaces touch along a line").help(
+            cx.report_error(constraint.value.place.clone(), "these surfaces touch along a line").add_help(
                 "the point on it where friction acts is not determined: use a surface that touches at a \
                  point",
             );
@@ -47,29 +47,36 @@ impl<'g> Builder<'_, 'g> {
     ) -> Option<(Expr<'g>, Expr<'g>)> {
         let written = constraint.arguments.get(Key::Friction)?;
         let ground = Some((None, Pose::identity(self.scope.graph)));
-        let coefficient =
-            self.scope.in_context(Context::new(Allowed::Placement, ground), |s| s.scalar(written, cx))?;
-        if let Some(n) = coefficient.value().filter(|n| *n < 0.0) {
-            cx.error(
+        let coefficient = self
+            .scope
+            .in_context(Context::new(Allowed::Placement, ground), |s| s.resolve_scalar(written, cx))?;
+        if let Some(n) = coefficient.constant_value().filter(|n| *n < 0.0) {
+            cx.report_error(
                 written.place.clone(),
                 format!("a coefficient of friction cannot be negative, but it is {n}"),
             )
-            .help("friction opposes the motion by definition: give its magnitude");
+            .add_help("friction opposes the motion by definition: give its magnitude");
         }
         let name = &constraint.name.text;
-        self.scope.require(Rule::NotNegative, || format!("the friction of `{name}`"), &[coefficient]);
+        self.scope.record_requirement(
+            Rule::NotNegative,
+            || format!("the friction of `{name}`"),
+            &[coefficient],
+        );
         let Some(written) = constraint.arguments.get(Key::Speed) else {
             return Some((coefficient, self.model.friction_speed));
         };
-        let speed =
-            self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(written, cx))?;
-        if let Some(n) = speed.value().filter(|n| *n <= 0.0) {
-            cx.error(written.place.clone(), format!("this speed must be positive, but it is {n}")).help(
+        let speed = self
+            .scope
+            .in_context(Context::new(Allowed::Constant, None), |s| s.resolve_scalar(written, cx))?;
+        if let Some(n) = speed.constant_value().filter(|n| *n <= 0.0) {
+            let message = format!("this speed must be positive, but it is {n}");
+            cx.report_error(written.place.clone(), message).add_help(
                 "Coulomb's law is smoothed below this speed; a smaller value makes the equations stiffer at \
                  rest",
             );
         }
-        self.scope.require(Rule::Positive, || format!("the speed of `{name}`"), &[speed]);
+        self.scope.record_requirement(Rule::Positive, || format!("the speed of `{name}`"), &[speed]);
         Some((coefficient, speed))
     }
 }
@@ -78,7 +85,11 @@ impl<'g> Builder<'_, 'g> {
 /// undetermined.
 pub fn check_pressed(rows: &[Constraint<'_>], redundant: &[String], cx: &mut Diagnostics) {
     for row in rows.iter().filter(|c| !c.friction.is_empty() && redundant.contains(&c.name)) {
-        cx.error(row.place.clone(), "the normal force of this contact is not determined by the motion").help(
+        cx.report_error(
+            row.place.clone(),
+            "the normal force of this contact is not determined by the motion",
+        )
+        .add_help(
             "other constraints already determine the distance of these bodies; friction needs the normal \
              force",
         );

@@ -36,14 +36,15 @@ impl<'g> Builder<'_, 'g> {
     ) -> Option<CompliantContact<'g>> {
         let g = self.scope.graph;
         let mut read = |e: &syntax::Expr, what: &str, rule: Rule| {
-            let value = self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(e, cx))?;
+            let value =
+                self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.resolve_scalar(e, cx))?;
             let positive = rule == Rule::Positive;
-            if let Some(n) = value.value().filter(|n| *n < 0.0 || positive && *n == 0.0) {
+            if let Some(n) = value.constant_value().filter(|n| *n < 0.0 || positive && *n == 0.0) {
                 let must = if positive { "must be positive" } else { "cannot be negative" };
-                cx.error(e.place.clone(), format!("the {what} of a contact {must}, but it is {n}"));
+                cx.report_error(e.place.clone(), format!("the {what} of a contact {must}, but it is {n}"));
                 return None;
             }
-            self.scope.require(rule, || format!("the {what} of a contact"), &[value]);
+            self.scope.record_requirement(rule, || format!("the {what} of a contact"), &[value]);
             Some(value)
         };
         let (linear, hertz) = (given.get(Key::Stiffness), given.get(Key::Hertz));
@@ -73,14 +74,14 @@ impl<'g> Builder<'_, 'g> {
         exerted: &mut ContactLoads<'g>,
     ) -> Forces<'g> {
         let g = self.scope.graph;
-        let overlap = (-point.gap).extreme(Extreme::Max, g.zero());
+        let overlap = (-point.gap).minimum_or_maximum(Extreme::Max, g.zero());
         let root = if soft.hertz { (overlap + g.num(ROOT_OFFSET)).sqrt() } else { g.num(1.0) };
         let elastic = soft.stiffness * overlap * root;
         let energy = elastic * overlap * g.num(if soft.hertz { 0.4 } else { 0.5 });
         let mut forces = Forces::of_potentials([energy]);
         let [(normal, rate), tangents @ ..] = point.rates;
         // Surfaces do not pull at each other.
-        let damping = (-(elastic * soft.dissipation * rate)).extreme(Extreme::Max, -elastic);
+        let damping = (-(elastic * soft.dissipation * rate)).minimum_or_maximum(Extreme::Max, -elastic);
         let pressure = elastic + damping;
         if !soft.dissipation.is_zero() {
             forces.loads.push(Load { rate, force: damping, dissipative: true });

@@ -20,8 +20,8 @@ impl<'g> Builder<'_, 'g> {
         let g = self.scope.graph;
         let bound_value = |e: &syntax::Expr| match turns && e.place.file.is_none() {
             // Errors are reported by the pass that reads the limit.
-            true => self.scope.plane_angle(e, &mut Diagnostics::unread()),
-            false => self.scope.scalar(e, &mut Diagnostics::unread()),
+            true => self.scope.plane_angle(e, &mut Diagnostics::discarded_diagnostics()),
+            false => self.scope.resolve_scalar(e, &mut Diagnostics::discarded_diagnostics()),
         };
         let bounds = [(Key::From, 1.0), (Key::To, -1.0)]
             .map(|(key, side)| Some((key, bound_value(limit.arguments.get(key)?)?, side)));
@@ -45,17 +45,17 @@ impl<'g> Builder<'_, 'g> {
     fn stop_value(&self, limit: &syntax::Limit, cx: &mut Diagnostics) -> Option<(Expr<'g>, Expr<'g>, bool)> {
         let g = self.scope.graph;
         if !self.scope.is_moving(&limit.on) {
-            let (c, angle) = self.coordinate(&limit.on, cx)?;
+            let (c, angle) = self.resolve_limited_coordinate(&limit.on, cx)?;
             let (q, v) = (c.q.expr(g), c.v.expr(g));
             let ratio = g.num(c.ratio);
             return Some((q * ratio + g.num(c.offset), v * ratio, angle == Some(true)));
         }
-        let value = self
-            .scope
-            .in_context(Context::new(Allowed::Placement, None), |scope| scope.scalar(&limit.on, cx))?;
-        let rate = time_derivative(self.model.space(), value);
+        let value = self.scope.in_context(Context::new(Allowed::Placement, None), |scope| {
+            scope.resolve_scalar(&limit.on, cx)
+        })?;
+        let rate = time_derivative(self.model.configuration_space(), value);
         if velocity_gradient(rate).is_empty() {
-            cx.error(limit.on.place.clone(), "the limited quantity is constant").help(
+            cx.report_error(limit.on.place.clone(), "the limited quantity is constant").add_help(
                 "a limit bounds an expression of coordinates, such as a distance `norm(r(ball / anchor))`",
             );
             return None;

@@ -106,32 +106,36 @@ impl<'g> Builder<'_, 'g> {
     /// Parses `body.form(arguments)`; `example` is the syntax of a pair, for errors.
     pub fn surface(&self, e: &syntax::Expr, example: &str, cx: &mut Diagnostics) -> Option<Surface<'g>> {
         let ExprKind::Method(base, word, arguments) = &e.kind else {
-            let error = cx.error(e.place.clone(), "expected a surface");
-            match e.name() {
-                Some(GROUND) => error.help("write `ground.plane(z)`"),
+            let error = cx.report_error(e.place.clone(), "expected a surface");
+            match e.as_name() {
+                Some(GROUND) => error.add_help("write `ground.plane(z)`"),
                 Some(name) => {
-                    error.help(format!("write `{name}.circle(radius, y)`, `{name}.sphere(radius)`, …"))
+                    error.add_help(format!("write `{name}.circle(radius, y)`, `{name}.sphere(radius)`, …"))
                 }
-                None => error.help(example),
+                None => error.add_help(example),
             };
             return None;
         };
         let Some(Method::Surface(id)) = word.id else {
-            let error = cx.error(word.place.clone(), format!("unknown surface `{}`", word.text));
-            error.suggest(&word.text, SurfaceId::names());
+            let error = cx.report_error(word.place.clone(), format!("unknown surface `{}`", word.text));
+            error.suggest_name(&word.text, SurfaceId::names());
             if error.is_bare() {
                 let mut list: Vec<String> = SurfaceId::names().map(|word| format!("`{word}`")).collect();
                 list.dedup();
-                error.help(format!("the surfaces are {}", all_of(&list)));
+                error.add_help(format!("the surfaces are {}", all_of(&list)));
             }
             return None;
         };
         let row = id.row();
-        let frame = self.scope.place(base, cx);
+        let frame = self.scope.resolve_placement(base, cx);
         if arguments.len() != row.arguments.len() {
-            let usage = format!("this surface is written `{}({})`", row.name, Argument::list(row.arguments));
-            cx.error(word.place.clone(), usage)
-                .help("lengths are in m, angles in rad, axes in those of the body");
+            let usage = format!(
+                "this surface is written `{}({})`",
+                row.name,
+                Argument::list_argument_names(row.arguments)
+            );
+            cx.report_error(word.place.clone(), usage)
+                .add_help("lengths are in m, angles in rad, axes in those of the body");
             return None;
         }
         match (id, arguments.as_slice()) {
@@ -154,14 +158,14 @@ impl<'g> Builder<'_, 'g> {
                 axis = Some(self.scope.in_context(context, |s| s.unit_vector(e, false, cx))?);
                 continue;
             }
-            let value = self.scope.in_context(context, |s| s.scalar(e, cx))?;
+            let value = self.scope.in_context(context, |s| s.resolve_scalar(e, cx))?;
             let is_angle = *kind == ArgumentKind::HalfAngle;
             if !check_size(is_angle, e, value, cx) {
                 return None;
             }
             let rule = if is_angle { Rule::HalfAngle } else { Rule::Positive };
             let quantity = || format!("the {} of a {}", name.replace('_', " "), row.name);
-            self.scope.require(rule, quantity, &[value]);
+            self.scope.record_requirement(rule, quantity, &[value]);
             numbers.push(value);
         }
         Some(Surface {
@@ -195,16 +199,16 @@ fn form<'g>(id: SurfaceId, numbers: &[Expr<'g>], n: Vec3<'g>) -> Option<SurfaceF
 
 /// Reports a length that is not positive, and a half angle that is not between 0 and π/2. Returns false then.
 fn check_size(is_angle: bool, e: &syntax::Expr, value: Expr<'_>, cx: &mut Diagnostics) -> bool {
-    let Some(n) = value.value() else { return true };
+    let Some(n) = value.constant_value() else { return true };
     if is_angle {
         if n <= 0.0 || n >= FRAC_PI_2 {
-            cx.error(e.place.clone(), format!("this half angle is not between 0 and π/2: it is {n}"))
-                .help("it is the angle between the axis and the surface, rad");
+            cx.report_error(e.place.clone(), format!("this half angle is not between 0 and π/2: it is {n}"))
+                .add_help("it is the angle between the axis and the surface, rad");
             return false;
         }
     } else if n <= 0.0 {
-        cx.error(e.place.clone(), format!("this length must be positive, but it is {n}"))
-            .help("lengths are positive: the kind of the surface determines its side");
+        cx.report_error(e.place.clone(), format!("this length must be positive, but it is {n}"))
+            .add_help("lengths are positive: the kind of the surface determines its side");
         return false;
     }
     true

@@ -45,9 +45,9 @@ impl<'g> Builder<'_, 'g> {
         let [u, w] = TERRAIN_COORDINATES;
         let locals = vec![(u, g.symbol(symbols[0])), (w, g.symbol(symbols[1]))];
         let context = Context::new(Allowed::Constant, None).with_locals(locals);
-        let height_of = self.scope.in_context(context, |s| s.scalar(height, cx))?;
+        let height_of = self.scope.in_context(context, |s| s.resolve_scalar(height, cx))?;
         if !symbols_in(&[height_of]).into_iter().any(|s| symbols.contains(&s)) {
-            cx.error(height.place.clone(), "this height is constant").help(
+            cx.report_error(height.place.clone(), "this height is constant").add_help(
                 "write it as a function of `u` and `w`, the positions along the body's x and y axes, as in \
                  `0.1 * sin(3 * u)`; level ground is a `plane`",
             );
@@ -101,7 +101,7 @@ impl<'g> Terrain<'g> {
         if radius.is_zero() {
             return NearestPoint { normal: below.normal(), distance: above / below.normal_length() };
         }
-        let near = above.extreme(Extreme::Min, radius * below.normal_length() * NEAR_RATIO);
+        let near = above.minimum_or_maximum(Extreme::Min, radius * below.normal_length() * NEAR_RATIO);
         let z = below.height + near;
         let mut place = [c[0], c[1]];
         for _ in 0..NEWTON_STEPS {

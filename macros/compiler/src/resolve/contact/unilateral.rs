@@ -6,7 +6,7 @@ use super::geometry::{FLAT_RIM, clamp, nearest, rim};
 use super::hull::sphere_on_hull;
 use super::surface::{Surface, SurfaceForm};
 use super::terrain::Terrain;
-use super::{PointContact, SurfacePair, perpendicular, sphere_contact, support_point};
+use super::{PointContact, SurfacePair, perpendicular_directions, sphere_contact, support_point};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::{Expr, Vec3};
 use crate::kinematics::{motion_rates, velocity_gradient};
@@ -17,7 +17,7 @@ use crate::resolve::element_forces::Forces;
 use crate::resolve::motion::Moving;
 use crate::resolve::power::is_power_used;
 use crate::resolve::scope::{Allowed, ContactLoads, Context, Terms};
-use crate::syntax::contact::{MAX_CONTACT_POINTS, collision};
+use crate::syntax::contact::{MAX_CONTACT_POINTS, collision_link};
 use crate::syntax::{self, ExprKind, GROUND, WrittenArguments};
 
 const SUPPORTED_PAIRS: &str = "supported are points, spheres, circles, tori, ellipsoids, capsules, cuboids, \
@@ -74,8 +74,11 @@ impl<'g> Builder<'_, 'g> {
         let count = self.model.contacts.len();
         if count > MAX_CONTACT_POINTS {
             let place = description.contacts.first().map_or(&description.name.place, |c| &c.name.place);
-            cx.error(place.clone(), format!("{count} points of contact, more than {MAX_CONTACT_POINTS}"))
-                .help("each adds code: use fewer contact points, or divide the mechanism");
+            cx.report_error(
+                place.clone(),
+                format!("{count} points of contact, more than {MAX_CONTACT_POINTS}"),
+            )
+            .add_help("each adds code: use fewer contact points, or divide the mechanism");
         }
     }
 
@@ -94,8 +97,8 @@ impl<'g> Builder<'_, 'g> {
         if let Some(None) = soft {
             return;
         }
-        let place = contact.first.place.join(&contact.second.place);
-        let whole = [&contact.first, &contact.second].iter().any(|e| matches!(collision(e), Some(None)));
+        let place = contact.first.place.extend_to(&contact.second.place);
+        let whole = [&contact.first, &contact.second].iter().any(|e| matches!(collision_link(e), Some(None)));
         let mut points: Vec<CandidatePoint<'g>> = Vec::new();
         for first in &firsts {
             for second in &seconds {
@@ -115,8 +118,8 @@ impl<'g> Builder<'_, 'g> {
             return;
         }
         if separable.is_empty() || (separable.len() < points.len() && !whole && !contact.of_file) {
-            cx.error(place, "these surfaces cannot move relative to each other")
-                .help("a contact is between surfaces of bodies that move relative to each other");
+            cx.report_error(place, "these surfaces cannot move relative to each other")
+                .add_help("a contact is between surfaces of bodies that move relative to each other");
             return;
         }
         check_relative_rotation(contact, &separable, cx);
@@ -162,7 +165,8 @@ impl<'g> Builder<'_, 'g> {
             cx,
         )?;
         // Equals the velocity from the twists of links, with fewer terms to differentiate.
-        let [x, y, z] = motion_rates(self.model.space(), &pair.center.value.0, false)[..] else {
+        let [x, y, z] = motion_rates(self.model.configuration_space(), &pair.center.value.0, false)[..]
+        else {
             return None;
         };
         pair.center.rate = Vec3([x, y, z]);
@@ -176,7 +180,8 @@ impl<'g> Builder<'_, 'g> {
                 true => format!("{CYLINDER_HELP}; {SUPPORTED_PAIRS}"),
                 false => SUPPORTED_PAIRS.to_string(),
             };
-            cx.error(place.clone(), "the contact point of these surfaces is not supported").help(help);
+            cx.report_error(place.clone(), "the contact point of these surfaces is not supported")
+                .add_help(help);
             return None;
         }
         let side = self.scope.graph.num(if pair.a.frame.link == first_link { 1.0 } else { -1.0 });
@@ -272,13 +277,13 @@ impl<'g> Builder<'_, 'g> {
         let restitution = self.restitution(given, name, cx);
         let (friction, stiction) = (friction?, stiction?);
         if let Some(e) = given.get(Key::StaticFriction).filter(|_| given.get(Key::Friction).is_some()) {
-            match (friction.value(), stiction.value()) {
+            match (friction.constant_value(), stiction.constant_value()) {
                 (Some(kinetic), Some(static_value)) if static_value < kinetic || kinetic == 0.0 => {
                     let message = match kinetic == 0.0 {
                         true => format!("`{name}` has stiction, but no sliding friction"),
                         false => format!("stiction, {static_value}, is less than friction, {kinetic}"),
                     };
-                    cx.error(e.place.clone(), message).help(
+                    cx.report_error(e.place.clone(), message).add_help(
                         "`friction` is the coefficient while surfaces slide, `stiction` the larger one at \
                          rest",
                     );
@@ -286,7 +291,7 @@ impl<'g> Builder<'_, 'g> {
                 }
                 _ => {
                     let quantity = || format!("the friction of `{name}` and its stiction");
-                    self.scope.require(Rule::Order, quantity, &[friction, stiction]);
+                    self.scope.record_requirement(Rule::Order, quantity, &[friction, stiction]);
                 }
             }
         }
@@ -307,7 +312,7 @@ impl<'g> Builder<'_, 'g> {
         name: &str,
         cx: &mut Diagnostics,
     ) -> (Option<Expr<'g>>, bool) {
-        let (e, of_impulses) = given.get(Key::Restitution).map(syntax::restitution).unzip();
+        let (e, of_impulses) = given.get(Key::Restitution).map(syntax::restitution_coefficient).unzip();
         let value = self.coefficient(e, "restitution", Rule::Fraction, name, cx);
         (value, of_impulses == Some(true))
     }
@@ -322,22 +327,22 @@ impl<'g> Builder<'_, 'g> {
         cx: &mut Diagnostics,
     ) -> Option<Expr<'g>> {
         let Some(e) = e else { return Some(self.scope.graph.zero()) };
-        let value = self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.scalar(e, cx))?;
+        let value =
+            self.scope.in_context(Context::new(Allowed::Constant, None), |s| s.resolve_scalar(e, cx))?;
         let maximum = if rule == Rule::Fraction { 1.0 } else { f64::INFINITY };
-        if let Some(n) = value.value().filter(|n| !(0.0..=maximum).contains(n)) {
+        if let Some(n) = value.constant_value().filter(|n| !(0.0..=maximum).contains(n)) {
             let range = if maximum < 2.0 { "must be between 0 and 1" } else { "cannot be negative" };
-            cx.error(e.place.clone(), format!("a coefficient of {what} {range}, but it is {n}")).help(
-                match maximum < 2.0 {
+            cx.report_error(e.place.clone(), format!("a coefficient of {what} {range}, but it is {n}"))
+                .add_help(match maximum < 2.0 {
                     true => {
                         "the ratio of the speeds after and before the impact: 0 without rebound, 1 without \
                          loss of energy"
                     }
                     false => "it opposes the motion by definition: give its magnitude",
-                },
-            );
+                });
             return None;
         }
-        self.scope.require(rule, || format!("the {what} of `{name}`"), &[value]);
+        self.scope.record_requirement(rule, || format!("the {what} of `{name}`"), &[value]);
         Some(value)
     }
 
@@ -348,7 +353,7 @@ impl<'g> Builder<'_, 'g> {
         e: &syntax::Expr,
         cx: &mut Diagnostics,
     ) -> Option<Vec<Surface<'g>>> {
-        if let Some(link) = collision(e) {
+        if let Some(link) = collision_link(e) {
             return self.collisions(e, link, cx);
         }
         let is_place = match &e.kind {
@@ -357,7 +362,10 @@ impl<'g> Builder<'_, 'g> {
             _ => false,
         };
         if is_place {
-            return Some(vec![Surface { frame: self.scope.place(e, cx)?, form: SurfaceForm::Point }]);
+            return Some(vec![Surface {
+                frame: self.scope.resolve_placement(e, cx)?,
+                form: SurfaceForm::Point,
+            }]);
         }
         Some(vec![self.surface(e, &format!("write `{}`", OtherKind::Contact.row().example), cx)?])
     }
@@ -375,14 +383,14 @@ impl<'g> Builder<'_, 'g> {
             return self.box_contacts(pair, lengths, c);
         }
         if let (SurfaceForm::Sphere(radius), SurfaceForm::Hull(hull)) = (&pair.a.form, &pair.b.form) {
-            let axes = std::array::from_fn(|k| rotate_b(Vec3::axis(g, k)));
+            let axes = std::array::from_fn(|k| rotate_b(Vec3::coordinate_axis(g, k)));
             let contact = hull.shape.as_ref().and_then(|hull| sphere_on_hull(*radius, hull, c, &axes));
             return contact.into_iter().collect();
         }
         let SurfaceForm::Plane(n) = &pair.b.form else {
             return self.curved_contacts(pair, c, &rotate_b);
         };
-        let [(first, e1), (second, e2)] = perpendicular(*n).map(|(word, e)| (word, rotate_b(e)));
+        let [(first, e1), (second, e2)] = perpendicular_directions(*n).map(|(word, e)| (word, rotate_b(e)));
         let normal = rotate_b(*n);
         let touch = |point: Vec3<'g>| PointContact {
             gap: normal.dot(c + point),
@@ -433,7 +441,7 @@ impl<'g> Builder<'_, 'g> {
             }
             _ => return Vec::new(),
         };
-        let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| rotate_b(Vec3::axis(g, k)));
+        let axes: [Vec3<'g>; 3] = std::array::from_fn(|k| rotate_b(Vec3::coordinate_axis(g, k)));
         let touches = places.into_iter().map(|place| {
             let touch = terrain.contact(radius, Vec3(axes.map(|axis| axis.dot(c + place))), rotate_b);
             PointContact { point: touch.point + place, ..touch }

@@ -9,7 +9,7 @@ use crate::resolve::terms::ActedOn;
 use crate::syntax::{Action, Key};
 
 /// Returns the force of a dashpot. A linear dashpot on a coordinate is stored separately in the model.
-pub fn dashpot<'g>(
+pub fn dashpot_force<'g>(
     b: &Builder<'_, 'g>,
     action: &Action,
     on: ActedOn<'g>,
@@ -17,23 +17,27 @@ pub fn dashpot<'g>(
 ) -> Option<Forces<'g>> {
     let damping = action.get(Key::Damping);
     if let (Some(written), Some(on)) = (damping, on.coordinate) {
-        let damping = b.scope.scalar(written, cx)?;
-        if let Some(d) = damping.value().filter(|d| *d < 0.0) {
-            cx.error(written.place.clone(), format!("a damping cannot be negative, but it is {d}"))
-                .help("a dashpot dissipates energy; an element that supplies energy is a `Force` or `Torque` with `value = …`");
+        let damping = b.scope.resolve_scalar(written, cx)?;
+        if let Some(d) = damping.constant_value().filter(|d| *d < 0.0) {
+            cx.report_error(written.place.clone(), format!("a damping cannot be negative, but it is {d}"))
+                .add_help("a dashpot dissipates energy; an element that supplies energy is a `Force` or `Torque` with `value = …`");
         }
-        b.scope.require(Rule::NotNegative, || format!("the damping of `{}`", action.name.text), &[damping]);
+        b.scope.record_requirement(
+            Rule::NotNegative,
+            || format!("the damping of `{}`", action.name.text),
+            &[damping],
+        );
         return Some(Forces { dashpots: vec![Dashpot { on, damping }], ..Forces::default() });
     }
     let rate = b.stretch_on(on)?.rate;
     let force = match damping {
-        Some(damping) => b.scope.scalar(damping, cx)? * rate,
+        Some(damping) => b.scope.resolve_scalar(damping, cx)? * rate,
         None => {
             let ground = Some((None, Pose::identity(b.scope.graph)));
             let context = Context::new(Allowed::Motion, ground).with_locals(vec![("speed", rate)]);
             let written = action.get(Key::Force)?;
-            b.scope.in_context(context, |scope| scope.scalar(written, cx))?
+            b.scope.in_context(context, |scope| scope.resolve_scalar(written, cx))?
         }
     };
-    Some(Forces::resisting(rate, force))
+    Some(Forces::resisting_force(rate, force))
 }

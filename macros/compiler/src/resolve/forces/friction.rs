@@ -12,14 +12,14 @@ use crate::syntax::{self, Action, Key};
 const FRICTION_SPEED: f64 = 0.01;
 
 /// Returns the force of a friction element.
-pub fn friction<'g>(
+pub fn friction_force<'g>(
     b: &Builder<'_, 'g>,
     action: &Action,
     on: ActedOn<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     let all = [Key::Coulomb, Key::Stiction, Key::StribeckSpeed, Key::Viscous, Key::Speed];
-    dry_friction(b, b.stretch_on(on)?.rate, all.map(|key| action.get(key)), action.on.place(), cx)
+    dry_friction(b, b.stretch_on(on)?.rate, all.map(|key| action.get(key)), action.on.source_position(), cx)
 }
 
 /// Returns dry friction with breakaway (Stribeck), regularised with a hyperbolic tangent, and viscous
@@ -33,7 +33,7 @@ pub fn dry_friction<'g>(
 ) -> Option<Forces<'g>> {
     let g = b.scope.graph;
     let mut value = |e: Option<&syntax::Expr>, default: f64| match e {
-        Some(e) => b.scope.scalar(e, cx),
+        Some(e) => b.scope.resolve_scalar(e, cx),
         None => Some(g.num(default)),
     };
     let (fc, c, v0) = (value(coulomb, 0.0), value(viscous, 0.0), value(speed, FRICTION_SPEED));
@@ -41,12 +41,12 @@ pub fn dry_friction<'g>(
     let mut check = |written: Option<&syntax::Expr>, found: Option<Expr<'g>>, positive: bool, what: &str| {
         if let Some(found) = found {
             let rule = if positive { Rule::Positive } else { Rule::NotNegative };
-            b.scope.require(rule, || format!("a {what} of dry friction"), &[found]);
+            b.scope.record_requirement(rule, || format!("a {what} of dry friction"), &[found]);
         }
-        let (Some(written), Some(n)) = (written, found.and_then(|e| e.value())) else { return };
+        let (Some(written), Some(n)) = (written, found.and_then(|e| e.constant_value())) else { return };
         if n < 0.0 || positive && n == 0.0 {
             let must = if positive { "must be positive" } else { "cannot be negative" };
-            cx.error(written.place.clone(), format!("this {what} {must}, but it is {n}"));
+            cx.report_error(written.place.clone(), format!("this {what} {must}, but it is {n}"));
         }
     };
     for (written, found) in [(coulomb, fc), (stiction, fs.flatten()), (viscous, c)] {
@@ -58,14 +58,16 @@ pub fn dry_friction<'g>(
     let (Some(fc), Some(c), Some(v0)) = (fc, c, v0) else { return None };
     let dry = match (fs, vs) {
         (None, None) => fc,
-        (Some(Some(fs)), Some(Some(vs))) => fc + (fs - fc) * (-(v / vs).square()).call(Function::Exp),
+        (Some(Some(fs)), Some(Some(vs))) => {
+            fc + (fs - fc) * (-(v / vs).square()).apply_function(Function::Exp)
+        }
         (Some(None), _) | (_, Some(None)) => return None,
         _ => {
-            cx.error(place.clone(), "`stiction` and `stribeck_speed` must be given together")
-                .help("the force falls from `stiction` to `coulomb` at about `stribeck_speed`");
+            cx.report_error(place.clone(), "`stiction` and `stribeck_speed` must be given together")
+                .add_help("the force falls from `stiction` to `coulomb` at about `stribeck_speed`");
             return None;
         }
     };
-    let force = dry * (v / v0).call(Function::Tanh) + c * v;
-    Some(Forces::resisting(v, force))
+    let force = dry * (v / v0).apply_function(Function::Tanh) + c * v;
+    Some(Forces::resisting_force(v, force))
 }

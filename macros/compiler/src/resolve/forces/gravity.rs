@@ -8,34 +8,42 @@ use crate::resolve::terms::{ActedOn, Stretch};
 use crate::syntax::{self, Action, ExprKind, Key, Target};
 
 /// Returns the force of an attraction between two points.
-pub fn attraction<'g>(
+pub fn attraction_force<'g>(
     b: &Builder<'_, 'g>,
     action: &Action,
     on: ActedOn<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     let stretch = b.stretch_on(on)?;
-    let strength = b.scope.scalar(action.get(Key::Strength)?, cx)?;
+    let strength = b.scope.resolve_scalar(action.get(Key::Strength)?, cx)?;
     Some(Forces::of_potentials([attraction_energy(&stretch, strength)]))
 }
 
 /// Returns central gravity: between two bodies with a gravitational constant, or towards a point with a
 /// gravitational parameter. Gravity also exerts a torque on a body with inertia.
-pub fn gravity<'g>(b: &Builder<'_, 'g>, action: &Action, cx: &mut Diagnostics) -> Option<Forces<'g>> {
+pub fn central_gravity_force<'g>(
+    b: &Builder<'_, 'g>,
+    action: &Action,
+    cx: &mut Diagnostics,
+) -> Option<Forces<'g>> {
     let Target::Between(first, second) = &action.on else {
-        cx.error(action.on.place().clone(), "gravity acts between two bodies, or a point and a body").help(
+        cx.report_error(
+            action.on.source_position().clone(),
+            "gravity acts between two bodies, or a point and a body",
+        )
+        .add_help(
             "write `between = (sun, planet), constant = G` or `between = (ground, satellite), mu = mu`",
         );
         return None;
     };
-    let stretch = b.distance(first, second, cx);
+    let stretch = b.distance_between_points(first, second, cx);
     // An unresolved position has already been reported.
     let is_placed = stretch.is_some();
     let mut mass = |e: &syntax::Expr| if is_placed { mass_of(b, e, cx) } else { None };
     match (action.get(Key::Constant), action.get(Key::Mu)) {
         (Some(constant), None) => {
             let masses = [mass(first), mass(second)];
-            let g = b.scope.scalar(constant, cx)?;
+            let g = b.scope.resolve_scalar(constant, cx)?;
             let ([Some(m1), Some(m2)], Some(stretch)) = (masses, stretch) else { return None };
             let own = attraction_energy(&stretch, g * m1 * m2);
             let torques = [(first, second, g * m1), (second, first, g * m2)];
@@ -44,13 +52,13 @@ pub fn gravity<'g>(b: &Builder<'_, 'g>, action: &Action, cx: &mut Diagnostics) -
         }
         (None, Some(mu)) => {
             let m = mass(second);
-            let mu = b.scope.scalar(mu, cx)?;
+            let mu = b.scope.resolve_scalar(mu, cx)?;
             let own = attraction_energy(&stretch?, mu * m?);
             let torque = torque_energy(b, first, second, mu, cx);
             Some(Forces::of_potentials([own].into_iter().chain(torque)))
         }
         _ => {
-            cx.error(action.name.place.clone(), "gravity has a `constant` or a `mu`").help(
+            cx.report_error(action.name.place.clone(), "gravity has a `constant` or a `mu`").add_help(
                 "`constant` is the gravitational constant of two masses, `mu` the gravitational parameter of the first point",
             );
             None
@@ -62,23 +70,24 @@ pub fn gravity<'g>(b: &Builder<'_, 'g>, action: &Action, cx: &mut Diagnostics) -
 fn mass_of<'g>(b: &Builder<'_, 'g>, e: &syntax::Expr, cx: &mut Diagnostics) -> Option<Expr<'g>> {
     if let ExprKind::Name(name) = &e.kind {
         if let Some(p) = b.description.particles.iter().find(|p| p.name.text == *name) {
-            return b.scope.scalar(&p.mass, cx);
+            return b.scope.resolve_scalar(&p.mass, cx);
         }
         if let Some(k) = b.description.bodies.iter().position(|body| body.name.text == *name) {
             let (mass, com, _) = b.masses.get(k).copied().flatten()?;
             if !com.is_zero() {
-                cx.error(
+                cx.report_error(
                     e.place.clone(),
                     format!("gravity acts at the origin of `{name}`, which is not its centre of mass"),
                 )
-                .help("put the body's origin at its centre of mass");
+                .add_help("put the body's origin at its centre of mass");
                 return None;
             }
             return Some(mass);
         }
     }
-    cx.error(e.place.clone(), "expected a body or a particle, which has mass")
-        .help("name one; for a point without mass, such as `ground`, give the gravitational parameter `mu`");
+    cx.report_error(e.place.clone(), "expected a body or a particle, which has mass").add_help(
+        "name one; for a point without mass, such as `ground`, give the gravitational parameter `mu`",
+    );
     None
 }
 
@@ -97,8 +106,8 @@ fn torque_energy<'g>(
     mu: Expr<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Expr<'g>> {
-    let index = b.jointed_index(body.name()?).filter(|k| *k < b.description.bodies.len())?;
-    let (center, body) = (b.scope.place(center, cx), b.scope.place(body, cx));
+    let index = b.jointed_index(body.as_name()?).filter(|k| *k < b.description.bodies.len())?;
+    let (center, body) = (b.scope.resolve_placement(center, cx), b.scope.resolve_placement(body, cx));
     let (center, body) = (center?, body?);
     let (_, _, central) = b.masses.get(index).cloned().flatten()?;
     let tensor = body.pose.rotation.sym_to_parent(central);

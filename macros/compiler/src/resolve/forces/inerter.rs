@@ -9,27 +9,27 @@ use crate::resolve::terms::ActedOn;
 use crate::syntax::{self, Action, Key};
 
 /// Returns the force of an inerter.
-pub fn inerter<'g>(
+pub fn inerter_force<'g>(
     b: &Builder<'_, 'g>,
     action: &Action,
     on: ActedOn<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    inertance(b, b.stretch_on(on)?.rate, action.get(Key::Inertance)?, cx)
+    inertance_force(b, b.stretch_on(on)?.rate, action.get(Key::Inertance)?, cx)
 }
 
 /// Returns the force of an inertance on a rate.
-pub fn inertance<'g>(
+pub fn inertance_force<'g>(
     b: &Builder<'_, 'g>,
     rate: Expr<'g>,
     written: &syntax::Expr,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    let inertance = b.scope.scalar(written, cx)?;
-    if let Some(n) = inertance.value().filter(|n| *n < 0.0) {
-        cx.error(written.place.clone(), format!("an inertance cannot be negative, but it is {n}"))
-            .help("it resists accelerations as a mass does: give its magnitude");
+    let inertance = b.scope.resolve_scalar(written, cx)?;
+    if let Some(n) = inertance.constant_value().filter(|n| *n < 0.0) {
+        cx.report_error(written.place.clone(), format!("an inertance cannot be negative, but it is {n}"))
+            .add_help("it resists accelerations as a mass does: give its magnitude");
     }
-    b.scope.require(Rule::NotNegative, || "an inertance".to_string(), &[inertance]);
+    b.scope.record_requirement(Rule::NotNegative, || "an inertance".to_string(), &[inertance]);
     Some(Forces { inertances: vec![Inertance { rate, inertance }], ..Forces::default() })
 }

@@ -2,7 +2,7 @@
 
 use crate::diag::{Diagnostics, Place};
 use crate::expr::diff::Derivative;
-use crate::expr::replace::replace;
+use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr as Value, Function, Vec3};
 use crate::kinematics::symbols_in;
 use crate::mechanism::{AccelerationForce, Direction, Input, Load, Pose, Quantity};
@@ -18,8 +18,8 @@ pub fn load<'g>(b: &Builder<'_, 'g>, action: &Action, cx: &mut Diagnostics) -> O
     let direction = action.get(if torque { Key::About } else { Key::Along });
     match (&action.on, action.get(Key::Value)) {
         (On::On(on), None) => {
-            let target = b.target(on, cx)?;
-            input(b, action, on, target, direction, torque, cx)
+            let target = b.resolve_target(on, cx)?;
+            input_force(b, action, on, target, direction, torque, cx)
         }
         (On::On(on), Some(value)) => value_on(b, on, direction, value, torque, cx),
         (On::Between(first, second), value) => {
@@ -38,11 +38,11 @@ fn value_on<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     if let Some(direction) = direction {
-        cx.error(direction.place.clone(), "a value has a direction of its own")
-            .help("write the direction into the value: `value = magnitude * x`");
+        cx.report_error(direction.place.clone(), "a value has a direction of its own")
+            .add_help("write the direction into the value: `value = magnitude * x`");
         return None;
     }
-    let place = match b.target(on, cx)? {
+    let place = match b.resolve_target(on, cx)? {
         Target::Point(place) => place,
         Target::Coordinate(_, Some(angle)) if angle != torque => {
             report_wrong_kind(on, angle, cx);
@@ -55,11 +55,11 @@ fn value_on<'g>(
         return None;
     }
     let Some(link) = place.link else {
-        cx.error(on.place.clone(), "this is fixed to the ground: a force on it has no effect");
+        cx.report_error(on.place.clone(), "this is fixed to the ground: a force on it has no effect");
         return None;
     };
     let context = Context::new(Allowed::Acceleration, Some((place.link, place.pose.clone())));
-    let terms = b.scope.in_context(context, |scope| scope.terms(value, cx))?;
+    let terms = b.scope.in_context(context, |scope| scope.resolve_terms(value, cx))?;
     let kinematics = &b.scope.kinematics;
     let force = kinematics.resolve(&terms, place.link, Vec3::zero(b.scope.graph));
     let twist = kinematics.twists[link.0];
@@ -84,7 +84,7 @@ fn scalar_load<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     let context = Context::new(Allowed::Acceleration, Some((None, Pose::identity(b.scope.graph))));
-    let force = b.scope.in_context(context, |scope| scope.scalar(value, cx))?;
+    let force = b.scope.in_context(context, |scope| scope.resolve_scalar(value, cx))?;
     value_load(b, rate, force, &value.place, cx)
 }
 
@@ -99,12 +99,12 @@ fn force_between<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     if let Some(along) = along {
-        cx.error(along.place.clone(), "a force between two points acts along their line")
-            .help("remove this argument, or let a force act on each of two bodies");
+        cx.report_error(along.place.clone(), "a force between two points acts along their line")
+            .add_help("remove this argument, or let a force act on each of two bodies");
     }
-    let stretch = b.distance(first, second, cx)?;
+    let stretch = b.distance_between_points(first, second, cx)?;
     let rate = match stretch.signed {
-        true => stretch.value.call(Function::Signum) * stretch.rate,
+        true => stretch.value.apply_function(Function::Signum) * stretch.rate,
         false => stretch.rate,
     };
     match value {
@@ -114,7 +114,7 @@ fn force_between<'g>(
 }
 
 /// Returns an input on a coordinate, an expression, or a point of a body.
-fn input<'g>(
+fn input_force<'g>(
     b: &Builder<'_, 'g>,
     action: &Action,
     on: &Expr,
@@ -125,8 +125,8 @@ fn input<'g>(
 ) -> Option<Forces<'g>> {
     let mut refuse_direction = |what: &str| {
         if let Some(direction) = direction {
-            cx.error(direction.place.clone(), format!("the {what} determines the direction"))
-                .help("remove this argument, or let it act on a body");
+            cx.report_error(direction.place.clone(), format!("the {what} determines the direction"))
+                .add_help("remove this argument, or let it act on a body");
         }
     };
     let input = match target {
@@ -191,16 +191,16 @@ pub fn value_load<'g>(
     let all: Vec<Value<'g>> = factors.iter().map(|(_, factor)| *factor).collect();
     let quantities: Vec<Quantity> = symbols_in(&all).into_iter().map(Quantity::from_symbol).collect();
     if quantities.iter().any(|q| matches!(q, Quantity::Acceleration(_))) {
-        cx.error(place.clone(), "a force can depend on accelerations only linearly")
-            .help("the equations of motion are solved for the accelerations: write the force as a sum of terms with one acceleration each");
+        cx.report_error(place.clone(), "a force can depend on accelerations only linearly")
+            .add_help("the equations of motion are solved for the accelerations: write the force as a sum of terms with one acceleration each");
         return None;
     }
     if quantities.iter().any(|q| matches!(q, Quantity::Input(_))) {
-        cx.error(place.clone(), "the factor of an acceleration cannot depend on inputs")
-            .help("the equations of motion are solved for the accelerations before the inputs are known: let a `State` follow the input");
+        cx.report_error(place.clone(), "the factor of an acceleration cannot depend on inputs")
+            .add_help("the equations of motion are solved for the accelerations before the inputs are known: let a `State` follow the input");
         return None;
     }
-    let remainder = replace(force, &|s| acceleration_symbol(s).map(|_| graph.zero()));
+    let remainder = substitute_symbols(force, &|s| acceleration_symbol(s).map(|_| graph.zero()));
     if !remainder.is_zero() {
         forces.loads.push(Load { rate, force: remainder, dissipative: false });
     }
@@ -222,24 +222,24 @@ fn point_input<'g>(
 ) -> Option<Input<'g>> {
     let Some(direction) = direction else {
         let key = if torque { "about" } else { "along" };
-        cx.error(action.name.place.clone(), format!("missing `{key}`"))
-            .help(format!("on a body it needs a direction: `{key} = x`, `{key} = ground.z`"));
+        cx.report_error(action.name.place.clone(), format!("missing `{key}`"))
+            .add_help(format!("on a body it needs a direction: `{key} = x`, `{key} = ground.z`"));
         return None;
     };
     if torque && !check_torque_target(on, place, cx) {
         return None;
     }
     let context = Context::new(Allowed::Constant, Some((place.link, place.pose.clone())));
-    let terms = b.scope.in_context(context, |scope| scope.terms(direction, cx))?;
+    let terms = b.scope.in_context(context, |scope| scope.resolve_terms(direction, cx))?;
     let Some(link) = place.link else {
-        cx.error(on.place.clone(), "this body is fixed to the ground: a force on it has no effect")
-            .help("name a body that moves");
+        cx.report_error(on.place.clone(), "this body is fixed to the ground: a force on it has no effect")
+            .add_help("name a body that moves");
         return None;
     };
     let sum: Direction<'g> = terms;
     if sum.iter().all(|(_, v)| v.is_zero()) {
-        cx.error(direction.place.clone(), "this direction is zero")
-            .help("write `x`, `y`, `z` or another vector of some length");
+        cx.report_error(direction.place.clone(), "this direction is zero")
+            .add_help("write `x`, `y`, `z` or another vector of some length");
         return None;
     }
     Some(match torque {
@@ -259,8 +259,8 @@ fn is_moving(v: Vec3<'_>) -> bool {
 fn check_torque_target(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> bool {
     let ExprKind::Name(name) = &on.kind else { return true };
     if place.kind == PlacedKind::Point {
-        cx.error(on.place.clone(), format!("`{name}` is a point, on which a torque has no effect"))
-            .help("let it act on a body, or write a `Force`");
+        cx.report_error(on.place.clone(), format!("`{name}` is a point, on which a torque has no effect"))
+            .add_help("let it act on a body, or write a `Force`");
         return false;
     }
     true
@@ -268,6 +268,6 @@ fn check_torque_target(on: &Expr, place: &Placed<'_>, cx: &mut Diagnostics) -> b
 
 fn report_wrong_kind(on: &Expr, angle: bool, cx: &mut Diagnostics) {
     let (is, other) = if angle { ("an angle", "Torque") } else { ("a length", "Force") };
-    cx.error(on.place.clone(), format!("this coordinate is {is}"))
-        .help(format!("the element that acts on it is a {other}"));
+    cx.report_error(on.place.clone(), format!("this coordinate is {is}"))
+        .add_help(format!("the element that acts on it is a {other}"));
 }

@@ -8,7 +8,7 @@ mod load;
 mod spring;
 
 pub use friction::dry_friction;
-pub use inerter::inertance;
+pub use inerter::inertance_force;
 pub use load::{input_load, value_load};
 pub use spring::{Law, spring_law};
 
@@ -77,13 +77,13 @@ impl<'g> Builder<'_, 'g> {
     /// Returns the forces of an element; `None` after an error.
     fn forces_of(&self, action: &Action, cx: &mut Diagnostics) -> Option<Forces<'g>> {
         let forces = match action.kind {
-            ForceKind::Gravity => return gravity::gravity(self, action, cx),
+            ForceKind::Gravity => return gravity::central_gravity_force(self, action, cx),
             ForceKind::Force | ForceKind::Torque => return load::load(self, action, cx),
-            ForceKind::Spring => spring::spring,
-            ForceKind::Dashpot => dashpot::dashpot,
-            ForceKind::Inerter => inerter::inerter,
-            ForceKind::Friction => friction::friction,
-            ForceKind::Attraction => gravity::attraction,
+            ForceKind::Spring => spring::spring_force,
+            ForceKind::Dashpot => dashpot::dashpot_force,
+            ForceKind::Inerter => inerter::inerter_force,
+            ForceKind::Friction => friction::friction_force,
+            ForceKind::Attraction => gravity::attraction_force,
         };
         let on = self.acted_on(action, cx)?;
         forces(self, action, on, cx)
@@ -92,23 +92,23 @@ impl<'g> Builder<'_, 'g> {
     /// Returns the length or the angle on which a force element acts.
     fn acted_on(&self, action: &Action, cx: &mut Diagnostics) -> Option<ActedOn<'g>> {
         match &action.on {
-            On::On(e) => match self.target(e, cx)? {
+            On::On(e) => match self.resolve_target(e, cx)? {
                 Target::Coordinate(c, angle) => Some(ActedOn { stretch: None, angle, coordinate: Some(c) }),
                 Target::Expression(stretch) => {
                     Some(ActedOn { stretch: Some(stretch), angle: None, coordinate: None })
                 }
                 Target::Point(_) => {
-                    let phrase = action.kind.phrase();
-                    cx.error(
+                    let phrase = action.kind.name_with_article();
+                    cx.report_error(
                         e.place.clone(),
                         format!("{phrase} acts on the coordinate of a joint, but this is a body"),
                     )
-                    .help("name a joint, as in `on = hinge`, or two points: `between = (first, second)`");
+                    .add_help("name a joint, as in `on = hinge`, or two points: `between = (first, second)`");
                     None
                 }
             },
             On::Between(a, b) => {
-                let stretch = Some(self.distance(a, b, cx)?);
+                let stretch = Some(self.distance_between_points(a, b, cx)?);
                 Some(ActedOn { stretch, angle: Some(false), coordinate: None })
             }
         }
@@ -138,6 +138,6 @@ fn needs_motion(action: &Action) -> bool {
 
 /// Reports a declared input without any effect, although no error was reported.
 pub fn report_unused_input(name: &Name, cx: &mut Diagnostics) {
-    cx.error(name.place.clone(), format!("internal error: the input `{}` acts nowhere", name.text))
-        .help("please report this with the mechanism");
+    cx.report_error(name.place.clone(), format!("internal error: the input `{}` acts nowhere", name.text))
+        .add_help("please report this with the mechanism");
 }

@@ -2,7 +2,7 @@
 
 use crate::diag::Diagnostics;
 use crate::expr::diff::Derivative;
-use crate::expr::replace::replace;
+use crate::expr::replace::substitute_symbols;
 use crate::expr::{Expr, Extreme, Function, Node, Symbol};
 use crate::kinematics::symbols_in;
 use crate::language::Callable;
@@ -28,19 +28,19 @@ pub enum Law<'e> {
 }
 
 /// Returns the force of a spring. A linear spring on a coordinate is stored separately in the model.
-pub fn spring<'g>(
+pub fn spring_force<'g>(
     b: &Builder<'_, 'g>,
     action: &Action,
     on: ActedOn<'g>,
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
-    let law = match action.law()? {
+    let law = match action.written_law()? {
         (Key::Force, e) => Law::Force(e),
         (Key::Energy, e) => Law::Energy(e),
         (_, e) => Law::Linear(e),
     };
     if let (Law::Linear(stiffness), Some(on), angle) = (&law, on.coordinate, on.angle) {
-        let stiffness = b.scope.scalar(stiffness, cx);
+        let stiffness = b.scope.resolve_scalar(stiffness, cx);
         let free = free_length(b, action, angle, cx);
         let spring = Spring { on, stiffness: stiffness?, free: free? };
         return Some(Forces { springs: vec![spring], ..Forces::default() });
@@ -60,20 +60,23 @@ pub fn spring_law<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Forces<'g>> {
     let g = b.scope.graph;
-    let length =
-        if stretch.signed && !free.is_zero() { stretch.value.call(Function::Abs) } else { stretch.value };
+    let length = if stretch.signed && !free.is_zero() {
+        stretch.value.apply_function(Function::Abs)
+    } else {
+        stretch.value
+    };
     let value = length - free;
     let symbol = Quantity::Stretch.symbol();
     let locals = vec![("stretch", g.symbol(symbol)), ("length", g.symbol(symbol) + free)];
     let context = Context::new(Allowed::Placement, Some((None, Pose::identity(g)))).with_locals(locals);
     let energy = match law {
         // Smooth even where the points coincide.
-        Law::Linear(k) if free.is_zero() => b.scope.scalar(k, cx)? * 0.5 * stretch.square,
-        Law::Linear(k) => b.scope.scalar(k, cx)? * 0.5 * g.symbol(symbol).square(),
-        Law::Energy(e) => b.scope.in_context(context, |scope| scope.scalar(e, cx))?,
+        Law::Linear(k) if free.is_zero() => b.scope.resolve_scalar(k, cx)? * 0.5 * stretch.square,
+        Law::Linear(k) => b.scope.resolve_scalar(k, cx)? * 0.5 * g.symbol(symbol).square(),
+        Law::Energy(e) => b.scope.in_context(context, |scope| scope.resolve_scalar(e, cx))?,
         Law::Force(e) => energy_of(b, e, &context, cx)?,
     };
-    Some(Forces::of_potentials([replace(energy, &|s| (s == symbol).then_some(value))]))
+    Some(Forces::of_potentials([substitute_symbols(energy, &|s| (s == symbol).then_some(value))]))
 }
 
 /// Returns the energy of a force. A piecewise force with a condition on the stretch or the length has the
@@ -85,11 +88,21 @@ fn energy_of<'g>(
     cx: &mut Diagnostics,
 ) -> Option<Expr<'g>> {
     let read_scalar = |e: &syntax::Expr, cx: &mut Diagnostics| {
-        b.scope.in_context(context.clone(), |scope| scope.scalar(e, cx))
+        b.scope.in_context(context.clone(), |scope| scope.resolve_scalar(e, cx))
     };
     let force = read_scalar(e, cx)?;
+    if symbols_in(&[force]).iter().any(|s| matches!(Quantity::from_symbol(*s), Quantity::Configuration(_))) {
+        let message = "the force of a spring is a law of `stretch`, but this contains coordinates";
+        cx.report_error(e.place.clone(), message)
+            .add_help("write the law in terms of `stretch` or `length`")
+            .add_help(
+                "a force that depends on other coordinates is a `Force` with a `value`, or follows from an \
+             `energy`",
+            );
+        return None;
+    }
     let value_of_local = |e: &syntax::Expr| {
-        context.locals.iter().find(|(name, _)| e.name() == Some(name)).map(|(_, value)| *value)
+        context.locals.iter().find(|(name, _)| e.as_name() == Some(name)).map(|(_, value)| *value)
     };
     if let ExprKind::Call(name, arguments) = &e.kind
         && let [left, right, below, above] = arguments.as_slice()
@@ -105,21 +118,23 @@ fn energy_of<'g>(
             let x = b.scope.graph.symbol(symbol);
             let border = read_scalar(border, cx)? - (own - x);
             let [below, above] = pieces.map(|piece| energy_of(b, piece, context, cx));
-            let substitute_stretch = |energy: Expr<'g>, x| replace(energy, &|s| (s == symbol).then_some(x));
+            let substitute_stretch =
+                |energy: Expr<'g>, x| substitute_symbols(energy, &|s| (s == symbol).then_some(x));
             let (below, above) = (below?, above?);
-            let (low, high) = (x.extreme(Extreme::Min, border), x.extreme(Extreme::Max, border));
+            let (low, high) =
+                (x.minimum_or_maximum(Extreme::Min, border), x.minimum_or_maximum(Extreme::Max, border));
             return Some(
                 substitute_stretch(below, low) + substitute_stretch(above, high)
                     - substitute_stretch(above, border),
             );
         }
     }
-    integral(b, force, e, cx)
+    energy_of_force(b, force, e, cx)
 }
 
 /// Returns the energy of a force that is a polynomial in the stretch, by integration of its Taylor
 /// series.
-fn integral<'g>(
+fn energy_of_force<'g>(
     b: &Builder<'_, 'g>,
     force: Expr<'g>,
     e: &syntax::Expr,
@@ -132,7 +147,7 @@ fn integral<'g>(
     let (mut energy, mut derivative, mut power, mut factorial) = (g.zero(), force, x, 1.0);
     for n in 1..=HIGHEST_POWER + 1 {
         factorial *= n as f64;
-        let at_zero = replace(derivative, &|s| (s == symbol).then_some(g.zero()));
+        let at_zero = substitute_symbols(derivative, &|s| (s == symbol).then_some(g.zero()));
         energy += at_zero * (1.0 / factorial) * power;
         power = power * x;
         derivative = d.differentiate(derivative);
@@ -141,8 +156,14 @@ fn integral<'g>(
             return Some(energy);
         }
     }
-    cx.error(e.place.clone(), "this law has no energy in closed form: it is not a polynomial in `stretch`")
-        .help("give the spring by its energy instead: `energy = …`, and the force follows, as in `energy = k / 2 * pow(min(stretch, 0), 2)`");
+    cx.report_error(
+        e.place.clone(),
+        "this law has no energy in closed form: it is not a polynomial in `stretch`",
+    )
+    .add_help(
+        "give the spring by its energy instead: `energy = …`, and the force follows, as in \
+             `energy = k / 2 * pow(min(stretch, 0), 2)`",
+    );
     None
 }
 
@@ -160,11 +181,11 @@ fn free_length<'g>(
     };
     if let Some(angle) = angle.filter(|angle| *angle != is_angle) {
         let (is, key) = if angle { ("an angle", "free_angle") } else { ("a length", "free_length") };
-        cx.error(free.place.clone(), format!("the coordinate of this spring is {is}"))
-            .help(format!("write `{key} = …`"));
+        cx.report_error(free.place.clone(), format!("the coordinate of this spring is {is}"))
+            .add_help(format!("write `{key} = …`"));
         return None;
     }
-    if is_angle { b.scope.plane_angle(free, cx) } else { b.scope.scalar(free, cx) }
+    if is_angle { b.scope.plane_angle(free, cx) } else { b.scope.resolve_scalar(free, cx) }
 }
 
 /// Whether an expression contains a sign, a magnitude or an extreme of a subexpression that depends on the
@@ -179,7 +200,7 @@ fn has_corners(e: Expr<'_>, symbol: Symbol) -> bool {
         if corner && symbols_in(&[g.expr(id)]).contains(&symbol) {
             return true;
         }
-        node.operands(|a| {
+        node.visit_operands(|a| {
             if seen.insert(a) {
                 todo.push(a);
             }

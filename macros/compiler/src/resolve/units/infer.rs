@@ -95,8 +95,8 @@ pub struct Inference<'a> {
 
 /// Returns the magnitudes of the numbers in the mechanism's gravity, such as 9.81.
 fn numbers_of_gravity(description: &Description) -> Vec<f64> {
-    let parts = description.gravity.iter().flat_map(Expr::parts);
-    parts.filter_map(Expr::literal).map(f64::abs).filter(|g| *g > 0.0).collect()
+    let parts = description.gravity.iter().flat_map(Expr::subexpressions);
+    parts.filter_map(Expr::literal_number).map(f64::abs).filter(|g| *g > 0.0).collect()
 }
 
 impl<'a> Inference<'a> {
@@ -118,7 +118,7 @@ impl<'a> Inference<'a> {
             new.assign_unknown(&parameter.text, Anchor::Parameter);
         }
         for table in &description.tables {
-            let unknown = (0..=table.variables).map(|_| new.system.variable()).collect();
+            let unknown = (0..=table.variables).map(|_| new.system.add_variable()).collect();
             new.tables.insert(table.name.text.clone(), unknown);
         }
         new
@@ -126,16 +126,16 @@ impl<'a> Inference<'a> {
 
     /// Assigns an unknown dimension to a name.
     pub fn assign_unknown(&mut self, name: &str, anchor: Anchor) {
-        let v = self.system.variable();
+        let v = self.system.add_variable();
         self.names.insert(name.to_string(), Meaning::Named(v, anchor));
     }
 
     /// Equates two dimensions; returns false if they contradict each other.
-    pub fn equate(&mut self, found: &Dimension, expected: &Dimension, origin: Origin<'a>) -> bool {
+    pub fn equate_dimensions(&mut self, found: &Dimension, expected: &Dimension, origin: Origin<'a>) -> bool {
         if self.limit_exceeded {
             return true;
         }
-        match self.system.equate(found, expected) {
+        match self.system.equate_dimensions(found, expected) {
             Outcome::Holds(known) => {
                 for v in known {
                     self.origins.entry(v).or_insert(origin);
@@ -167,32 +167,38 @@ impl<'a> Inference<'a> {
     /// Applies the defaults of plain numbers that contradict nothing, in order.
     pub fn apply_defaults(&mut self) {
         for (wish, then) in std::mem::take(&mut self.plain_defaults) {
-            if self.system.equate(&wish, &PLAIN) != Outcome::Contradicts
+            if self.system.equate_dimensions(&wish, &PLAIN) != Outcome::Contradicts
                 && let Some(then) = then
             {
-                self.system.equate(&then, &PLAIN);
+                self.system.equate_dimensions(&then, &PLAIN);
             }
         }
     }
 
     /// Whether two dimensions are known to be different.
     pub fn are_different(&mut self, a: &Dimension, b: &Dimension) -> bool {
-        let quotient = a.quotient(b).and_then(|quotient| self.system.resolve(&quotient));
+        let quotient = a.dimension_of_quotient(b).and_then(|quotient| self.system.resolve(&quotient));
         quotient.is_some_and(|quotient| quotient.is_known() && !quotient.is_plain())
     }
 
     /// Equates the dimension of an expression with an expected one; `unit` is its notation in this context.
-    pub fn expect(&mut self, e: &'a Expr, dimension: &Dimension, unit: &str, reason: Reason<'a>) -> Value {
+    pub fn expect_dimension(
+        &mut self,
+        e: &'a Expr,
+        dimension: &Dimension,
+        unit: &str,
+        reason: Reason<'a>,
+    ) -> Value {
         let value = match &e.kind {
-            ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..) => self.sum(e, Some(dimension)),
-            _ => self.value(e),
+            ExprKind::Binary(BinaryOp::Add | BinaryOp::Sub, ..) => self.value_of_sum(e, Some(dimension)),
+            _ => self.value_of_expression(e),
         };
         let Value::Quantity { dimension: found, anchor } = value else { return value };
         // An expression of coordinates may have an implicit factor of one, with any unit.
         if anchor == Anchor::Motion && self.are_different(&found, dimension) {
             return Value::Unknown;
         }
-        if !self.equate(&found, dimension, Origin { reason, expression: e, compared_with: None }) {
+        if !self.equate_dimensions(&found, dimension, Origin { reason, expression: e, compared_with: None }) {
             return Value::Unknown;
         }
         if let (Some(v), false) = (self.single_name(e), unit.is_empty()) {

@@ -25,66 +25,95 @@ use value::{Anchor, Value};
 pub type Coordinates = [(String, Coordinate, bool)];
 
 /// Infers the units of a checked description, and reports contradictions.
-pub fn infer(d: &Description, model: &Model<'_>, coordinates: &Coordinates, cx: &mut Diagnostics) -> Units {
+pub fn infer_units(
+    d: &Description,
+    model: &Model<'_>,
+    coordinates: &Coordinates,
+    cx: &mut Diagnostics,
+) -> Units {
     let mut inference = Inference::new(d);
     let mut pinned = vec![None; d.parameters.len()];
     for (k, e) in &d.units {
-        let Some((dimension, text)) = si::read(e, cx) else { continue };
+        let Some((dimension, text)) = si::parse_unit(e, cx) else { continue };
         let origin = Origin { reason: Reason::Unit, expression: e, compared_with: None };
-        inference.equate(&Dimension::variable(*k), &dimension, origin);
+        inference.equate_dimensions(&Dimension::unknown_dimension(*k), &dimension, origin);
         if let Some(slot) = pinned.get_mut(*k) {
             *slot = Some(text);
         }
     }
     let definitions = assign_dimensions(d, coordinates, &mut inference);
-    let mut places = places::collect(d, &definitions, &mut inference);
-    let outputs: Vec<Variable> = d.outputs.iter().map(|_| inference.system.variable()).collect();
+    let mut places = places::collect_expressions(d, &definitions, &mut inference);
+    let outputs: Vec<Variable> = d.outputs.iter().map(|_| inference.system.add_variable()).collect();
     for (output, v) in d.outputs.iter().zip(&outputs) {
-        // The expression of a diagram is a body, without a dimension.
-        if output.rank == Rank::FreeBody {
+        // The expression of a diagram is a body, without a dimension. Laws of a file contain numbers with
+        // units that the file does not specify.
+        if output.rank == Rank::FreeBody || output.value.place.file.is_some() {
             continue;
         }
-        let (dimension, locals) = (Dimension::variable(*v), Vec::new());
+        let (dimension, locals) = (Dimension::unknown_dimension(*v), Vec::new());
         places.tasks.push(Task { e: &output.value, dimension, unit: "", locals });
     }
     // The rate of a state is the state per second.
     for (name, parameter) in &d.states {
         let rate = format!("{}{RATE_OF_STATE}", name.text);
         let Some(output) = d.outputs.iter().find(|output| output.name.text == rate) else { continue };
-        let Some(dimension) = Dimension::variable(*parameter).quotient(&dimension::TIME) else { continue };
+        if output.value.place.file.is_some() {
+            continue;
+        }
+        let Some(dimension) =
+            Dimension::unknown_dimension(*parameter).dimension_of_quotient(&dimension::TIME)
+        else {
+            continue;
+        };
         places.tasks.push(Task { e: &output.value, dimension, unit: "", locals: Vec::new() });
     }
     let sides = std::mem::take(&mut places.sides);
-    solve(places, &mut inference);
+    solve_dimensions(places, &mut inference);
     if inference.limit_exceeded {
         inference.mismatches.clear();
     }
-    report::report(d, &mut inference, cx);
+    report::report_contradictions(d, &mut inference, cx);
     inference.apply_defaults();
     let mut units = Units { outputs: Vec::new(), ..state_units(model, coordinates, &mut inference) };
     for (k, pinned) in pinned.into_iter().enumerate() {
-        units.parameters.push(pinned.unwrap_or_else(|| notation(&mut inference, &Dimension::variable(k), k)));
+        units.parameters.push(
+            pinned.unwrap_or_else(|| {
+                notation_of_dimension(&mut inference, &Dimension::unknown_dimension(k), k)
+            }),
+        );
     }
     for table in &d.tables {
         let unknown = inference.tables.get(&table.name.text).cloned().unwrap_or_default();
-        let each = unknown.iter().map(|v| notation(&mut inference, &Dimension::variable(*v), *v));
+        let each = unknown
+            .iter()
+            .map(|v| notation_of_dimension(&mut inference, &Dimension::unknown_dimension(*v), *v));
         units.tables.push(each.collect());
     }
     // Inertial parameters of a file have known units, which cannot be inferred from their use.
     let of_file = units.parameters.iter_mut().rev().zip(d.file_units.iter().rev());
     of_file.for_each(|(unit, known)| *unit = known.to_string());
     for (output, v) in d.outputs.iter().zip(outputs) {
-        let unit = notation(&mut inference, &Dimension::variable(v), v);
+        let unit = notation_of_dimension(&mut inference, &Dimension::unknown_dimension(v), v);
         let energy = output.rank == Rank::Scalar && unit == "N·m";
         units.outputs.push(match output.rank {
             Rank::FreeBody => "N, N·m".to_string(),
             _ if energy => "J".to_string(),
+            _ if output.value.place.file.is_some() => rate_unit(d, &output.name.text, &units.parameters),
             _ => unit,
         });
     }
     units.constraints =
         model.constraints.iter().map(|c| constraint_units(c, &sides, &mut inference)).collect();
     units
+}
+
+/// Returns the unit of the rate of a file's state.
+fn rate_unit(d: &Description, rate: &str, parameters: &[String]) -> String {
+    let state = d.states.iter().find(|(name, _)| format!("{}{RATE_OF_STATE}", name.text) == rate);
+    match state.and_then(|(_, parameter)| parameters.get(*parameter)).map(String::as_str) {
+        Some("any") | None => "any".to_string(),
+        Some(unit) => format!("{unit}/s"),
+    }
 }
 
 /// Assigns dimensions to coordinates, inputs and definitions. Returns the definitions, each after those that
@@ -101,13 +130,13 @@ fn assign_dimensions<'a>(
     let acting: BTreeSet<&str> = d.actions.iter().map(|action| action.name.text.as_str()).collect();
     let free = d.coordinates.iter().map(|c| &c.name);
     for name in free.chain(&d.inputs) {
-        let dimension = Dimension::variable(inference.system.variable());
+        let dimension = Dimension::unknown_dimension(inference.system.add_variable());
         let anchor = if acting.contains(name.text.as_str()) { Anchor::Input } else { Anchor::Motion };
         inference.names.insert(name.text.clone(), Meaning::Moving(dimension, anchor));
     }
     let definitions = sort_by_dependency(&d.definitions);
     for definition in &definitions {
-        let anchors = definition.value.parts().into_iter().filter_map(|part| match &part.kind {
+        let anchors = definition.value.subexpressions().into_iter().filter_map(|part| match &part.kind {
             ExprKind::Name(name) => match inference.names.get(name)? {
                 Meaning::Named(_, anchor) | Meaning::Moving(_, anchor) => Some(*anchor),
             },
@@ -125,7 +154,7 @@ fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
     let numbers: BTreeMap<&str, usize> =
         definitions.iter().enumerate().map(|(k, d)| (d.name.text.as_str(), k)).collect();
     let mentioned_definitions = |d: &Definition| -> BTreeSet<usize> {
-        let names = d.value.parts().into_iter().filter_map(Expr::name);
+        let names = d.value.subexpressions().into_iter().filter_map(Expr::as_name);
         names.filter_map(|name| numbers.get(name).copied()).collect()
     };
     let mut missing: Vec<usize> = Vec::new();
@@ -157,7 +186,7 @@ fn sort_by_dependency(definitions: &[Definition]) -> Vec<&Definition> {
 
 /// Infers from all uses. Uses that determine the dimension of a single name are first; the others are then
 /// compared with them.
-fn solve<'a>(places: DimensionedExpressions<'a>, inference: &mut Inference<'a>) {
+fn solve_dimensions<'a>(places: DimensionedExpressions<'a>, inference: &mut Inference<'a>) {
     let partition_simple_tasks = |tasks: Vec<Task<'a>>| -> (Vec<Task<'a>>, Vec<Task<'a>>) {
         tasks.into_iter().partition(|task| task.locals.is_empty() && is_simple(task.e, inference))
     };
@@ -165,14 +194,14 @@ fn solve<'a>(places: DimensionedExpressions<'a>, inference: &mut Inference<'a>) 
         (partition_simple_tasks(places.definitions), partition_simple_tasks(places.tasks));
     first.extend(places_first);
     first.into_iter().chain(definitions).for_each(|task| solve_one(task, inference));
-    places.points.into_iter().for_each(|e| inference.point(e));
+    places.points.into_iter().for_each(|e| inference.infer_point(e));
     others.into_iter().for_each(|task| solve_one(task, inference));
 }
 
 /// Infers dimensions from one expression.
 fn solve_one<'a>(task: Task<'a>, inference: &mut Inference<'a>) {
     inference.locals = task.locals;
-    let value = inference.expect(task.e, &task.dimension, task.unit, Reason::Place);
+    let value = inference.expect_dimension(task.e, &task.dimension, task.unit, Reason::Place);
     // A definition that is a number is plain, unless its uses require a unit.
     if !matches!(value, Value::Quantity { .. }) {
         inference.default_to_plain(task.dimension);
@@ -210,13 +239,13 @@ fn is_simple(e: &Expr, inference: &Inference<'_>) -> bool {
 
 /// Returns the notation of a dimension: the notation that the source uses for the name by itself, or the
 /// default one.
-fn notation(inference: &mut Inference<'_>, dimension: &Dimension, v: Variable) -> String {
+fn notation_of_dimension(inference: &mut Inference<'_>, dimension: &Dimension, v: Variable) -> String {
     let known = inference.system.resolve(dimension).filter(Dimension::is_known);
     match (known, inference.hints.get(&v)) {
         (None, _) => "any".to_string(),
         _ if inference.limit_exceeded => "any".to_string(),
         (Some(_), Some(hint)) => hint.clone(),
-        (Some(dimension), None) => si::unit(&dimension),
+        (Some(dimension), None) => si::unit_of_dimension(&dimension),
     }
 }
 
@@ -276,13 +305,15 @@ fn state_units(model: &Model<'_>, coordinates: &Coordinates, inference: &mut Inf
 /// Returns the units of a coordinate and of its rate.
 fn coordinate_units(dimension: Dimension, inference: &mut Inference<'_>) -> (String, String) {
     let v = dimension.unknown.first().map_or(Variable::MAX, |(v, _)| *v);
-    let unit = notation(inference, &dimension, v);
+    let unit = notation_of_dimension(inference, &dimension, v);
     let rate = match unit.as_str() {
         "any" => "any".to_string(),
         "rad" => "rad/s".to_string(),
         _ => {
-            let rate = dimension.quotient(&dimension::TIME).and_then(|rate| inference.system.resolve(&rate));
-            rate.map_or("any".to_string(), |rate| si::unit(&rate))
+            let rate = dimension
+                .dimension_of_quotient(&dimension::TIME)
+                .and_then(|rate| inference.system.resolve(&rate));
+            rate.map_or("any".to_string(), |rate| si::unit_of_dimension(&rate))
         }
     };
     (unit, rate)
@@ -290,10 +321,10 @@ fn coordinate_units(dimension: Dimension, inference: &mut Inference<'_>) -> (Str
 
 /// Returns the unit of a generalized speed.
 fn speed_unit(v: Variable, inference: &mut Inference<'_>) -> String {
-    let dimension = Dimension::variable(v);
+    let dimension = Dimension::unknown_dimension(v);
     match inference.system.resolve(&dimension) {
         Some(known) if known == dimension::RATE && !inference.limit_exceeded => "rad/s".to_string(),
-        _ => notation(inference, &dimension, v),
+        _ => notation_of_dimension(inference, &dimension, v),
     }
 }
 
@@ -310,21 +341,23 @@ fn constraint_units(c: &Constraint<'_>, sides: &[Dimension], inference: &mut Inf
         Measure::Declared(k) => sides.get(k).and_then(|side| inference.system.resolve(side)),
     };
     let known = dimension.filter(|d| d.is_known() && !inference.limit_exceeded);
-    let Some((dimension, multiplier)) = known.and_then(|d| Some((d.clone(), work.quotient(&d)?))) else {
+    let Some((dimension, multiplier)) =
+        known.and_then(|d| Some((d.clone(), work.dimension_of_quotient(&d)?)))
+    else {
         return ["any".to_string(), "any".to_string()];
     };
     let unit = match (dimension == angle, configurations) {
         (true, true) => "rad".to_string(),
         (true, false) => "rad/s".to_string(),
-        _ => si::unit(&dimension),
+        _ => si::unit_of_dimension(&dimension),
     };
-    [unit, si::unit(&multiplier)]
+    [unit, si::unit_of_dimension(&multiplier)]
 }
 
 /// Returns the unit of an input; for a motor of a joint, that of its force or torque.
 fn input_unit(dimension: &Dimension, inference: &mut Inference<'_>) -> String {
     match dimension.unknown.first() {
-        Some((v, _)) => notation(inference, dimension, *v),
+        Some((v, _)) => notation_of_dimension(inference, dimension, *v),
         None if dimension.is_plain() => "N·m".to_string(),
         None => "N".to_string(),
     }

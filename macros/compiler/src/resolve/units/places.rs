@@ -8,10 +8,10 @@ use crate::language::dimension::{
 use crate::language::ratio::Ratio;
 use crate::language::{Argument, ArgumentKind, ArgumentQuantity, Callable, Key, Locals, Method};
 use crate::resolve::contact::TERRAIN_COORDINATES;
-use crate::syntax::contact::collision;
+use crate::syntax::contact::collision_link;
 use crate::syntax::{
     Action, Body, Callee, Constraint, Definition, Description, Endpoint, Expr, ExprKind, Joint, Limit,
-    Member, Target, WrittenArguments, restitution,
+    Member, Target, WrittenArguments, restitution_coefficient,
 };
 
 /// Expression whose dimension is known from its context.
@@ -59,13 +59,13 @@ impl Work {
             (_, true) => LINEAR_UNITS,
             _ => [""; 6],
         };
-        Some(Work { force: ENERGY.quotient(&coordinate)?, coordinate, units })
+        Some(Work { force: ENERGY.dimension_of_quotient(&coordinate)?, coordinate, units })
     }
 }
 
 /// Collects the expressions of a description, with its sorted `definitions`. Elements of a file are skipped,
 /// because all their values are numbers.
-pub fn collect<'a>(
+pub fn collect_expressions<'a>(
     d: &'a Description,
     definitions: &[&'a Definition],
     inference: &mut Inference<'a>,
@@ -79,12 +79,12 @@ pub fn collect<'a>(
     // Definitions have unknowns of their own, assigned to their names.
     for definition in definitions {
         if let Some(Meaning::Named(v, _)) = inference.names.get(&definition.name.text) {
-            places.add(&definition.value, &Dimension::variable(*v), "");
+            places.add(&definition.value, &Dimension::unknown_dimension(*v), "");
         }
     }
     places.definitions = std::mem::take(&mut places.tasks);
     places.add_all(&d.gravity, &ACCELERATION, "m/s²");
-    places.add_all(&d.friction_speed, &Dimension::variable(inference.system.variable()), "");
+    places.add_all(&d.friction_speed, &Dimension::unknown_dimension(inference.system.add_variable()), "");
     d.bodies.iter().filter(|b| b.name.place.file.is_none()).for_each(|b| places.add_body(b));
     for particle in &d.particles {
         places.add(&particle.mass, &MASS, "kg");
@@ -136,7 +136,7 @@ impl<'a> DimensionedExpressions<'a> {
     /// Adds the arguments of a solid, a surface or a rotation.
     fn add_arguments(&mut self, written: &'a [Expr], arguments: &[Argument]) {
         for (e, argument) in written.iter().zip(arguments) {
-            if let Some((dimension, unit)) = argument.kind.dimension() {
+            if let Some((dimension, unit)) = argument.kind.dimension_and_unit() {
                 self.add(e, &dimension, unit);
             }
         }
@@ -223,11 +223,11 @@ impl<'a> DimensionedExpressions<'a> {
                 None
             }
             Target::On(e) => {
-                let coordinate = coordinate(e, inference);
+                let coordinate = coordinate_dimension(e, inference);
                 match &e.kind {
                     _ if coordinate.is_some() => coordinate,
                     ExprKind::Call(..) | ExprKind::Binary(..) | ExprKind::Neg(..) => {
-                        let unknown = Dimension::variable(inference.system.variable());
+                        let unknown = Dimension::unknown_dimension(inference.system.add_variable());
                         self.add(e, &unknown, "");
                         Some(unknown)
                     }
@@ -249,13 +249,13 @@ impl<'a> DimensionedExpressions<'a> {
         if action.is_input() {
             let is_direction = |key: &Key| matches!(key.row().quantity, ArgumentQuantity::Direction);
             let direction = action.arguments.iter().find(|(key, _)| is_direction(key)).map(|(_, e)| e);
-            input(action, direction, &work.force, inference);
+            set_input_unit(action, direction, &work.force, inference);
         }
     }
 
     fn add_limit(&mut self, limit: &'a Limit, inference: &mut Inference<'a>) {
-        let q = coordinate(&limit.on, inference).unwrap_or_else(|| {
-            let unknown = Dimension::variable(inference.system.variable());
+        let q = coordinate_dimension(&limit.on, inference).unwrap_or_else(|| {
+            let unknown = Dimension::unknown_dimension(inference.system.add_variable());
             self.add(&limit.on, &unknown, "");
             unknown
         });
@@ -266,10 +266,10 @@ impl<'a> DimensionedExpressions<'a> {
 
     /// Adds the value at rest of a coordinate, an input or a state.
     fn add_value_at_rest(&mut self, place: &'a Expr, value: &'a Expr, inference: &mut Inference<'a>) {
-        if let Some(known) = coordinate(place, inference) {
+        if let Some(known) = coordinate_dimension(place, inference) {
             self.add(value, &known, if known.is_plain() { "rad" } else { "" });
-        } else if place.name().is_some() {
-            let unknown = Dimension::variable(inference.system.variable());
+        } else if place.as_name().is_some() {
+            let unknown = Dimension::unknown_dimension(inference.system.add_variable());
             self.add(place, &unknown, "");
             self.add(value, &unknown, "");
         }
@@ -279,21 +279,24 @@ impl<'a> DimensionedExpressions<'a> {
     fn add_written(&mut self, written: &'a WrittenArguments, work: &Work, locals: Locals) {
         let [force, stiffness, damping, inertance, coordinate, speed] = work.units;
         let q = &work.coordinate;
-        let force_unit_per_coordinate =
-            |times: i64| work.force.quotient(q)?.times(&TIME.power(Ratio::integer(times))?);
+        let force_unit_per_coordinate = |times: i64| {
+            work.force
+                .dimension_of_quotient(q)?
+                .dimension_of_product(&TIME.dimension_of_power(Ratio::from_integer(times))?)
+        };
         for (key, e) in written.iter() {
             let (dimension, unit) = match &key.row().quantity {
                 ArgumentQuantity::Stiffness => (force_unit_per_coordinate(0), stiffness),
                 ArgumentQuantity::HertzStiffness => {
-                    let power = Ratio::new(3, 2).and_then(|power| q.power(power));
-                    (power.and_then(|power| work.force.quotient(&power)), "")
+                    let power = Ratio::new(3, 2).and_then(|power| q.dimension_of_power(power));
+                    (power.and_then(|power| work.force.dimension_of_quotient(&power)), "")
                 }
                 ArgumentQuantity::Damping => (force_unit_per_coordinate(1), damping),
                 ArgumentQuantity::Inertance => (force_unit_per_coordinate(2), inertance),
                 ArgumentQuantity::Force | ArgumentQuantity::Load => (Some(work.force.clone()), force),
                 ArgumentQuantity::Energy => (Some(ENERGY), "J"),
                 ArgumentQuantity::Coordinate => (Some(q.clone()), coordinate),
-                ArgumentQuantity::Speed => (q.quotient(&TIME), speed),
+                ArgumentQuantity::Speed => (q.dimension_of_quotient(&TIME), speed),
                 ArgumentQuantity::Fixed(dimension, unit) => (Some(dimension.clone()), *unit),
                 // The direction belongs to an input, whose unit is set separately.
                 ArgumentQuantity::Direction => continue,
@@ -305,20 +308,20 @@ impl<'a> DimensionedExpressions<'a> {
                     vec![("stretch", q.clone()), ("length", q.clone())]
                 }
                 (Locals::Speed, Key::Force | Key::Energy) => {
-                    q.quotient(&TIME).map(|speed| ("speed", speed)).into_iter().collect()
+                    q.dimension_of_quotient(&TIME).map(|speed| ("speed", speed)).into_iter().collect()
                 }
                 _ => Vec::new(),
             };
-            let e = if key == Key::Restitution { restitution(e).0 } else { e };
+            let e = if key == Key::Restitution { restitution_coefficient(e).0 } else { e };
             self.tasks.push(Task { e, dimension, unit, locals });
         }
     }
 
     /// Adds both sides of a constraint, which have the same dimension. Surfaces have arguments of their own.
     fn add_constraint(&mut self, constraint: &'a Constraint, inference: &mut Inference<'a>) {
-        let side = Dimension::variable(inference.system.variable());
+        let side = Dimension::unknown_dimension(inference.system.add_variable());
         self.sides.push(side.clone());
-        if constraint.kind.pair().is_none() {
+        if constraint.kind.surface_pair_function().is_none() {
             self.add(&constraint.value, &side, "");
             self.add_all(&constraint.other, &side, "");
             return;
@@ -332,7 +335,7 @@ impl<'a> DimensionedExpressions<'a> {
 
     /// Adds a surface of a body, or a point.
     fn add_surface(&mut self, surface: &'a Expr) {
-        if let Some(link) = collision(surface) {
+        if let Some(link) = collision_link(surface) {
             self.points.extend(link);
             return;
         }
@@ -348,7 +351,7 @@ impl<'a> DimensionedExpressions<'a> {
             {
                 self.add_all(points, &LENGTH, "m");
             }
-            let Some((dimension, unit)) = argument.kind.dimension() else { continue };
+            let Some((dimension, unit)) = argument.kind.dimension_and_unit() else { continue };
             let locals = match argument.kind {
                 ArgumentKind::Height => TERRAIN_COORDINATES.map(|name| (name, LENGTH.clone())).into(),
                 _ => Vec::new(),
@@ -360,7 +363,7 @@ impl<'a> DimensionedExpressions<'a> {
 
 /// Sets the unit of an input: its product with the direction is a force or a torque. A direction without a
 /// length has no unit.
-fn input<'a>(
+fn set_input_unit<'a>(
     action: &'a Action,
     direction: Option<&'a Expr>,
     force: &Dimension,
@@ -368,15 +371,15 @@ fn input<'a>(
 ) {
     let Some(Meaning::Moving(input, _)) = inference.names.get(&action.name.text).cloned() else { return };
     let (Target::On(on) | Target::Between(on, _)) = &action.on;
-    let (at, product) = match direction.map(|e| (e, inference.value(e))) {
+    let (at, product) = match direction.map(|e| (e, inference.value_of_expression(e))) {
         Some((at, Value::Quantity { dimension, .. })) => {
             inference.default_to_plain(dimension.clone());
-            (at, input.times(&dimension))
+            (at, input.dimension_of_product(&dimension))
         }
         _ => (direction.unwrap_or(on), Some(input)),
     };
     if let Some(product) = product {
-        inference.equate(
+        inference.equate_dimensions(
             &product,
             force,
             Origin { reason: Reason::Place, expression: at, compared_with: None },
@@ -385,7 +388,7 @@ fn input<'a>(
 }
 
 /// Returns the dimension of the coordinate on which an element acts; `None` if it acts on a body or a point.
-fn coordinate(e: &Expr, inference: &Inference<'_>) -> Option<Dimension> {
+fn coordinate_dimension(e: &Expr, inference: &Inference<'_>) -> Option<Dimension> {
     let meaning = match &e.kind {
         ExprKind::Name(name) => inference.names.get(name),
         ExprKind::Field(joint, member) => match &joint.kind {
@@ -396,7 +399,7 @@ fn coordinate(e: &Expr, inference: &Inference<'_>) -> Option<Dimension> {
     };
     match meaning {
         Some(Meaning::Moving(dimension, _)) => Some(dimension.clone()),
-        Some(Meaning::Named(v, _)) => Some(Dimension::variable(*v)),
+        Some(Meaning::Named(v, _)) => Some(Dimension::unknown_dimension(*v)),
         None => None,
     }
 }

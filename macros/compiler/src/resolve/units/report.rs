@@ -2,7 +2,7 @@
 
 use super::infer::{Inference, Meaning, Mismatch, Origin, Reason};
 use super::owner::{location_of, solid_of};
-use super::si::describe;
+use super::si::describe_dimension;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::language::Builtin;
 use crate::language::dimension::{Dimension, Variable};
@@ -13,7 +13,7 @@ const MAX_PLACES: usize = 2;
 
 /// Reports the contradictions. Each parameter, and each solid with its arguments, is reported once, because
 /// further contradictions most likely have the same cause.
-pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnostics) {
+pub fn report_contradictions(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnostics) {
     let mut shown: Vec<Variable> = Vec::new();
     let mut solids: Vec<&Expr> = Vec::new();
     for mismatch in std::mem::take(&mut inference.mismatches) {
@@ -37,12 +37,12 @@ pub fn report(d: &Description, inference: &mut Inference<'_>, cx: &mut Diagnosti
         let error = error.or_else(|| mismatch_error(d, &mismatch, &names, inference));
         if let Some(mut error) = error {
             if let Some((_, written)) = solid {
-                error.help(format!("write `{written}`"));
+                error.add_help(format!("write `{written}`"));
             } else if error.is_bare() {
-                error.help(missing_factor_help(d, &names));
+                error.add_help(missing_factor_help(d, &names));
             }
             if !names.is_empty() && has_number_as_factor(mismatch.origin.expression) {
-                error.help(NUMBER_WITH_UNIT);
+                error.add_help(NUMBER_WITH_UNIT);
             }
             cx.add(error);
         }
@@ -55,7 +55,7 @@ const NUMBER_WITH_UNIT: &str = "a number next to a parameter is dimensionless; a
 
 /// Whether an expression contains a product or quotient with a number.
 fn has_number_as_factor(e: &Expr) -> bool {
-    e.parts().into_iter().any(|part| match &part.kind {
+    e.subexpressions().into_iter().any(|part| match &part.kind {
         ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, a, b, _) => is_number(a) || is_number(b),
         _ => false,
     })
@@ -63,7 +63,7 @@ fn has_number_as_factor(e: &Expr) -> bool {
 
 /// Whether an expression contains no name except pi.
 fn is_number(e: &Expr) -> bool {
-    e.parts().into_iter().all(|part| match &part.kind {
+    e.subexpressions().into_iter().all(|part| match &part.kind {
         ExprKind::Name(name) => Builtin::of_name(name) == Some(Builtin::Pi),
         ExprKind::Number(_) | ExprKind::Neg(_) | ExprKind::Binary(..) | ExprKind::Call(..) => true,
         ExprKind::Field(..)
@@ -77,8 +77,12 @@ fn is_number(e: &Expr) -> bool {
 /// Returns the help if it is unclear which quantity is wrong; mentions the definitions among them.
 fn missing_factor_help(d: &Description, names: &[(Variable, &Expr)]) -> String {
     let is_defined = |name: &&str| d.definitions.iter().any(|definition| definition.name.text == **name);
-    let defined: Vec<String> =
-        names.iter().map(|(_, e)| text(e)).filter(is_defined).map(|name| format!("`{name}`")).collect();
+    let defined: Vec<String> = names
+        .iter()
+        .map(|(_, e)| text_of_name(e))
+        .filter(is_defined)
+        .map(|name| format!("`{name}`"))
+        .collect();
     let other_places = match defined.split_last() {
         None => String::new(),
         Some((last, [])) => format!(" here or in {last}"),
@@ -139,22 +143,25 @@ fn parameter_error(
     here: &Expr,
     inference: &mut Inference<'_>,
 ) -> Option<Diagnostic> {
-    let name = text(here);
-    let is = inference.system.resolve(&Dimension::variable(v))?;
+    let name = text_of_name(here);
+    let is = inference.system.resolve(&Dimension::unknown_dimension(v))?;
     let (found, expected) =
         (inference.system.resolve(&mismatch.found)?, inference.system.resolve(&mismatch.expected)?);
     // The expected dimension requires that of the parameter to change by this power of the quotient.
-    let power = mismatch.found.exponent(v).plus(mismatch.expected.exponent(v).negated())?;
-    let needed = is.times_power(&expected.quotient(&found)?, power.inverse()?)?;
+    let power = mismatch
+        .found
+        .exponent_of_variable(v)
+        .checked_sum(mismatch.expected.exponent_of_variable(v).negated())?;
+    let needed = is.times_power(&expected.dimension_of_quotient(&found)?, power.inverse()?)?;
     let first = inference.origins.get(&v).copied()?;
     if !is.is_known() || !needed.is_known() {
         return None;
     }
-    let (is, needed) = (describe(&is), describe(&needed));
+    let (is, needed) = (describe_dimension(&is), describe_dimension(&needed));
     if first.reason == Reason::Unit {
         let message = format!("`{name}` is declared as {is}, but used as {needed}");
         let mut error = Diagnostic::new(first.expression.place.clone(), message);
-        error.note(format!("it is {needed}{}", location_of(d, here)));
+        error.add_note(format!("it is {needed}{}", location_of(d, here)));
         return Some(error);
     }
     let mut error =
@@ -178,17 +185,17 @@ fn mismatch_error(
         (ExprKind::Binary(.., operator), Reason::Sum(_)) => operator,
         _ => &mismatch.origin.expression.place,
     };
-    let mut diagnostic = Diagnostic::new(place.clone(), message(mismatch, &found, &expected));
+    let mut diagnostic = Diagnostic::new(place.clone(), mismatch_message(mismatch, &found, &expected));
     if names.is_empty() {
-        diagnostic.help(
+        diagnostic.add_help(
             "multiply one of them by a factor, as in `2 * x`: a number that multiplies only coordinates, \
              rates or inputs takes the missing unit",
         );
     }
     for (v, e) in names.iter().take(MAX_PLACES) {
-        let is = inference.system.resolve(&Dimension::variable(*v)).filter(Dimension::is_known);
+        let is = inference.system.resolve(&Dimension::unknown_dimension(*v)).filter(Dimension::is_known);
         if let (Some(is), Some(origin)) = (is, inference.origins.get(v).copied()) {
-            note_origin(d, e, *v, &describe(&is), origin, inference, &mut diagnostic);
+            note_origin(d, e, *v, &describe_dimension(&is), origin, inference, &mut diagnostic);
         }
     }
     Some(diagnostic)
@@ -206,31 +213,31 @@ fn note_origin(
 ) {
     let mut names = Vec::new();
     names_of(&origin, inference, &mut names);
-    let name = text(here);
+    let name = text_of_name(here);
     match names.iter().find(|(known, _)| *known == v) {
-        Some((_, e)) => diagnostic.note(format!("`{name}` is {is}{}", location_of(d, e))),
-        None => diagnostic.note(format!("`{name}` becomes {is}{}", location_of(d, origin.expression))),
+        Some((_, e)) => diagnostic.add_note(format!("`{name}` is {is}{}", location_of(d, e))),
+        None => diagnostic.add_note(format!("`{name}` becomes {is}{}", location_of(d, origin.expression))),
     };
 }
 
 /// Returns the text of an expression that is a name; empty for other expressions.
-fn text(e: &Expr) -> &str {
+fn text_of_name(e: &Expr) -> &str {
     if let ExprKind::Name(name) = &e.kind { name } else { "" }
 }
 
-fn message(mismatch: &Mismatch<'_>, found: &Dimension, expected: &Dimension) -> String {
+fn mismatch_message(mismatch: &Mismatch<'_>, found: &Dimension, expected: &Dimension) -> String {
     let reason = mismatch.origin.reason;
     if !found.is_known() || !expected.is_known() {
         let factor = found
-            .quotient(expected)
+            .dimension_of_quotient(expected)
             .filter(Dimension::is_known)
-            .map_or(String::new(), |d| format!(": they differ by {}", super::si::unit(&d)));
+            .map_or(String::new(), |d| format!(": they differ by {}", super::si::unit_of_dimension(&d)));
         return match reason {
             Reason::Sum(_) => format!("these terms cannot have one unit{factor}"),
             _ => format!("this cannot have the unit that is needed here{factor}"),
         };
     }
-    let (found, expected) = (describe(found), describe(expected));
+    let (found, expected) = (describe_dimension(found), describe_dimension(expected));
     match reason {
         Reason::Sum(BinaryOp::Sub) => format!("{found} cannot be subtracted from {expected}"),
         Reason::Sum(_) => format!("{found} cannot be added to {expected}"),

@@ -1,6 +1,6 @@
 //! SI units: names and notation of dimensions, and parsing of `#[unit(…)]`.
 
-use crate::diag::{Diagnostics, nearest};
+use crate::diag::{Diagnostics, nearest_candidate};
 use crate::language::dimension::{
     ACCELERATION, Dimension, ENERGY, FORCE, INERTIA, LENGTH, MASS, PLAIN, POWER, RATE, RATE_OF_RATE, SPEED,
     STRENGTH, TIME,
@@ -80,16 +80,16 @@ static FOREIGN_UNITS: [(&str, &str); 32] = [
 ];
 
 /// Returns the name of a dimension with its article and its unit: `a mass (kg)`.
-pub fn describe(dimension: &Dimension) -> String {
+pub fn describe_dimension(dimension: &Dimension) -> String {
     match NAMES.iter().find(|(known, ..)| known == dimension) {
         Some((_, name, _)) if dimension.is_plain() => (*name).to_string(),
         Some((_, name, unit)) if !name.is_empty() => format!("{name} ({unit})"),
-        _ => format!("a quantity in {}", unit(dimension)),
+        _ => format!("a quantity in {}", unit_of_dimension(dimension)),
     }
 }
 
 /// Returns the unit of a dimension; `any` if it is unknown.
-pub fn unit(dimension: &Dimension) -> String {
+pub fn unit_of_dimension(dimension: &Dimension) -> String {
     if !dimension.is_known() {
         return "any".to_string();
     }
@@ -104,8 +104,8 @@ pub fn unit(dimension: &Dimension) -> String {
 fn format_powers(powers: &[(&str, Ratio)]) -> String {
     let (mut above, mut below) = (Vec::new(), Vec::new());
     for (name, e) in powers.iter().filter(|(_, e)| !e.is_zero()) {
-        let side = if e.parts().0 > 0 { &mut above } else { &mut below };
-        side.push(format!("{name}{}", exponent(*e)));
+        let side = if e.numerator_and_denominator().0 > 0 { &mut above } else { &mut below };
+        side.push(format!("{name}{}", format_exponent(*e)));
     }
     let above = if above.is_empty() { "1".to_string() } else { above.join("·") };
     match below.as_slice() {
@@ -116,8 +116,8 @@ fn format_powers(powers: &[(&str, Ratio)]) -> String {
 }
 
 /// Formats the magnitude of an exponent as superscripts; fractions are in parentheses.
-fn exponent(e: Ratio) -> String {
-    let (n, d) = e.parts();
+fn format_exponent(e: Ratio) -> String {
+    let (n, d) = e.numerator_and_denominator();
     if d != 1 {
         return format!("^({}/{d})", n.abs());
     }
@@ -133,12 +133,12 @@ fn exponent(e: Ratio) -> String {
 
 /// Parses the unit of `#[unit(…)]`: products and quotients of units and their powers. Returns the dimension
 /// and the unit as shown to users.
-pub fn read(e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, String)> {
+pub fn parse_unit(e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, String)> {
     match &e.kind {
         ExprKind::Number(1.0) => Some((PLAIN, "1".to_string())),
         ExprKind::Name(name) => read_name(name, e, cx),
         ExprKind::Binary(op @ (BinaryOp::Mul | BinaryOp::Div), left, right, _) => {
-            let ((a, mut text), (b, factor)) = (read(left, cx)?, read(right, cx)?);
+            let ((a, mut text), (b, factor)) = (parse_unit(left, cx)?, parse_unit(right, cx)?);
             let divide = *op == BinaryOp::Div;
             let is_compound_unit = |t: &str| t.contains(['·', '/']);
             let _ = match (divide, is_compound_unit(&factor)) {
@@ -147,11 +147,11 @@ pub fn read(e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, String)> {
                 (false, _) if text.contains('/') => write!(text, "·({factor})"),
                 (false, _) => write!(text, "·{factor}"),
             };
-            let dimension = if divide { a.quotient(&b)? } else { a.times(&b)? };
+            let dimension = if divide { a.dimension_of_quotient(&b)? } else { a.dimension_of_product(&b)? };
             Some((dimension, text))
         }
         _ => {
-            cx.error(e.place.clone(), "expected a unit").help(
+            cx.report_error(e.place.clone(), "expected a unit").add_help(
                 "units are products and quotients: `#[unit(kg)]`, `#[unit(N * m / rad)]`, `#[unit(kg * m2)]`",
             );
             None
@@ -167,17 +167,17 @@ fn read_name(name: &str, e: &Expr, cx: &mut Diagnostics) -> Option<(Dimension, S
     };
     let known = UNITS.iter().find(|(unit, _)| *unit == letters);
     if let (Some((unit, dimension)), Some(power)) = (known, power) {
-        let power = Ratio::integer(power);
-        return Some((dimension.power(power)?, format!("{unit}{}", exponent(power))));
+        let power = Ratio::from_integer(power);
+        return Some((dimension.dimension_of_power(power)?, format!("{unit}{}", format_exponent(power))));
     }
-    let diagnostic = cx.error(e.place.clone(), format!("unknown unit `{name}`"));
+    let diagnostic = cx.report_error(e.place.clone(), format!("unknown unit `{name}`"));
     let units: Vec<&str> = UNITS.iter().map(|(unit, _)| *unit).collect();
     match FOREIGN_UNITS.iter().find(|(other, _)| *other == name) {
         Some((_, si)) => {
-            diagnostic.help(format!("all quantities are in SI units, angles in radians: write `{si}`"))
+            diagnostic.add_help(format!("all quantities are in SI units, angles in radians: write `{si}`"))
         }
-        None if nearest(name, &units).is_some() => diagnostic.suggest(name, units),
-        None => diagnostic.help(
+        None if nearest_candidate(name, &units).is_some() => diagnostic.suggest_name(name, units),
+        None => diagnostic.add_help(
             "the units are `m`, `kg`, `s`, `rad`, `N`, `J`, `W`, `Hz` and `Pa`, and their powers such as \
              `m2`",
         ),
@@ -200,12 +200,12 @@ mod tests {
             (Dimension::new(-3, 1, 0), "kg/m³"),
             (Dimension::new(-12, 0, 0), "1/m¹²"),
             (Dimension::new(5, 0, 0), "m⁵"),
-            (Dimension::variable(0), "any"),
+            (Dimension::unknown_dimension(0), "any"),
         ];
         for (dimension, text) in all {
-            assert_eq!(unit(&dimension), text);
+            assert_eq!(unit_of_dimension(&dimension), text);
         }
-        let root = LENGTH.power(Ratio::new(1, 2).unwrap()).unwrap();
-        assert_eq!(unit(&root), "m^(1/2)");
+        let root = LENGTH.dimension_of_power(Ratio::new(1, 2).unwrap()).unwrap();
+        assert_eq!(unit_of_dimension(&root), "m^(1/2)");
     }
 }

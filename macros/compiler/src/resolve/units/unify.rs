@@ -32,7 +32,7 @@ pub struct System {
 
 impl System {
     /// Adds an unknown dimension to the system.
-    pub fn variable(&mut self) -> Variable {
+    pub fn add_variable(&mut self) -> Variable {
         self.solution.push(None);
         self.uses.push(Vec::new());
         self.solution.len() - 1
@@ -48,33 +48,38 @@ impl System {
             }
             sum = match self.solution.get(*v)? {
                 Some(known) => sum.times_power(known, *e)?,
-                None => sum.times_power(&Dimension::variable(*v), *e)?,
+                None => sum.times_power(&Dimension::unknown_dimension(*v), *e)?,
             };
         }
         Some(sum)
     }
 
     /// Adds the equation that two dimensions are equal.
-    pub fn equate(&mut self, a: &Dimension, b: &Dimension) -> Outcome {
-        let quotient = a.quotient(b).and_then(|quotient| self.resolve(&quotient));
+    pub fn equate_dimensions(&mut self, a: &Dimension, b: &Dimension) -> Outcome {
+        let quotient = a.dimension_of_quotient(b).and_then(|quotient| self.resolve(&quotient));
         let Some(quotient) = quotient else { return Outcome::LimitExceeded };
         match quotient.unknown.last() {
             None if quotient.is_plain() => Outcome::Holds(Vec::new()),
             None => Outcome::Contradicts,
-            Some((pivot, exponent)) => {
-                self.solve(*pivot, *exponent, &quotient).map_or(Outcome::LimitExceeded, Outcome::Holds)
-            }
+            Some((pivot, exponent)) => self
+                .solve_for_variable(*pivot, *exponent, &quotient)
+                .map_or(Outcome::LimitExceeded, Outcome::Holds),
         }
     }
 
     /// Solves `quotient = 1` for one of its unknowns, and substitutes the solution.
-    fn solve(&mut self, pivot: Variable, exponent: Ratio, quotient: &Dimension) -> Option<Vec<Variable>> {
-        let rest = quotient.times_power(&Dimension::variable(pivot), exponent.negated())?;
-        let value = rest.power(exponent.negated().inverse()?)?;
+    fn solve_for_variable(
+        &mut self,
+        pivot: Variable,
+        exponent: Ratio,
+        quotient: &Dimension,
+    ) -> Option<Vec<Variable>> {
+        let rest = quotient.times_power(&Dimension::unknown_dimension(pivot), exponent.negated())?;
+        let value = rest.dimension_of_power(exponent.negated().inverse()?)?;
         let mut known = Vec::new();
         for v in std::mem::take(self.uses.get_mut(pivot)?) {
             let Some(old) = self.solution.get(v)?.clone() else { continue };
-            let e = old.exponent(pivot);
+            let e = old.exponent_of_variable(pivot);
             if e.is_zero() {
                 continue;
             }
@@ -82,14 +87,15 @@ impl System {
             if self.work > MAX_WORK {
                 return None;
             }
-            let new = old.times_power(&Dimension::variable(pivot), e.negated())?.times_power(&value, e)?;
-            self.set(v, new, &mut known);
+            let new =
+                old.times_power(&Dimension::unknown_dimension(pivot), e.negated())?.times_power(&value, e)?;
+            self.set_variable(v, new, &mut known);
         }
-        self.set(pivot, value, &mut known);
+        self.set_variable(pivot, value, &mut known);
         Some(known)
     }
 
-    fn set(&mut self, v: Variable, value: Dimension, known: &mut Vec<Variable>) {
+    fn set_variable(&mut self, v: Variable, value: Dimension, known: &mut Vec<Variable>) {
         if value.is_known() {
             known.push(v);
         }
@@ -115,36 +121,38 @@ mod tests {
     #[test]
     fn equations_are_solved_in_any_order() {
         let mut s = System::default();
-        let [a, b, c] = [s.variable(), s.variable(), s.variable()].map(Dimension::variable);
-        assert_eq!(s.equate(&a.times(&b).unwrap(), &c), Outcome::Holds(Vec::new()));
-        assert_eq!(s.equate(&a, &b), Outcome::Holds(Vec::new()));
+        let [a, b, c] =
+            [s.add_variable(), s.add_variable(), s.add_variable()].map(Dimension::unknown_dimension);
+        assert_eq!(s.equate_dimensions(&a.dimension_of_product(&b).unwrap(), &c), Outcome::Holds(Vec::new()));
+        assert_eq!(s.equate_dimensions(&a, &b), Outcome::Holds(Vec::new()));
         // The root of an area is a length.
-        let area = LENGTH.times(&LENGTH).unwrap();
-        let Outcome::Holds(mut known) = s.equate(&c, &area) else { panic!("it is known") };
+        let area = LENGTH.dimension_of_product(&LENGTH).unwrap();
+        let Outcome::Holds(mut known) = s.equate_dimensions(&c, &area) else { panic!("it is known") };
         known.sort_unstable();
         assert_eq!(known, [0, 1, 2]);
         assert_eq!(s.resolve(&a), Some(LENGTH));
-        assert_eq!(s.equate(&a, &c), Outcome::Contradicts);
-        assert_eq!(s.equate(&a, &LENGTH), Outcome::Holds(Vec::new()));
+        assert_eq!(s.equate_dimensions(&a, &c), Outcome::Contradicts);
+        assert_eq!(s.equate_dimensions(&a, &LENGTH), Outcome::Holds(Vec::new()));
     }
 
     #[test]
     fn exponents_may_be_fractions() {
         let mut s = System::default();
-        let a = Dimension::variable(s.variable());
-        s.equate(&a.power(Ratio::integer(2)).unwrap(), &LENGTH);
-        assert_eq!(s.resolve(&a).unwrap().base[0].parts(), (1, 2));
+        let a = Dimension::unknown_dimension(s.add_variable());
+        s.equate_dimensions(&a.dimension_of_power(Ratio::from_integer(2)).unwrap(), &LENGTH);
+        assert_eq!(s.resolve(&a).unwrap().base[0].numerator_and_denominator(), (1, 2));
     }
 
     #[test]
     fn work_is_bounded() {
         let mut s = System::default();
-        let all: Vec<Variable> = (0..3000).map(|_| s.variable()).collect();
+        let all: Vec<Variable> = (0..3000).map(|_| s.add_variable()).collect();
         let product =
             Dimension { unknown: all.iter().map(|v| (*v, Ratio::ONE)).collect(), ..Dimension::new(0, 0, 0) };
         let limit_exceeded = (0..3000).any(|k| {
-            let power = product.times_power(&Dimension::variable(k), Ratio::integer(k as i64)).unwrap();
-            s.equate(&power, &LENGTH) == Outcome::LimitExceeded
+            let power =
+                product.times_power(&Dimension::unknown_dimension(k), Ratio::from_integer(k as i64)).unwrap();
+            s.equate_dimensions(&power, &LENGTH) == Outcome::LimitExceeded
         });
         assert!(limit_exceeded);
     }

@@ -37,12 +37,12 @@ pub enum Value {
 
 impl Value {
     /// Returns a quantity whose unit follows from the motion.
-    pub fn quantity(dimension: Dimension) -> Value {
+    pub fn quantity_of_dimension(dimension: Dimension) -> Value {
         Value::Quantity { dimension, anchor: Anchor::Motion }
     }
 
     /// Returns the value of the negated expression.
-    pub fn negated(self) -> Value {
+    pub fn negated_value(self) -> Value {
         match self {
             Value::Number(value) => Value::Number(-value),
             other => other,
@@ -50,19 +50,23 @@ impl Value {
     }
 
     /// Returns a power of the value; unknown if the exponent is unknown.
-    pub fn power(self, exponent: Option<Ratio>) -> Value {
+    pub fn power_of_value(self, exponent: Option<Ratio>) -> Value {
         match self {
-            Value::Quantity { dimension, .. } if dimension.is_plain() => Value::quantity(dimension),
-            Value::Quantity { dimension, anchor } => match exponent.and_then(|e| dimension.power(e)) {
-                Some(dimension) => Value::Quantity { dimension, anchor },
-                None => Value::Unknown,
-            },
+            Value::Quantity { dimension, .. } if dimension.is_plain() => {
+                Value::quantity_of_dimension(dimension)
+            }
+            Value::Quantity { dimension, anchor } => {
+                match exponent.and_then(|e| dimension.dimension_of_power(e)) {
+                    Some(dimension) => Value::Quantity { dimension, anchor },
+                    None => Value::Unknown,
+                }
+            }
             _ => Value::Unknown,
         }
     }
 
     /// Returns the source of the unit; `Motion` for a value that is not a quantity.
-    pub fn anchor(&self) -> Anchor {
+    pub fn source_of_unit(&self) -> Anchor {
         match self {
             Value::Quantity { anchor, .. } => *anchor,
             _ => Anchor::Motion,
@@ -83,7 +87,7 @@ impl Value {
 
 /// Returns the product of factors, and whether a number among them may have a unit. Marked factors are
 /// divisors.
-pub fn product(factors: &[(bool, Value)]) -> (Value, bool) {
+pub fn product_of_values(factors: &[(bool, Value)]) -> (Value, bool) {
     let has_factor_of_kind = |what: fn(&Value) -> bool| factors.iter().any(|(_, f)| what(f));
     // Zero has any unit.
     if factors.iter().any(|(below, f)| !below && matches!(f, Value::Number(0.0))) {
@@ -105,13 +109,13 @@ pub fn product(factors: &[(bool, Value)]) -> (Value, bool) {
         .collect();
     let Some(anchor) = quantities.iter().map(|(.., anchor)| *anchor).max() else {
         return match (is_number, is_direction) {
-            (true, false) => (Value::Number(number(factors)), false),
+            (true, false) => (Value::Number(product_of_numbers(factors)), false),
             (true, true) => (Value::Number(f64::NAN), false),
             _ => (Value::Direction, false),
         };
     };
     let product = quantities.iter().try_fold(PLAIN, |product, (below, dimension, _)| {
-        product.times_power(dimension, Ratio::integer(if *below { -1 } else { 1 }))
+        product.times_power(dimension, Ratio::from_integer(if *below { -1 } else { 1 }))
     });
     match product {
         Some(dimension) => (Value::Quantity { dimension, anchor }, is_number && anchor != Anchor::Parameter),
@@ -120,7 +124,7 @@ pub fn product(factors: &[(bool, Value)]) -> (Value, bool) {
 }
 
 /// Returns the product of numbers; NaN if another factor is present.
-fn number(factors: &[(bool, Value)]) -> f64 {
+fn product_of_numbers(factors: &[(bool, Value)]) -> f64 {
     let number_of_factor = |f: &Value| if let Value::Number(value) = f { *value } else { f64::NAN };
     factors
         .iter()

@@ -2,7 +2,7 @@
 //! dimensions.
 
 use super::infer::{Inference, Meaning, Origin, Reason};
-use super::value::{Anchor, Value, product};
+use super::value::{Anchor, Value, product_of_values};
 use crate::expr::Function;
 use crate::language::dimension::{Dimension, INERTIA, LENGTH, PLAIN, RATE, TIME, Variable};
 use crate::language::ratio::Ratio;
@@ -11,31 +11,31 @@ use crate::syntax::{BinaryOp, Callee, Expr, ExprKind, Name};
 
 impl<'a> Inference<'a> {
     /// Returns the value of an expression for the inference of units.
-    pub fn value(&mut self, e: &'a Expr) -> Value {
+    pub fn value_of_expression(&mut self, e: &'a Expr) -> Value {
         match &e.kind {
             ExprKind::Number(n) => Value::Number(*n),
-            ExprKind::Name(name) => self.name(name),
-            ExprKind::Field(inner, member) => self.member(inner, member),
-            ExprKind::Neg(inner) => self.value(inner).negated(),
-            ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, ..) => self.product(e),
-            ExprKind::Binary(..) => self.sum(e, None),
-            ExprKind::Call(function, arguments) => self.call(function, arguments),
+            ExprKind::Name(name) => self.value_of_name(name),
+            ExprKind::Field(inner, member) => self.value_of_member(inner, member),
+            ExprKind::Neg(inner) => self.value_of_expression(inner).negated_value(),
+            ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, ..) => self.value_of_product(e),
+            ExprKind::Binary(..) => self.value_of_sum(e, None),
+            ExprKind::Call(function, arguments) => self.value_of_call(function, arguments),
             ExprKind::Array(items) => self.common_value(items, Reason::Components),
             ExprKind::Method(..) | ExprKind::Tuple(_) | ExprKind::Text(_) => Value::Unknown,
         }
     }
 
-    fn name(&self, name: &str) -> Value {
+    fn value_of_name(&self, name: &str) -> Value {
         if let Some((_, dimension)) = self.locals.iter().find(|(local, _)| *local == name) {
-            return Value::quantity(dimension.clone());
+            return Value::quantity_of_dimension(dimension.clone());
         }
         match (Builtin::of_name(name), self.names.get(name)) {
             (_, Some(Meaning::Named(v, anchor))) => {
-                Value::Quantity { dimension: Dimension::variable(*v), anchor: *anchor }
+                Value::Quantity { dimension: Dimension::unknown_dimension(*v), anchor: *anchor }
             }
             (Some(Builtin::Axis(_)), _) => Value::Direction,
             (Some(Builtin::Pi), _) => Value::Number(std::f64::consts::PI),
-            (Some(Builtin::Time), _) => Value::quantity(TIME),
+            (Some(Builtin::Time), _) => Value::quantity_of_dimension(TIME),
             (_, Some(Meaning::Moving(dimension, anchor))) => {
                 Value::Quantity { dimension: dimension.clone(), anchor: *anchor }
             }
@@ -44,10 +44,10 @@ impl<'a> Inference<'a> {
     }
 
     /// Returns the value of a coordinate of a joint, or of an axis of a frame.
-    fn member(&self, inner: &Expr, member: &Name) -> Value {
+    fn value_of_member(&self, inner: &Expr, member: &Name) -> Value {
         let ExprKind::Name(joint) = &inner.kind else { return Value::Unknown };
         match self.names.get(&format!("{joint}.{}", member.text)) {
-            Some(Meaning::Moving(dimension, _)) => Value::quantity(dimension.clone()),
+            Some(Meaning::Moving(dimension, _)) => Value::quantity_of_dimension(dimension.clone()),
             _ => Value::Direction,
         }
     }
@@ -59,7 +59,7 @@ impl<'a> Inference<'a> {
         else {
             return a.more_specific(b);
         };
-        match self.equate(other, dimension, origin) {
+        match self.equate_dimensions(other, dimension, origin) {
             true => Value::Quantity { dimension: dimension.clone(), anchor: *anchor.max(second) },
             false => Value::Unknown,
         }
@@ -70,7 +70,7 @@ impl<'a> Inference<'a> {
         let mut first: Option<&Expr> = None;
         let mut common = Value::Number(0.0);
         for item in items {
-            let value = self.value(item);
+            let value = self.value_of_expression(item);
             let is_quantity = matches!(value, Value::Quantity { .. });
             common =
                 self.equate_values(common, value, Origin { reason, expression: item, compared_with: first });
@@ -84,7 +84,7 @@ impl<'a> Inference<'a> {
 
     /// Returns the value of a sum of any number of terms. If a term has a parameter or an input, terms of
     /// unknown dimension get the expected dimension, so that an error is reported at the other term.
-    pub fn sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> Value {
+    pub fn value_of_sum(&mut self, e: &'a Expr, expected: Option<&Dimension>) -> Value {
         let mut written = Vec::new();
         let mut current = e;
         while let ExprKind::Binary(op @ (BinaryOp::Add | BinaryOp::Sub), left, right, _) = &current.kind {
@@ -92,14 +92,17 @@ impl<'a> Inference<'a> {
             current = left;
         }
         written.push((None, current));
-        let terms: Vec<_> =
-            written.into_iter().rev().map(|(sum, term)| (sum, term, self.value(term))).collect();
-        let is_anchored = terms.iter().any(|(.., value)| value.anchor() > Anchor::Motion);
+        let terms: Vec<_> = written
+            .into_iter()
+            .rev()
+            .map(|(sum, term)| (sum, term, self.value_of_expression(term)))
+            .collect();
+        let is_anchored = terms.iter().any(|(.., value)| value.source_of_unit() > Anchor::Motion);
         for (_, term, value) in &terms {
             if let (Value::Quantity { dimension, .. }, Some(expected), true) = (value, expected, is_anchored)
                 && self.system.resolve(dimension).is_some_and(|d| !d.is_known())
             {
-                self.equate(
+                self.equate_dimensions(
                     dimension,
                     expected,
                     Origin { reason: Reason::Place, expression: term, compared_with: None },
@@ -120,7 +123,7 @@ impl<'a> Inference<'a> {
 
     /// Returns the value of a product or quotient of any number of factors. Nested products in parentheses
     /// are flattened: `a / (2 * b)` is `a / 2 / b`.
-    fn product(&mut self, e: &'a Expr) -> Value {
+    fn value_of_product(&mut self, e: &'a Expr) -> Value {
         let mut factors = Vec::new();
         let mut waiting = vec![(false, e)];
         while let Some((below, factor)) = waiting.pop() {
@@ -129,7 +132,7 @@ impl<'a> Inference<'a> {
                     waiting.push((below != (*op == BinaryOp::Div), &**right));
                     waiting.push((below, &**left));
                 }
-                _ => factors.push((below, self.value(factor))),
+                _ => factors.push((below, self.value_of_expression(factor))),
             }
         }
         let value = self.multiply(&factors);
@@ -147,7 +150,7 @@ impl<'a> Inference<'a> {
 
     /// Returns the product of factors; the flag marks divisors.
     fn multiply(&mut self, factors: &[(bool, Value)]) -> Value {
-        let (value, free) = product(factors);
+        let (value, free) = product_of_values(factors);
         let is_gravity = factors.iter().any(|(_, factor)| match factor {
             Value::Number(g) => self.gravity.contains(&g.abs()),
             _ => false,
@@ -155,23 +158,23 @@ impl<'a> Inference<'a> {
         let (Value::Quantity { dimension, anchor }, true) = (&value, free || is_gravity) else {
             return value;
         };
-        let number = Dimension::variable(self.system.variable());
+        let number = Dimension::unknown_dimension(self.system.add_variable());
         self.default_to_plain(number.clone());
-        match dimension.times(&number) {
+        match dimension.dimension_of_product(&number) {
             Some(dimension) => Value::Quantity { dimension, anchor: *anchor },
             None => Value::Unknown,
         }
     }
 
     /// Returns the value of a call: of a table, otherwise of a function of the language.
-    fn call(&mut self, callee: &'a Callee, arguments: &'a [Expr]) -> Value {
+    fn value_of_call(&mut self, callee: &'a Callee, arguments: &'a [Expr]) -> Value {
         if let Some(unknown) = self.tables.get(&callee.text).cloned() {
-            return self.lookup(&unknown, arguments);
+            return self.value_of_table(&unknown, arguments);
         }
         match (callee.id, arguments) {
-            (Some(Callable::Elementary(f)), [a]) => self.elementary(f, a),
+            (Some(Callable::Elementary(f)), [a]) => self.value_of_elementary(f, a),
             (Some(Callable::Function(function)), _) => {
-                self.function(&function.row().unit, &callee.text, arguments)
+                self.value_of_function(&function.row().unit, &callee.text, arguments)
             }
             (Some(Callable::If), [_, _, _, _]) => {
                 let (compared, pieces) = arguments.split_at(2);
@@ -183,103 +186,110 @@ impl<'a> Inference<'a> {
     }
 
     /// Returns the value of a function of the language.
-    fn function(&mut self, rule: &UnitRule, name: &'a str, arguments: &'a [Expr]) -> Value {
+    fn value_of_function(&mut self, rule: &UnitRule, name: &'a str, arguments: &'a [Expr]) -> Value {
         let [first, others @ ..] = arguments else {
             return match rule {
-                UnitRule::Of(dimension) => Value::quantity(dimension.clone()),
+                UnitRule::Of(dimension) => Value::quantity_of_dimension(dimension.clone()),
                 _ => Value::Unknown,
             };
         };
         match rule {
             UnitRule::Unknown => Value::Unknown,
             UnitRule::Of(dimension) => {
-                self.visit(arguments);
-                Value::quantity(dimension.clone())
+                self.infer_unused_expressions(arguments);
+                Value::quantity_of_dimension(dimension.clone())
             }
             UnitRule::Direction => {
-                self.visit(arguments);
+                self.infer_unused_expressions(arguments);
                 Value::Direction
             }
             UnitRule::Alike => self.common_value(arguments, Reason::Compared(name)),
             UnitRule::Quotient => match self.common_value(arguments, Reason::Compared(name)) {
-                Value::Quantity { .. } => Value::quantity(PLAIN),
+                Value::Quantity { .. } => Value::quantity_of_dimension(PLAIN),
                 _ => Value::Number(f64::NAN),
             },
             UnitRule::LikeFirst => {
-                self.visit(others);
-                self.value(first)
+                self.infer_unused_expressions(others);
+                self.value_of_expression(first)
             }
             UnitRule::LikeLast => {
-                let values: Vec<Value> = arguments.iter().map(|a| self.value(a)).collect();
+                let values: Vec<Value> = arguments.iter().map(|a| self.value_of_expression(a)).collect();
                 values.into_iter().last().unwrap_or(Value::Unknown)
             }
             UnitRule::Product { scalar } => {
-                let factors: Vec<_> = arguments.iter().map(|a| (false, self.value(a))).collect();
+                let factors: Vec<_> =
+                    arguments.iter().map(|a| (false, self.value_of_expression(a))).collect();
                 match self.multiply(&factors) {
-                    Value::Direction if *scalar => Value::quantity(PLAIN),
+                    Value::Direction if *scalar => Value::quantity_of_dimension(PLAIN),
                     product => product,
                 }
             }
-            UnitRule::Magnitude => match self.value(first) {
-                Value::Direction => Value::quantity(PLAIN),
+            UnitRule::Magnitude => match self.value_of_expression(first) {
+                Value::Direction => Value::quantity_of_dimension(PLAIN),
                 other => other,
             },
             UnitRule::Power => match others {
-                [exponent] => self.power(first, exponent),
+                [exponent] => self.value_of_power(first, exponent),
                 _ => Value::Unknown,
             },
             UnitRule::TimeDerivative => match &first.kind {
                 // The rate of a vector in a frame; the frame's name has no dimension.
                 ExprKind::Binary(BinaryOp::Div, vector, frame, _) if self.is_frame(frame) => {
-                    match self.value(vector) {
-                        Value::Direction => Value::quantity(RATE),
-                        other => quotient(other, &TIME),
+                    match self.value_of_expression(vector) {
+                        Value::Direction => Value::quantity_of_dimension(RATE),
+                        other => quotient_by_dimension(other, &TIME),
                     }
                 }
-                _ => quotient(self.value(first), &TIME),
+                _ => quotient_by_dimension(self.value_of_expression(first), &TIME),
             },
-            UnitRule::Inverse => self.value(first).power(Some(Ratio::integer(-1))),
+            UnitRule::Inverse => {
+                self.value_of_expression(first).power_of_value(Some(Ratio::from_integer(-1)))
+            }
             UnitRule::Gradient => match &first.kind {
-                ExprKind::Binary(_, field, ..) => match self.value(field) {
-                    value @ Value::Quantity { .. } => quotient(value, &LENGTH),
+                ExprKind::Binary(_, field, ..) => match self.value_of_expression(field) {
+                    value @ Value::Quantity { .. } => quotient_by_dimension(value, &LENGTH),
                     _ => Value::Unknown,
                 },
                 _ => Value::Unknown,
             },
             UnitRule::Places(dimension) => {
-                self.visit(others);
-                self.points(first);
-                Value::quantity(dimension.clone())
+                self.infer_unused_expressions(others);
+                self.infer_operand_points(first);
+                Value::quantity_of_dimension(dimension.clone())
             }
             UnitRule::Moment => {
-                self.points(first);
-                let directions: Vec<Value> = others.iter().map(|a| self.value(a)).collect();
+                self.infer_operand_points(first);
+                let directions: Vec<Value> = others.iter().map(|a| self.value_of_expression(a)).collect();
                 match directions.iter().all(|direction| matches!(direction, Value::Direction)) {
-                    true => Value::quantity(INERTIA),
+                    true => Value::quantity_of_dimension(INERTIA),
                     // Vectors with a unit would contribute it.
                     false => Value::Unknown,
                 }
             }
             UnitRule::Cable => {
-                self.points(first);
+                self.infer_operand_points(first);
                 let Some(ExprKind::Method(base, _, arguments)) = others.first().map(|e| &e.kind) else {
                     return Value::Unknown;
                 };
-                self.point(base);
-                let radius =
-                    arguments.first().map(|radius| self.expect(radius, &LENGTH, "m", Reason::Argument));
-                Value::Quantity { dimension: LENGTH, anchor: radius.map_or(Anchor::Motion, |r| r.anchor()) }
+                self.infer_point(base);
+                let radius = arguments
+                    .first()
+                    .map(|radius| self.expect_dimension(radius, &LENGTH, "m", Reason::Argument));
+                Value::Quantity {
+                    dimension: LENGTH,
+                    anchor: radius.map_or(Anchor::Motion, |r| r.source_of_unit()),
+                }
             }
             UnitRule::OfHeight(dimension) => {
-                self.expect(first, &LENGTH, "m", Reason::Argument);
-                dimension.clone().map_or(Value::Unknown, Value::quantity)
+                self.expect_dimension(first, &LENGTH, "m", Reason::Argument);
+                dimension.clone().map_or(Value::Unknown, Value::quantity_of_dimension)
             }
         }
     }
 
     /// Infers from expressions whose values are not used.
-    fn visit(&mut self, e: &'a [Expr]) {
-        e.iter().for_each(|e| drop(self.value(e)));
+    fn infer_unused_expressions(&mut self, e: &'a [Expr]) {
+        e.iter().for_each(|e| drop(self.value_of_expression(e)));
     }
 
     /// Whether an expression is the name of a body or a frame, which has no dimension.
@@ -289,54 +299,54 @@ impl<'a> Inference<'a> {
                 || Builtin::of_name(name).is_some()
                 || self.locals.iter().any(|(local, _)| *local == name)
         };
-        e.name().is_some_and(|name| !is_value(name))
+        e.as_name().is_some_and(|name| !is_value(name))
     }
 
     /// Returns the value of a table. Its variables have the same units in all calls.
-    fn lookup(&mut self, unknown: &[Variable], arguments: &'a [Expr]) -> Value {
+    fn value_of_table(&mut self, unknown: &[Variable], arguments: &'a [Expr]) -> Value {
         let Some((value, variables)) = unknown.split_last() else { return Value::Unknown };
         for (argument, variable) in arguments.iter().zip(variables) {
-            self.expect(argument, &Dimension::variable(*variable), "", Reason::Argument);
+            self.expect_dimension(argument, &Dimension::unknown_dimension(*variable), "", Reason::Argument);
         }
-        Value::Quantity { dimension: Dimension::variable(*value), anchor: Anchor::Parameter }
+        Value::Quantity { dimension: Dimension::unknown_dimension(*value), anchor: Anchor::Parameter }
     }
 
     /// Returns the value of an elementary function: magnitudes and roots of any quantity, all others of plain
     /// numbers.
-    fn elementary(&mut self, f: Function, a: &'a Expr) -> Value {
+    fn value_of_elementary(&mut self, f: Function, a: &'a Expr) -> Value {
         match f {
-            Function::Abs => return self.value(a),
+            Function::Abs => return self.value_of_expression(a),
             Function::Signum => {
-                self.value(a);
-                return Value::quantity(PLAIN);
+                self.value_of_expression(a);
+                return Value::quantity_of_dimension(PLAIN);
             }
             Function::Sqrt => {
-                return match self.value(a) {
+                return match self.value_of_expression(a) {
                     Value::Number(value) => Value::Number(value.sqrt()),
-                    other => other.power(Ratio::new(1, 2)),
+                    other => other.power_of_value(Ratio::new(1, 2)),
                 };
             }
             _ => {}
         }
         let unit = if matches!(f, Function::Sin | Function::Cos | Function::Tan) { "rad" } else { "1" };
-        match self.expect(a, &PLAIN, unit, Reason::Argument) {
-            Value::Number(value) => Value::Number(f.apply(value)),
+        match self.expect_dimension(a, &PLAIN, unit, Reason::Argument) {
+            Value::Number(value) => Value::Number(f.evaluate_at(value)),
             Value::Direction => Value::Unknown,
-            _ => Value::quantity(PLAIN),
+            _ => Value::quantity_of_dimension(PLAIN),
         }
     }
 
     /// Returns the value of a power. If the exponent is not a number, the dimension is unknown unless the
     /// base is plain.
-    fn power(&mut self, a: &'a Expr, n: &'a Expr) -> Value {
-        let base = self.value(a);
-        let exponent = self.expect(n, &PLAIN, "1", Reason::Argument);
+    fn value_of_power(&mut self, a: &'a Expr, n: &'a Expr) -> Value {
+        let base = self.value_of_expression(a);
+        let exponent = self.expect_dimension(n, &PLAIN, "1", Reason::Argument);
         match (base, exponent) {
-            (Value::Number(value), Value::Number(n)) => Value::Number(value.powf(n)),
-            (Value::Number(_), _) => Value::quantity(PLAIN),
-            (base, Value::Number(n)) => base.power(Ratio::from_value(n)),
+            (Value::Number(value), Value::Number(n)) => Value::Number(libm::pow(value, n)),
+            (Value::Number(_), _) => Value::quantity_of_dimension(PLAIN),
+            (base, Value::Number(n)) => base.power_of_value(Ratio::from_value(n)),
             (Value::Quantity { dimension, anchor }, _) => {
-                let power = Dimension::variable(self.system.variable());
+                let power = Dimension::unknown_dimension(self.system.add_variable());
                 self.plain_defaults.push((dimension, Some(power.clone())));
                 Value::Quantity { dimension: power, anchor }
             }
@@ -345,30 +355,30 @@ impl<'a> Inference<'a> {
     }
 
     /// Infers from the operands between slashes, `y / x`, which may be given by vectors.
-    fn points(&mut self, e: &'a Expr) {
+    fn infer_operand_points(&mut self, e: &'a Expr) {
         let mut current = e;
         while let ExprKind::Binary(BinaryOp::Div, left, right, _) = &current.kind {
-            self.point(right);
+            self.infer_point(right);
             current = left;
         }
-        self.point(current);
+        self.infer_point(current);
     }
 
     /// Infers dimensions from a point `body.at(vector)`.
-    pub fn point(&mut self, e: &'a Expr) {
+    pub fn infer_point(&mut self, e: &'a Expr) {
         if let ExprKind::Method(base, _, arguments) = &e.kind {
-            self.point(base);
+            self.infer_point(base);
             for argument in arguments {
-                self.expect(argument, &LENGTH, "m", Reason::Place);
+                self.expect_dimension(argument, &LENGTH, "m", Reason::Place);
             }
         }
     }
 }
 
 /// Returns a quantity divided by another dimension; other values are unchanged.
-fn quotient(value: Value, divisor: &Dimension) -> Value {
+fn quotient_by_dimension(value: Value, divisor: &Dimension) -> Value {
     match value {
-        Value::Quantity { dimension, anchor } => match dimension.quotient(divisor) {
+        Value::Quantity { dimension, anchor } => match dimension.dimension_of_quotient(divisor) {
             Some(dimension) => Value::Quantity { dimension, anchor },
             None => Value::Unknown,
         },

@@ -2,7 +2,7 @@
 
 use super::{ArgumentValue, Arguments};
 use crate::diag::{Diagnostics, one_of, syn_error};
-use crate::syntax::expression::{parse_expr, quoted, unexpected_token_error};
+use crate::syntax::expression::{parse_expr, quote_text, unexpected_token_error};
 use crate::syntax::{Expr, ExprKind, words};
 use proc_macro2::{TokenStream, TokenTree};
 use syn::ext::IdentExt;
@@ -11,22 +11,23 @@ use syn::{Ident, LitStr, Token, token};
 
 /// Reports an expression that stands where `name = value` is expected.
 pub fn report_unnamed(e: &Expr, known: &[&str], example: &str, cx: &mut Diagnostics) {
-    if let Some(word) = e.name().filter(|word| known.contains(word)) {
-        cx.error(e.place.clone(), format!("`{word}` has no value")).help(format!("write `{word} = …`"));
+    if let Some(word) = e.as_name().filter(|word| known.contains(word)) {
+        cx.report_error(e.place.clone(), format!("`{word}` has no value"))
+            .add_help(format!("write `{word} = …`"));
         return;
     }
-    let error = cx.error(e.place.clone(), "expected `name = value`");
+    let error = cx.report_error(e.place.clone(), "expected `name = value`");
     match (&e.kind, known) {
         (ExprKind::Call(word, value), _) if known.contains(&word.text.as_str()) && value.len() == 1 => {
-            error.help(format!("write `{} = {}`", word.text, value[0].to_source()))
+            error.add_help(format!("write `{} = {}`", word.text, value[0].to_source()))
         }
-        (_, []) => error.help(format!("write `{example}`")),
-        (_, [one]) => error.help(format!("write `{one} = {}`", e.to_source())),
+        (_, []) => error.add_help(format!("write `{example}`")),
+        (_, [one]) => error.add_help(format!("write `{one} = {}`", e.to_source())),
         (_, [.., _]) if known.len() <= 8 => {
             let list: Vec<String> = known.iter().map(|word| format!("`{word}`")).collect();
-            error.help(format!("expected {}", one_of(&list)))
+            error.add_help(format!("expected {}", one_of(&list)))
         }
-        _ => error.help(format!("write `{example}`")),
+        _ => error.add_help(format!("write `{example}`")),
     };
 }
 
@@ -54,7 +55,7 @@ pub fn stray_string_error(text: &LitStr) -> syn::Error {
     let value = text.value();
     let is_file = value.rsplit_once('.').is_some_and(|(_, end)| matches!(end, "urdf" | "xml" | "xacro"));
     if is_file {
-        let help = format!("write `urdf = {}`", quoted(&value));
+        let help = format!("write `urdf = {}`", quote_text(&value));
         return syn_error(text.span(), "expected `name = value`, found a string", &help);
     }
     syn_error(text.span(), "expected an expression, found a string", "write it without quotes")
@@ -96,7 +97,7 @@ pub fn missing_arrow_error(
     }
     if matches!(signs.as_str(), ":" | ":=" | "+=" | "-=" | "*=" | "/=" | "=>" | "<-" | "~") {
         let help = format!("write `{} = …`", first.to_source());
-        return first.name().map(|_| syn_error(span, "expected `=`", &help));
+        return first.as_name().map(|_| syn_error(span, "expected `=`", &help));
     }
     None
 }
@@ -134,10 +135,11 @@ pub fn decimal_comma_error(tokens: &TokenStream) -> Option<syn::Error> {
 /// Returns the elements of a list of strings, quoted, for a string or names without brackets or quotes.
 pub fn quoted_names(value: &ArgumentValue) -> Option<String> {
     match value {
-        ArgumentValue::Text(text) => Some(quoted(&text.value())),
-        ArgumentValue::Expr(Expr { kind: ExprKind::Name(word), .. }) => Some(quoted(word)),
+        ArgumentValue::Text(text) => Some(quote_text(&text.value())),
+        ArgumentValue::Expr(Expr { kind: ExprKind::Name(word), .. }) => Some(quote_text(word)),
         ArgumentValue::Expr(Expr { kind: ExprKind::Array(items) | ExprKind::Tuple(items), .. }) => {
-            let names: Option<Vec<String>> = items.iter().map(|item| item.name().map(quoted)).collect();
+            let names: Option<Vec<String>> =
+                items.iter().map(|item| item.as_name().map(quote_text)).collect();
             names.map(|names| names.join(", "))
         }
         _ => None,

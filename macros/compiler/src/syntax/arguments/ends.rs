@@ -28,11 +28,11 @@ impl Arguments {
         if self.relation.is_none() {
             let (place, ends) = self.likely_ends(known);
             self.plain.clear();
-            let diagnostic = cx.error(place, "a joint needs the two bodies that it connects");
+            let diagnostic = cx.report_error(place, "a joint needs the two bodies that it connects");
             match ends {
-                Some([parent, child]) => diagnostic.help(format!("write `{parent} -> {child}`")),
+                Some([parent, child]) => diagnostic.add_help(format!("write `{parent} -> {child}`")),
                 None => diagnostic
-                    .help("write `#[joint(parent -> child, …)]`, with `ground` for the fixed reference"),
+                    .add_help("write `#[joint(parent -> child, …)]`, with `ground` for the fixed reference"),
             };
         }
         self.relation.take()
@@ -82,7 +82,7 @@ impl Arguments {
         let (a, b) =
             END_KEYS.into_iter().find(|(a, b)| has_expression_for_key(a) && has_expression_for_key(b))?;
         let place = self.named.iter().find(|(name, _)| name.text == a || name.text == b)?.0.place.clone();
-        let mut end = |key: &str| match self.take(key) {
+        let mut end = |key: &str| match self.take_named_argument(key) {
             Some((_, ArgumentValue::Expr(e))) => Some(e),
             _ => None,
         };

@@ -18,7 +18,7 @@ pub enum ConstraintKind {
 
 impl ConstraintKind {
     /// Returns the function of a pair of surfaces; `None` for an equation.
-    pub fn pair(self) -> Option<Callable> {
+    pub fn surface_pair_function(self) -> Option<Callable> {
         match self {
             ConstraintKind::Rolling => Some(Callable::Rolls),
             ConstraintKind::Slipping => Some(Callable::Slips),
@@ -27,7 +27,7 @@ impl ConstraintKind {
     }
 
     /// Returns the row of the element in the table.
-    pub fn element(self) -> OtherKind {
+    pub fn catalogue_row(self) -> OtherKind {
         match self {
             ConstraintKind::Holonomic => OtherKind::Holonomic,
             ConstraintKind::Nonholonomic => OtherKind::Nonholonomic,
@@ -88,7 +88,7 @@ impl Contact {
 
 /// Returns the value of a coefficient of restitution, and whether it is a ratio of impulses, `poisson(e)`,
 /// instead of velocities.
-pub fn restitution(e: &Expr) -> (&Expr, bool) {
+pub fn restitution_coefficient(e: &Expr) -> (&Expr, bool) {
     match &e.kind {
         ExprKind::Call(word, list) if word.id == Some(Callable::Poisson) => (list.first().unwrap_or(e), true),
         _ => (e, false),

@@ -35,7 +35,7 @@ pub enum Rank {
 
 impl Rank {
     /// Returns the type of the element.
-    pub fn kind(self) -> &'static str {
+    pub fn element_type_name(self) -> &'static str {
         match self {
             Rank::Scalar => "Scalar",
             Rank::Vector => "Vector",

@@ -94,7 +94,7 @@ pub enum BinaryOp {
 
 impl Expr {
     /// Returns this expression and all its subexpressions, outer ones before inner ones.
-    pub fn parts(&self) -> Vec<&Expr> {
+    pub fn subexpressions(&self) -> Vec<&Expr> {
         let mut parts = vec![self];
         let mut next = 0;
         while let Some(part) = parts.get(next) {
@@ -113,7 +113,7 @@ impl Expr {
     }
 
     /// Returns the name, if the expression is a name.
-    pub fn name(&self) -> Option<&str> {
+    pub fn as_name(&self) -> Option<&str> {
         match &self.kind {
             ExprKind::Name(name) => Some(name),
             _ => None,
@@ -121,33 +121,33 @@ impl Expr {
     }
 
     /// Returns the number, with its sign, if the expression is a number.
-    pub fn literal(&self) -> Option<f64> {
+    pub fn literal_number(&self) -> Option<f64> {
         match &self.kind {
             ExprKind::Number(n) => Some(*n),
-            ExprKind::Neg(inner) => inner.literal().map(|n| -n),
+            ExprKind::Neg(inner) => inner.literal_number().map(|n| -n),
             _ => None,
         }
     }
 
     /// Returns a number at a source position.
-    pub fn number(value: f64, place: &Place) -> Expr {
+    pub fn number_at(value: f64, place: &Place) -> Expr {
         Expr { kind: ExprKind::Number(value), place: place.clone() }
     }
 
     /// Returns a function call at a source position.
-    pub fn call(function: &str, arguments: Vec<Expr>, place: &Place) -> Expr {
+    pub fn function_call_at(function: &str, arguments: Vec<Expr>, place: &Place) -> Expr {
         let name = Name { text: function.to_string(), place: place.clone() };
         Expr { kind: ExprKind::Call(Callee::new(name), arguments), place: place.clone() }
     }
 
     /// Returns a binary operation at the source position of the first operand.
-    pub fn binary(op: BinaryOp, a: Expr, b: Expr) -> Expr {
+    pub fn binary_operation(op: BinaryOp, a: Expr, b: Expr) -> Expr {
         let place = a.place.clone();
         Expr { kind: ExprKind::Binary(op, Box::new(a), Box::new(b), place.clone()), place }
     }
 
     /// Returns `base.word(arguments)` at the source position of `base`.
-    pub fn method(base: Expr, word: &str, arguments: Vec<Expr>) -> Expr {
+    pub fn method_call(base: Expr, word: &str, arguments: Vec<Expr>) -> Expr {
         let place = base.place.clone();
         let name = Name { text: word.to_string(), place: place.clone() };
         let member = Member::new(name, arguments.len());
@@ -155,8 +155,8 @@ impl Expr {
     }
 
     /// Returns three numbers as a vector `[a, b, c]` at a source position.
-    pub fn vector(values: [f64; 3], place: &Place) -> Expr {
-        let items = values.iter().map(|v| Expr::number(*v, place)).collect();
+    pub fn vector_at(values: [f64; 3], place: &Place) -> Expr {
+        let items = values.iter().map(|v| Expr::number_at(*v, place)).collect();
         Expr { kind: ExprKind::Array(items), place: place.clone() }
     }
 }

@@ -71,15 +71,17 @@ pub struct Wrench {
 
 impl DriveOn {
     /// Returns the target with all weights multiplied by a factor.
-    pub fn scaled(&self, factor: f64) -> DriveOn {
+    pub fn scaled_target(&self, factor: f64) -> DriveOn {
         match self {
             DriveOn::Sum(terms) => {
                 DriveOn::Sum(terms.iter().map(|(joint, weight)| (joint.clone(), weight * factor)).collect())
             }
             DriveOn::Length(e) if factor == 1.0 => DriveOn::Length(e.clone()),
-            DriveOn::Length(e) => {
-                DriveOn::Length(Expr::binary(BinaryOp::Mul, Expr::number(factor, &e.place), e.clone()))
-            }
+            DriveOn::Length(e) => DriveOn::Length(Expr::binary_operation(
+                BinaryOp::Mul,
+                Expr::number_at(factor, &e.place),
+                e.clone(),
+            )),
             DriveOn::Wrench(wrench) => DriveOn::Wrench(Wrench {
                 force: wrench.force.map(|x| x * factor),
                 torque: wrench.torque.map(|x| x * factor),
@@ -89,7 +91,7 @@ impl DriveOn {
     }
 
     /// Returns the joints of a sum with their weights; empty for other targets.
-    pub fn terms(&self) -> &[(Name, f64)] {
+    pub fn weighted_joints(&self) -> &[(Name, f64)] {
         match self {
             DriveOn::Sum(terms) => terms,
             DriveOn::Length(_) | DriveOn::Wrench(_) => &[],
@@ -97,8 +99,32 @@ impl DriveOn {
     }
 }
 
+/// Quantity of a force element of a file that the element's own law contains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DriveQuantity {
+    /// Weighted sum or length on which the element acts.
+    Length,
+    /// Rate of this length.
+    Rate,
+    /// Input of this name.
+    Input,
+}
+
+impl DriveQuantity {
+    /// Returns the name of the quantity in expressions. It begins with a control character, which no name in
+    /// a file contains.
+    pub fn name_for(self, drive: &str) -> String {
+        let word = match self {
+            DriveQuantity::Length => "length",
+            DriveQuantity::Rate => "rate",
+            DriveQuantity::Input => "input",
+        };
+        format!("\u{1}{word} {drive}")
+    }
+}
+
 /// Force law of a force element of a file.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum DriveLaw {
     /// Force proportional to the difference from a free length.
     Spring {
@@ -107,15 +133,17 @@ pub enum DriveLaw {
         /// Value at which the force of the spring is zero.
         free: f64,
     },
-    /// Force proportional to the excess beyond a range.
+    /// Force opposite to a polynomial of the excess beyond a range.
     Slack {
-        /// Stiffness of the spring outside of its range.
-        stiffness: f64,
-        /// Lower and upper end of the range in which the force is zero.
+        /// Coefficients of the excess, its square and its cube.
+        stiffness: [f64; 3],
+        /// Lower and upper end of the range.
         range: [f64; 2],
     },
     /// Force proportional and opposite to the velocity, with this coefficient.
     Damper(f64),
+    /// Force opposite to the rate, with these coefficients of its magnitude, the square and the cube.
+    PolynomialDamper([f64; 3]),
     /// Force of this magnitude opposite to the rate.
     Friction(f64),
     /// Force proportional and opposite to the acceleration, with this inertance.
@@ -124,6 +152,31 @@ pub enum DriveLaw {
     Push(f64),
     /// Force given by an input; the value is the unit of the input.
     Input(&'static str),
+    /// Force given by an expression of states, and of the quantities of this element and its inputs.
+    Expression {
+        /// Force.
+        force: Box<Expr>,
+        /// Contribution of locked joints to the length.
+        offset: f64,
+    },
+}
+
+impl DriveLaw {
+    /// Returns a spring with a polynomial force.
+    pub fn spring(stiffness: [f64; 3], free: f64) -> DriveLaw {
+        match stiffness {
+            [stiffness, 0.0, 0.0] => DriveLaw::Spring { stiffness, free },
+            stiffness => DriveLaw::Slack { stiffness, range: [free; 2] },
+        }
+    }
+
+    /// Returns a damper with a polynomial force.
+    pub fn damper(damping: [f64; 3]) -> DriveLaw {
+        match damping {
+            [damping, 0.0, 0.0] => DriveLaw::Damper(damping),
+            damping => DriveLaw::PolynomialDamper(damping),
+        }
+    }
 }
 
 /// Target of a force element, as written.
@@ -137,7 +190,7 @@ pub enum Target {
 
 impl Target {
     /// Returns the source position of the target.
-    pub fn place(&self) -> &Place {
+    pub fn source_position(&self) -> &Place {
         match self {
             Target::On(e) | Target::Between(_, e) => &e.place,
         }
@@ -151,7 +204,7 @@ impl Action {
     }
 
     /// Returns the argument that gives the force law, with its expression.
-    pub fn law(&self) -> Option<(Key, &Expr)> {
+    pub fn written_law(&self) -> Option<(Key, &Expr)> {
         let laws = self.kind.row().laws;
         self.arguments.iter().find(|(key, _)| laws.contains(key))
     }

@@ -10,10 +10,10 @@ mod force;
 mod geometry;
 mod structure;
 
-pub use constraint::{Constraint, ConstraintKind, Contact, Limit, restitution};
+pub use constraint::{Constraint, ConstraintKind, Contact, Limit, restitution_coefficient};
 pub use definition::{Definition, Equilibrium, Rank, Table};
 pub use expr::{BinaryOp, Callee, Expr, ExprKind, Member, Name, Term};
-pub use force::{Action, Drive, DriveLaw, DriveOn, Target, Wrench, WrittenArguments};
+pub use force::{Action, Drive, DriveLaw, DriveOn, DriveQuantity, Target, Wrench, WrittenArguments};
 pub use geometry::{Collision, Mesh, MeshVertices, Shape, Visual};
 pub use structure::{Body, Endpoint, Frame, FreeCoordinate, Joint, Mimic, Particle, Point};
 
@@ -117,7 +117,7 @@ pub struct Description {
 
 impl Description {
     /// Returns a mechanism with a name and without elements.
-    pub fn empty(name: Name) -> Description {
+    pub fn empty_description(name: Name) -> Description {
         Description {
             name,
             gravity: None,

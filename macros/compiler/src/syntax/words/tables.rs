@@ -85,6 +85,7 @@ pub const OPTIONS: Words = &[
     ("locked frozen", "lock"),
     ("constraints algorithm", "formulation"),
     ("print printed latex", "equations"),
+    ("deterministic determinism reproducible bitwise fma fastmath", "arithmetic"),
     ("trustinertia", "did you mean `inertia = trust`?"),
 ];
 
@@ -104,6 +105,7 @@ pub const REQUESTS: Words = &[
     ("conservation integrals invariants cyclic", "conserved"),
     ("identification parameters basis", "regressor"),
     ("precompute cache prepared", "prepare"),
+    ("reproducible deterministic bitwise", "write `arithmetic = reproducible`"),
     ("nogravity weightless", "without `gravity` there is none: remove it"),
     ("f32 single", "write `scalar = f32`, or give the parameters this type"),
     ("f64 double", "write `scalar = f64`, or give the parameters this type"),

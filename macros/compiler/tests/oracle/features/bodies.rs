@@ -2,7 +2,7 @@
 //! for one state, for one state in debug builds, and for several states. Constants are compared with the
 //! functions that they describe.
 
-use super::agreement::{SAME, size, sum};
+use super::agreement::{SAME, largest_magnitude, sum_of_vectors};
 use super::values::Values;
 use crate::emitted::{Machine, Stop, Value};
 use linkwork_compiler::catalogue::{Argument, Shape};
@@ -10,7 +10,7 @@ use linkwork_compiler::derive::{Function, Output};
 use linkwork_compiler::diag::Diagnostics;
 use linkwork_compiler::expr::Graph;
 use linkwork_compiler::mechanism::{Chart, Model, Supplied};
-use linkwork_compiler::{compile, expand, read};
+use linkwork_compiler::{compile, expand, read_source};
 use proc_macro2::TokenStream;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -24,7 +24,7 @@ struct Written {
     bodies: BTreeMap<String, Vec<ImplItemFn>>,
 }
 
-fn written(text: &str) -> Written {
+fn parse_written_functions(text: &str) -> Written {
     let mut all = Written { functions: BTreeMap::new(), constants: BTreeMap::new(), bodies: BTreeMap::new() };
     for item in syn::parse_file(text).expect("Rust").items {
         let Item::Impl(block) = item else { continue };
@@ -64,7 +64,7 @@ fn first_argument(arguments: &syn::PathArguments) -> Option<String> {
 
 /// Returns the bodies of a generated function, or of those that it dispatches to, with the patterns of their
 /// arguments.
-fn bodies<'w>(written: &'w Written, name: &str) -> Vec<(Vec<Pat>, &'w Block)> {
+fn bodies_of_function<'w>(written: &'w Written, name: &str) -> Vec<(Vec<Pat>, &'w Block)> {
     let Some(function) = written.functions.get(name) else { return Vec::new() };
     let argument_patterns = |function: &ImplItemFn| -> Vec<Pat> {
         let typed = function.sig.inputs.iter().filter_map(|input| match input {
@@ -91,7 +91,7 @@ fn bodies<'w>(written: &'w Written, name: &str) -> Vec<(Vec<Pat>, &'w Block)> {
 }
 
 /// Combines the values of an argument for several states to lanes.
-fn lanes(all: &[Value]) -> Value {
+fn combine_to_lanes(all: &[Value]) -> Value {
     match &all[0] {
         Value::List(list) => {
             let lanes_of_entry = |k: usize| {
@@ -99,16 +99,16 @@ fn lanes(all: &[Value]) -> Value {
                     .iter()
                     .map(|value| if let Value::List(list) = value { list[k].clone() } else { value.clone() })
                     .collect();
-                lanes(&column)
+                combine_to_lanes(&column)
             };
             Value::List((0..list.len()).map(lanes_of_entry).collect())
         }
-        _ => Value::Lanes(all.iter().map(|value| value.numbers(0).expect("a number")[0]).collect()),
+        _ => Value::Lanes(all.iter().map(|value| value.numbers_of_lane(0).expect("a number")[0]).collect()),
     }
 }
 
-fn argument(a: Argument, values: &Values) -> Option<Value> {
-    let vector_value = |list: &[f64]| Value::List(vec![Value::list(list)]);
+fn argument_value(a: Argument, values: &Values) -> Option<Value> {
+    let vector_value = |list: &[f64]| Value::List(vec![Value::list_of_numbers(list)]);
     Some(match a {
         Argument::T => Value::Number(values.t),
         Argument::Q => vector_value(&values.q),
@@ -116,34 +116,38 @@ fn argument(a: Argument, values: &Values) -> Option<Value> {
         Argument::A => vector_value(&values.a),
         Argument::Tau => vector_value(&values.tau),
         Argument::U => vector_value(&values.u),
-        Argument::Standard(n) => vector_value(&values.supplied(Supplied::Inertia)[..n]),
-        Argument::Factors(n) => vector_value(&values.supplied(Supplied::Factor)[..n]),
+        Argument::Standard(n) => vector_value(&values.supplied_values(Supplied::Inertia)[..n]),
+        Argument::Factors(n) => vector_value(&values.supplied_values(Supplied::Factor)[..n]),
         Argument::Momenta(n) => vector_value(&values.given[..n]),
         Argument::Given(_, Supplied::ContactForces, count) => {
-            Value::list(values.contact_forces.get(..count)?)
+            Value::list_of_numbers(values.contact_forces.get(..count)?)
         }
-        Argument::Given(_, block, count) => Value::list(values.supplied(block).get(..count)?),
-        Argument::Into(_, n) => Value::List(vec![Value::list(&vec![0.0; n]); n]),
+        Argument::Given(_, block, count) => {
+            Value::list_of_numbers(values.supplied_values(block).get(..count)?)
+        }
+        Argument::Into(_, n) => Value::List(vec![Value::list_of_numbers(&vec![0.0; n]); n]),
         Argument::Called(_) => return None,
     })
 }
 
 /// Interprets and compares all generated function bodies that call no other functions. Returns their names
 /// with the number of the body.
-pub fn check(arguments: &str, item: &str, seed: u64) -> BTreeSet<String> {
+pub fn check_function_bodies(arguments: &str, item: &str, seed: u64) -> BTreeSet<String> {
     let parse_tokens = |text: &str| -> TokenStream { text.parse().expect("the source is Rust") };
     let (mut cx, graph) = (Diagnostics::new(), Graph::new());
-    let source = read(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
+    let source = read_source(parse_tokens(arguments), parse_tokens(item), Path::new(""), &mut cx);
     let Some((model, output)) = source.as_ref().and_then(|source| compile(source, &graph, &mut cx)) else {
         return BTreeSet::new();
     };
     let emitted = expand(parse_tokens(arguments), parse_tokens(item), Path::new(""));
-    let written = written(&emitted.text);
+    let written = parse_written_functions(&emitted.text);
     check_places(&model, &output, &written, seed, &format!("seed {seed}\n#[mechanism({arguments})]\n{item}"));
     let mut run = BTreeSet::new();
     for f in &output.functions {
         for (suffix, states) in [("", 1), ("_lanes", 2)] {
-            for (k, body) in bodies(&written, &format!("{}{suffix}", f.name)).into_iter().enumerate() {
+            for (k, body) in
+                bodies_of_function(&written, &format!("{}{suffix}", f.name)).into_iter().enumerate()
+            {
                 let name = format!("{}{suffix}, body {k}", f.name);
                 let about = format!("{name}, seed {seed}\n#[mechanism({arguments})]\n{item}");
                 if check_body(&model, &output, f, &body, (states, seed), &about) {
@@ -158,7 +162,7 @@ pub fn check(arguments: &str, item: &str, seed: u64) -> BTreeSet<String> {
 /// Compares two constants with the functions: the entries of the generalized forces that equal inputs, and
 /// the velocities of ball and free joints.
 fn check_places(model: &Model<'_>, output: &Output, written: &Written, seed: u64, about: &str) {
-    let places_of_constant = |name: &str| written.constants.get(name).map(places);
+    let places_of_constant = |name: &str| written.constants.get(name).map(option_numbers);
     let forces = output.functions.iter().find(|f| f.name == "generalized_forces");
     let (Some(direct), Some(turned), Some(forces)) =
         (places_of_constant("__DIRECT_INPUTS"), places_of_constant("__TURNED"), forces)
@@ -175,13 +179,13 @@ fn check_places(model: &Model<'_>, output: &Output, written: &Written, seed: u64
     assert_eq!(turned, model.speeds.is_none().then(|| range.to_vec()), "velocities that turn, {about}");
 
     // An entry equals an input if it changes by the same amount for random states, parameters and inputs.
-    let all = [seed, seed + 1000].map(|seed| Values::random(model, seed));
+    let all = [seed, seed + 1000].map(|seed| Values::random_values(model, seed));
     let u = all[0].u.clone();
     let unit_vector =
         |k: usize, n: usize| -> Vec<f64> { (0..n).map(|i| f64::from(u8::from(i == k))).collect() };
     let by_input = |values: &Values, k: usize| -> Vec<f64> {
-        let changed = Values { u: sum(&values.u, &unit_vector(k, u.len())), ..values.clone() };
-        let (after, before) = (changed.run(output, forces), values.run(output, forces));
+        let changed = Values { u: sum_of_vectors(&values.u, &unit_vector(k, u.len())), ..values.clone() };
+        let (after, before) = (changed.run_function(output, forces), values.run_function(output, forces));
         after.iter().zip(before).map(|(a, b)| a - b).collect()
     };
     let are_nearly_equal = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME);
@@ -192,14 +196,14 @@ fn check_places(model: &Model<'_>, output: &Output, written: &Written, seed: u64
     };
     let [here, there] = all.each_ref().map(|values| {
         let values = Values { u: u.clone(), t: all[0].t, ..values.clone() };
-        Values { parameters: all[0].parameters.clone(), ..values }.run(output, forces)
+        Values { parameters: all[0].parameters.clone(), ..values }.run_function(output, forces)
     });
     let expected: Option<Vec<usize>> = (0..u.len()).map(velocity_driven_by_input).collect();
     assert_eq!(direct, expected.filter(|_| are_nearly_equal(&here, &there)), "places of inputs, {about}");
 }
 
 /// Returns the numbers in `Some([…])` or `Some((…))`; `None` for `None`.
-fn places(expr: &Expr) -> Option<Vec<usize>> {
+fn option_numbers(expr: &Expr) -> Option<Vec<usize>> {
     let Expr::Call(call) = expr else { return None };
     let list = match &call.args[0] {
         Expr::Array(array) => &array.elems,
@@ -219,7 +223,8 @@ fn check_body(
     (states, seed): (usize, u64),
     about: &str,
 ) -> bool {
-    let all: Vec<Values> = (0..states as u64).map(|k| Values::random(model, seed + 1000 * k)).collect();
+    let all: Vec<Values> =
+        (0..states as u64).map(|k| Values::random_values(model, seed + 1000 * k)).collect();
     let parameters = &all[0].parameters;
     // The states share their parameters.
     let all: Vec<Values> =
@@ -228,12 +233,12 @@ fn check_body(
     let mut machine = Machine { scopes: vec![BTreeMap::new()], parameters: named.collect(), states };
     assert_eq!(patterns.len(), f.arguments.len(), "arguments of {about}");
     for (pattern, a) in patterns.iter().zip(&f.arguments) {
-        let found: Option<Vec<Value>> = all.iter().map(|values| argument(*a, values)).collect();
+        let found: Option<Vec<Value>> = all.iter().map(|values| argument_value(*a, values)).collect();
         let Some(found) = found else { return false };
-        let value = if states > 1 { lanes(&found) } else { found[0].clone() };
-        machine.bind(pattern, value).unwrap_or_else(|stop| panic!("{stop:?}, {about}"));
+        let value = if states > 1 { combine_to_lanes(&found) } else { found[0].clone() };
+        machine.bind_pattern(pattern, value).unwrap_or_else(|stop| panic!("{stop:?}, {about}"));
     }
-    let mut result = match machine.run(body) {
+    let mut result = match machine.run_body(body) {
         Ok(value) => vec![value],
         Err(Stop::Foreign) => return false,
         Err(Stop::Wrong(what)) => panic!("{what}, {about}"),
@@ -241,18 +246,18 @@ fn check_body(
     // The results of a function that writes to arguments are in these arguments.
     let into =
         f.arguments.iter().filter_map(|a| if let Argument::Into(name, _) = a { Some(*name) } else { None });
-    result.extend(into.map(|name| machine.variable(name).expect("a matrix")));
+    result.extend(into.map(|name| machine.variable_value(name).expect("a matrix")));
     for (lane, values) in all.iter().enumerate() {
         let found: Vec<f64> = result
             .iter()
-            .flat_map(|value| value.numbers(lane).unwrap_or_else(|stop| panic!("{stop:?}, {about}")))
+            .flat_map(|value| value.numbers_of_lane(lane).unwrap_or_else(|stop| panic!("{stop:?}, {about}")))
             .collect();
         // A packed symmetric matrix is compared with the entries on both sides of the diagonal.
         let whole = output.functions.iter().find(|f| f.name == "mass_matrix");
         let of = whole.filter(|_| matches!(f.shape, Shape::Symmetric(_))).unwrap_or(f);
-        let expected = values.run(output, of);
+        let expected = values.run_function(output, of);
         assert_eq!(found.len(), expected.len(), "results of {about}");
-        let bound = SAME * (1.0 + size(&expected));
+        let bound = SAME * (1.0 + largest_magnitude(&expected));
         for (k, (a, b)) in found.iter().zip(&expected).enumerate() {
             let both_none = !a.is_finite() && !b.is_finite();
             assert!(both_none || (a - b).abs() <= bound, "entry {k}: {a} and {b} within {bound}, {about}");

@@ -144,7 +144,7 @@ struct Source {
 }
 
 /// Returns the attribute's arguments and the struct for a seed.
-pub fn source(seed: u64) -> (String, String) {
+pub fn random_source(seed: u64) -> (String, String) {
     let mut source = Source {
         random: Random::new(seed),
         fields: "look: Table<1>, command: Input, #[output(look(2) + command)] seen: Scalar,\n".to_string(),
@@ -167,7 +167,7 @@ pub fn source(seed: u64) -> (String, String) {
     for word in WORDS {
         let needs_parameters = ["sensitivities", "prepare"].contains(&word);
         let needs_constraints = word == "formulation = speeds";
-        if source.chance(if word == "derivatives" { 2 } else { 6 })
+        if source.has_chance(if word == "derivatives" { 2 } else { 6 })
             && (source.has_parameters || !needs_parameters)
             && (source.has_constraints || !needs_constraints)
             && !arguments.contains("equations")
@@ -179,7 +179,7 @@ pub fn source(seed: u64) -> (String, String) {
 }
 
 impl Source {
-    fn chance(&mut self, one_in: usize) -> bool {
+    fn has_chance(&mut self, one_in: usize) -> bool {
         self.random.index_below(one_in) == 0
     }
 
@@ -187,23 +187,23 @@ impl Source {
         list[self.random.index_below(list.len())]
     }
 
-    fn number(&mut self) -> String {
-        format!("{:.3}", 1.1 + self.random.uniform(1.0))
+    fn random_number(&mut self) -> String {
+        format!("{:.3}", 1.1 + self.random.uniform_number(1.0))
     }
 
     fn add_body(&mut self, k: usize) {
-        let mut mass = self.number();
-        if self.chance(3) {
+        let mut mass = self.random_number();
+        if self.has_chance(3) {
             let _ = writeln!(self.fields, "mass{k}: f64,");
             mass = format!("mass{k}");
             self.has_parameters = true;
         }
         let parent = match self.bodies.len() {
             0 => "ground".to_string(),
-            _ if self.chance(3) => "ground".to_string(),
+            _ if self.has_chance(3) => "ground".to_string(),
             n => self.bodies[self.random.index_below(n)].clone(),
         };
-        let is_particle = self.chance(5);
+        let is_particle = self.has_chance(5);
         if is_particle {
             let _ = writeln!(self.fields, "#[particle(mass = {mass})] body{k}: Particle,");
         } else {
@@ -217,11 +217,11 @@ impl Source {
         let (kind, arguments, coordinates) =
             if is_particle { JOINTS[self.one_of(&OF_PARTICLES)] } else { self.one_of(&JOINTS) };
         let mut end = parent;
-        if self.chance(2) {
+        if self.has_chance(2) {
             let _ = write!(end, ".at({})", self.one_of(&VECTORS));
         }
-        if self.chance(4) {
-            let (axis, angle) = (self.one_of(&["x", "y", "z"]), self.number());
+        if self.has_chance(4) {
+            let (axis, angle) = (self.one_of(&["x", "y", "z"]), self.random_number());
             let _ = write!(end, ".rotated({axis}({angle}))");
         }
         let mut arguments = arguments.to_string();
@@ -235,9 +235,9 @@ impl Source {
         list.push(format!("body{k}"));
     }
 
-    fn point(&mut self) -> String {
+    fn random_point(&mut self) -> String {
         let particles = self.particles.len();
-        if !self.points.is_empty() && self.chance(5) {
+        if !self.points.is_empty() && self.has_chance(5) {
             let n = self.random.index_below(self.points.len());
             return self.points[n].clone();
         }
@@ -250,68 +250,68 @@ impl Source {
     }
 
     /// Returns a random scalar: a function of the state, time or an input, or a number.
-    fn scalar(&mut self) -> String {
+    fn random_scalar(&mut self) -> String {
         let coordinate = (!self.coordinates.is_empty()).then(|| {
             let n = self.random.index_below(self.coordinates.len());
             self.coordinates[n].clone()
         });
-        if !self.states.is_empty() && self.chance(5) {
+        if !self.states.is_empty() && self.has_chance(5) {
             let n = self.random.index_below(self.states.len());
             return self.states[n].clone();
         }
         match (self.random.index_below(12), coordinate) {
             (0, _) => "t".to_string(),
-            (1, _) => self.number(),
-            (2, _) => format!("look({})", self.number()),
-            (3, _) => format!("norm(r({} / {}))", self.point(), self.point()),
+            (1, _) => self.random_number(),
+            (2, _) => format!("look({})", self.random_number()),
+            (3, _) => format!("norm(r({} / {}))", self.random_point(), self.random_point()),
             (4, _) => "command".to_string(),
             (5, Some(coordinate)) => format!("rate({coordinate})"),
             (6, Some(coordinate)) => format!("look({coordinate})"),
             (_, Some(coordinate)) => coordinate,
-            (_, None) => format!("dot(r({} / ground), y)", self.point()),
+            (_, None) => format!("dot(r({} / ground), y)", self.random_point()),
         }
     }
 
     /// Fills the placeholders of a template with random scalars, vectors, points and bodies. All placeholders
     /// `B` are replaced by the same scalar.
-    fn filled(&mut self, form: &str) -> String {
-        let same = self.scalar();
+    fn fill_placeholders(&mut self, form: &str) -> String {
+        let same = self.random_scalar();
         let mut text = String::new();
         for (k, c) in form.char_indices() {
             let is_boundary = |c: Option<char>| !c.is_some_and(char::is_alphanumeric);
             let is_letter =
                 is_boundary(form[..k].chars().last()) && is_boundary(form[k + 1..].chars().next());
             match c {
-                'S' if is_letter => text += &self.scalar(),
+                'S' if is_letter => text += &self.random_scalar(),
                 'B' if is_letter => text += &same,
-                'P' if is_letter => text += &self.point(),
+                'P' if is_letter => text += &self.random_point(),
                 'V' if is_letter => {
                     let form = self.one_of(&VECTOR_VALUES);
-                    text += &self.filled(form);
+                    text += &self.fill_placeholders(form);
                 }
-                'A' if is_letter => text += &self.axes(),
-                'H' if is_letter => text += &self.heavy(),
+                'A' if is_letter => text += &self.random_axes(),
+                'H' if is_letter => text += &self.random_body_or_ground(),
                 _ => text.push(c),
             }
         }
         text
     }
 
-    fn heavy(&mut self) -> String {
+    fn random_body_or_ground(&mut self) -> String {
         let n = self.random.index_below(self.bodies.len());
         self.bodies.get(n).cloned().unwrap_or_else(|| "ground".to_string())
     }
 
     /// Returns a random body, a frame or the ground.
-    fn axes(&mut self) -> String {
+    fn random_axes(&mut self) -> String {
         let n = self.random.index_below(self.bodies.len() + self.frames.len() + 1);
         let named = self.bodies.iter().chain(&self.frames).nth(n);
         named.cloned().unwrap_or_else(|| "ground".to_string())
     }
 
-    fn value(&mut self) -> String {
+    fn random_value(&mut self) -> String {
         let form = self.one_of(&VALUES);
-        self.filled(form)
+        self.fill_placeholders(form)
     }
 
     fn add_element(&mut self, k: usize) {
@@ -330,8 +330,8 @@ impl Source {
             (2, ..) => {
                 format!(
                     "#[acts(between = ({}, {}), {})] element{k}: {}",
-                    self.point(),
-                    self.point(),
+                    self.random_point(),
+                    self.random_point(),
                     law.0,
                     law.1
                 )
@@ -340,15 +340,19 @@ impl Source {
                 format!("#[acts(on = {on})] element{k}: {}", self.one_of(&["Force", "Torque"]))
             }
             (4, ..) => {
-                format!("#[acts(on = {}, along = {})] element{k}: Force", self.point(), self.one_of(&UNITS))
+                format!(
+                    "#[acts(on = {}, along = {})] element{k}: Force",
+                    self.random_point(),
+                    self.one_of(&UNITS)
+                )
             }
             (5, ..) => format!(
                 "#[acts(on = {}, value = ({}) * ground.x)] element{k}: Force",
-                self.point(),
-                self.value()
+                self.random_point(),
+                self.random_value()
             ),
-            (6, ..) => format!("#[output(v({} / ground / ground))] output{k}: Vector", self.point()),
-            (7, ..) => format!("#[output(a({} / ground / ground))] output{k}: Vector", self.point()),
+            (6, ..) => format!("#[output(v({} / ground / ground))] output{k}: Vector", self.random_point()),
+            (7, ..) => format!("#[output(a({} / ground / ground))] output{k}: Vector", self.random_point()),
             (8, _, Some(body)) => format!("#[output({body}, resolved_in = ground)] output{k}: FreeBody"),
             (9, _, Some(body)) => {
                 let surfaces = self.one_of(&SURFACES).replace('H', &body);
@@ -357,7 +361,7 @@ impl Source {
             (10, Some(on), _) => format!("#[limit(on = {on}, from = -1, to = 1)] limit{k}: Limit"),
             (11, ..) => {
                 self.has_constraints = true;
-                format!("#[constraint({})] constraint{k}: Holonomic", self.value())
+                format!("#[constraint({})] constraint{k}: Holonomic", self.random_value())
             }
             (30 | 31, _, Some(body)) => {
                 let surfaces = self.one_of(&SURFACES).replace('H', &body);
@@ -366,41 +370,41 @@ impl Source {
                      Contact"
                 )
             }
-            (12, ..) => format!("#[output({})] output{k}: Scalar", self.value()),
-            _ => self.further(kind, k),
+            (12, ..) => format!("#[output({})] output{k}: Scalar", self.random_value()),
+            _ => self.rare_element(kind, k),
         };
         let _ = writeln!(self.fields, "{field},");
     }
 
     /// Returns the declaration of a rare element: an output, coordinate, frame or other field of the given
     /// kind.
-    fn further(&mut self, kind: usize, k: usize) -> String {
+    fn rare_element(&mut self, kind: usize, k: usize) -> String {
         let coordinate = self.coordinates.last().cloned().unwrap_or_else(|| "t".to_string());
         let body = self.bodies.last().cloned().unwrap_or_else(|| "ground".to_string());
         match kind {
             13 | 14 => {
                 let form = self.one_of(&SCALAR_OUTPUTS);
-                format!("#[output({})] output{k}: Scalar", self.filled(form))
+                format!("#[output({})] output{k}: Scalar", self.fill_placeholders(form))
             }
             15 | 16 => {
                 let form = self.one_of(&VECTOR_OUTPUTS);
-                let axes = self.axes();
-                format!("#[output({}, resolved_in = {axes})] output{k}: Vector", self.filled(form))
+                let axes = self.random_axes();
+                format!("#[output({}, resolved_in = {axes})] output{k}: Vector", self.fill_placeholders(form))
             }
             17 => {
                 let form = self.one_of(&MATRIX_OUTPUTS);
-                format!("#[output({})] output{k}: Matrix", self.filled(form))
+                format!("#[output({})] output{k}: Matrix", self.fill_placeholders(form))
             }
             18 => {
                 self.coordinates.push(format!("own{k}"));
-                let (point, along) = (self.one_of(&VECTORS), self.axes());
+                let (point, along) = (self.one_of(&VECTORS), self.random_axes());
                 format!(
                     "own{k}: Coordinate,\n#[particle(mass = 0.7, at = {body}.at(own{k} * {along}.x + \
                      {point}))] bead{k}: Particle"
                 )
             }
             19 => {
-                let (on, angle) = (self.axes(), self.scalar());
+                let (on, angle) = (self.random_axes(), self.random_scalar());
                 self.frames.push(format!("frame{k}"));
                 format!("#[frame({on}, {}({angle}))] frame{k}: Frame", self.one_of(&["x", "y", "z"]))
             }
@@ -409,11 +413,11 @@ impl Source {
                 self.points.push(format!("point{k}"));
                 format!("#[point(on = {body}, at = {at} + 0.3 * {coordinate} * y)] point{k}: Point")
             }
-            21 => format!("#[energy({})] energy{k}: Potential", self.value()),
+            21 => format!("#[energy({})] energy{k}: Potential", self.random_value()),
             22 => format!("#[dissipation(0.2 * pow(rate({coordinate}), 2))] loss{k}: Rayleigh"),
             23 => {
                 self.has_constraints = true;
-                let (point, axes) = (self.point(), self.axes());
+                let (point, axes) = (self.random_point(), self.random_axes());
                 format!(
                     "#[constraint(dot(v({point} / ground / ground), {axes}.x) = 0)] constraint{k}: \
                      Nonholonomic"
@@ -424,12 +428,12 @@ impl Source {
                 format!("#[constraint(rolls({body}.sphere(0.2), ground.plane(y)))] constraint{k}: Rolling")
             }
             25 => {
-                let rate = self.value();
+                let rate = self.random_value();
                 self.states.push(format!("state{k}"));
                 format!("#[state(rate = {rate})] state{k}: State")
             }
             26 => {
-                let (a, b, c) = (self.point(), self.point(), self.point());
+                let (a, b, c) = (self.random_point(), self.random_point(), self.random_point());
                 format!(
                     "#[acts(on = norm(r({a} / {b}) + 2 * ground.z) + norm(r({b} / {c}) - 3 * ground.x), \
                      stiffness = 2, free_length = 0.4)] element{k}: Spring"
@@ -460,7 +464,7 @@ impl Source {
             28 => format!(
                 "#[acts(on = {coordinate}, value = -0.2 * rate(rate({coordinate})) + S)] added{k}: Force"
             )
-            .replace('S', &self.scalar()),
+            .replace('S', &self.random_scalar()),
             _ => {
                 let other = self.coordinates.first().cloned().unwrap_or_else(|| "t".to_string());
                 format!(

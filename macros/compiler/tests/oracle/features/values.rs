@@ -35,9 +35,10 @@ pub enum By {
 }
 
 impl Values {
-    pub fn random(model: &Model<'_>, seed: u64) -> Values {
+    pub fn random_values(model: &Model<'_>, seed: u64) -> Values {
         let mut random = Random::new(seed ^ 0xfee1);
-        let mut list = |n: usize, bound: f64| -> Vec<f64> { (0..n).map(|_| random.uniform(bound)).collect() };
+        let mut list =
+            |n: usize, bound: f64| -> Vec<f64> { (0..n).map(|_| random.uniform_number(bound)).collect() };
         let (nq, nv) = (model.nq(), model.nv());
         let mut values = Values {
             t: 0.4,
@@ -53,16 +54,16 @@ impl Values {
         // Also provides standard inertial parameters: ten for each body.
         values.given.extend(list(10 * model.frames.len(), 0.7));
         for chart in &model.charts {
-            if let Some(quaternion) = quaternion(*chart, &mut values.q) {
+            if let Some(quaternion) = quaternion_of_chart(*chart, &mut values.q) {
                 quaternion[3] += 1.5;
-                normalise(quaternion);
+                normalise_quaternion(quaternion);
             }
         }
         values
     }
 
     /// Returns the results of a generated function. Results of functions that it calls are computed first.
-    pub fn run(&self, output: &Output, function: &Function) -> Vec<f64> {
+    pub fn run_function(&self, output: &Output, function: &Function) -> Vec<f64> {
         self.run_program(output, function, false)
     }
 
@@ -73,38 +74,41 @@ impl Values {
 
     fn run_program(&self, output: &Output, function: &Function, lanes: bool) -> Vec<f64> {
         let called = Called::ALL.map(|called| {
-            let of = output.functions.iter().find(|f| f.name == called.function());
+            let of = output.functions.iter().find(|f| f.name == called.function_name());
             of.map_or_else(Vec::new, |f| self.run_alone(&f.program))
         });
         let program = function.program.simd.as_deref().filter(|_| lanes).unwrap_or(&function.program);
-        program.run(&|s| match Quantity::from_symbol(s) {
+        program.interpret_program(&|s| match Quantity::from_symbol(s) {
             Quantity::PassiveForce(k) => called[0][k],
             Quantity::PassiveDerivative(k) => called[1][k],
-            quantity => self.value(quantity, &[]),
+            quantity => self.value_of_quantity(quantity, &[]),
         })
     }
 
     /// Returns the results of a function of the prepared mechanism.
     pub fn run_prepared(&self, prepared: &Prepared, function: &Function) -> Vec<f64> {
-        let numbers = prepared.numbers.run(&|s| self.value(Quantity::from_symbol(s), &[]));
+        let numbers =
+            prepared.numbers.interpret_program(&|s| self.value_of_quantity(Quantity::from_symbol(s), &[]));
         let outputs_of_function = |name: &str| {
             let of = prepared.functions.iter().find(|f| f.name == name);
-            of.map_or_else(Vec::new, |f| f.program.run(&|s| self.value(Quantity::from_symbol(s), &numbers)))
+            of.map_or_else(Vec::new, |f| {
+                f.program.interpret_program(&|s| self.value_of_quantity(Quantity::from_symbol(s), &numbers))
+            })
         };
-        let called = Called::ALL.map(|called| outputs_of_function(called.function()));
-        function.program.run(&|s| match Quantity::from_symbol(s) {
+        let called = Called::ALL.map(|called| outputs_of_function(called.function_name()));
+        function.program.interpret_program(&|s| match Quantity::from_symbol(s) {
             Quantity::PassiveForce(k) => called[0][k],
             Quantity::PassiveDerivative(k) => called[1][k],
-            quantity => self.value(quantity, &numbers),
+            quantity => self.value_of_quantity(quantity, &numbers),
         })
     }
 
     /// Returns the values that callers supply for one kind of argument, such as multipliers or momenta.
-    pub fn supplied(&self, block: Supplied) -> &[f64] {
+    pub fn supplied_values(&self, block: Supplied) -> &[f64] {
         &self.given[3 * block as usize..]
     }
 
-    fn value(&self, quantity: Quantity, numbers: &[f64]) -> f64 {
+    fn value_of_quantity(&self, quantity: Quantity, numbers: &[f64]) -> f64 {
         let entry_or_nan = |list: &[f64], k: usize| list.get(k).copied().unwrap_or(f64::NAN);
         match quantity {
             Quantity::Time => self.t,
@@ -115,7 +119,7 @@ impl Values {
             Quantity::Input(k) => entry_or_nan(&self.u, k),
             Quantity::Parameter(k) => entry_or_nan(&self.parameters, k),
             Quantity::Prepared(k) => entry_or_nan(numbers, k),
-            Quantity::Given(block, k) => entry_or_nan(self.supplied(block), k),
+            Quantity::Given(block, k) => entry_or_nan(self.supplied_values(block), k),
             Quantity::Momentum(k) => entry_or_nan(&self.given, k),
             Quantity::ContactForce(k) => entry_or_nan(&self.contact_forces, k),
             Quantity::Reaction(_)
@@ -131,11 +135,11 @@ impl Values {
 
     /// Returns the results of a program without calls.
     fn run_alone(&self, program: &Program) -> Vec<f64> {
-        program.run(&|s| self.value(Quantity::from_symbol(s), &[]))
+        program.interpret_program(&|s| self.value_of_quantity(Quantity::from_symbol(s), &[]))
     }
 
     /// Returns the values with one entry changed by `h`. Configuration coordinates are not changed.
-    pub fn changed(&self, by: By, k: usize, h: f64) -> Values {
+    pub fn with_changed_entry(&self, by: By, k: usize, h: f64) -> Values {
         let mut values = self.clone();
         match by {
             By::V => values.v[k] += h,
@@ -148,7 +152,7 @@ impl Values {
     }
 
     /// Returns the values after a small displacement of the configuration.
-    pub fn displaced(&self, charts: &[Chart], step: &[f64]) -> Values {
+    pub fn displaced_values(&self, charts: &[Chart], step: &[f64]) -> Values {
         let mut values = self.clone();
         move_along(charts, &mut values.q, step);
         values
@@ -158,13 +162,13 @@ impl Values {
     /// accelerations.
     pub fn values_after(&self, charts: &[Chart], joints: &[f64], h: f64) -> Values {
         let step: Vec<f64> = joints.iter().map(|v| h * v).collect();
-        let mut values = self.displaced(charts, &step);
+        let mut values = self.displaced_values(charts, &step);
         values.t += h;
         values.v.iter_mut().zip(&self.a).for_each(|(v, a)| *v += h * a);
         values
     }
 
-    pub fn size(&self, by: By) -> usize {
+    pub fn entry_count(&self, by: By) -> usize {
         match by {
             By::Q | By::V => self.v.len(),
             By::A => self.a.len(),
@@ -174,11 +178,11 @@ impl Values {
     }
 }
 
-fn quaternion(chart: Chart, q: &mut [f64]) -> Option<&mut [f64]> {
-    chart.quaternion().map(|first| &mut q[first.and_next(4)])
+fn quaternion_of_chart(chart: Chart, q: &mut [f64]) -> Option<&mut [f64]> {
+    chart.first_quaternion_index().map(|first| &mut q[first.and_next(4)])
 }
 
-fn normalise(q: &mut [f64]) {
+fn normalise_quaternion(q: &mut [f64]) {
     let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
     q.iter_mut().for_each(|x| *x /= length);
 }
@@ -193,7 +197,9 @@ fn move_along(charts: &[Chart], q: &mut [f64], step: &[f64]) {
     for chart in charts {
         match *chart {
             Chart::Plain(first, velocity) => q[first.0] += step[velocity.0],
-            Chart::Ball(first, velocity) => turn(&mut q[first.and_next(4)], &step[velocity.and_next(3)]),
+            Chart::Ball(first, velocity) => {
+                rotate_quaternion(&mut q[first.and_next(4)], &step[velocity.and_next(3)])
+            }
             Chart::Free(first, velocity) => {
                 let (position, quaternion) = q[first.and_next(7)].split_at_mut(3);
                 let (along, axis) =
@@ -201,20 +207,20 @@ fn move_along(charts: &[Chart], q: &mut [f64], step: &[f64]) {
                 let once = cross(axis, along);
                 let twice = cross(axis, once);
                 (0..3).for_each(|k| position[k] += along[k] + 2.0 * (quaternion[3] * once[k] + twice[k]));
-                turn(quaternion, &step[(velocity + 3).and_next(3)]);
+                rotate_quaternion(quaternion, &step[(velocity + 3).and_next(3)]);
             }
         }
     }
 }
 
 /// Rotates a quaternion (scalar part last) by a small rotation vector in body axes.
-fn turn(quaternion: &mut [f64], step: &[f64]) {
+fn rotate_quaternion(quaternion: &mut [f64], step: &[f64]) {
     let (axis, scalar) = ([0, 1, 2].map(|k| quaternion[k]), quaternion[3]);
     let half = [0, 1, 2].map(|k| 0.5 * step[k]);
     let across = cross(axis, half);
     (0..3).for_each(|k| quaternion[k] += scalar * half[k] + across[k]);
     quaternion[3] -= axis.iter().zip(&half).map(|(a, h)| a * h).sum::<f64>();
-    normalise(quaternion);
+    normalise_quaternion(quaternion);
 }
 
 /// Returns the derivative at zero of a function, by sixth-order differences with steps of `h`.
@@ -231,7 +237,7 @@ pub fn difference(h: f64, of: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
 
 /// Returns the derivative at zero of a function, with an error estimate. Halving the step changes the result
 /// by 63 times the remaining error.
-pub fn slope(of: &dyn Fn(f64) -> Vec<f64>) -> (Vec<f64>, f64) {
+pub fn derivative_with_error(of: &dyn Fn(f64) -> Vec<f64>) -> (Vec<f64>, f64) {
     let (wide, narrow) = (difference(H, of), difference(0.5 * H, of));
     let doubt = wide.iter().zip(&narrow).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
     (narrow, doubt / 8.0)

@@ -64,7 +64,7 @@ pub struct Numbers<'g> {
 
 impl<'g> Numbers<'g> {
     pub fn new(model: &Model<'g>) -> Numbers<'g> {
-        let joints = crate::kinematics::joints(model);
+        let joints = crate::kinematics::joints_of_model(model);
         let lagrange = lagrange::derive(model, &joints);
         let inputs = forces::generalized_forces(model, &joints);
         let mut all = lagrange.mass_matrix.concat();
@@ -74,7 +74,7 @@ impl<'g> Numbers<'g> {
     }
 
     pub fn accelerations(&self, q: &[f64], v: &[f64], u: &[f64], parameters: &[f64]) -> Vec<f64> {
-        let values = self.forces.values(&|s| match Quantity::from_symbol(s) {
+        let values = self.forces.evaluate_at(&|s| match Quantity::from_symbol(s) {
             Quantity::Parameter(k) => parameters[k],
             Quantity::Configuration(k) => q[k],
             Quantity::Velocity(k) => v[k],
@@ -98,7 +98,7 @@ impl<'g> Numbers<'g> {
 
     /// Returns the matrix of `ξ̇ = v`, `v̇ = a` about a state at rest, by finite differences. The orientation
     /// at rest is the identity.
-    pub fn linear(&self, q: &[f64], u: &[f64], parameters: &[f64]) -> Vec<Vec<f64>> {
+    pub fn linear_system_matrix(&self, q: &[f64], u: &[f64], parameters: &[f64]) -> Vec<Vec<f64>> {
         let n = self.nv;
         let displaced_accelerations = |k: usize, h: f64| {
             let (mut q, mut v) = (q.to_vec(), vec![0.0; n]);

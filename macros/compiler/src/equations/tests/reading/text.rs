@@ -11,62 +11,62 @@ pub struct Reader<'a> {
     values: Values<'a>,
 }
 
-pub fn value(text: &str, values: Values<'_>) -> f64 {
+pub fn evaluate_text(text: &str, values: Values<'_>) -> f64 {
     let mut reader = Reader { rest: text, values };
-    let found = reader.sum();
+    let found = reader.parse_sum();
     assert_eq!(reader.rest, "", "{text}");
     found
 }
 
 impl Reader<'_> {
-    pub fn take(&mut self, text: &str) -> bool {
+    pub fn take_text(&mut self, text: &str) -> bool {
         let rest = self.rest.strip_prefix(text);
         self.rest = rest.unwrap_or(self.rest);
         rest.is_some()
     }
 
-    pub fn sum(&mut self) -> f64 {
-        let mut sum = if self.take("-") { -self.product() } else { self.product() };
+    pub fn parse_sum(&mut self) -> f64 {
+        let mut sum = if self.take_text("-") { -self.parse_product() } else { self.parse_product() };
         loop {
-            if self.take(" + ") {
-                sum += self.product();
-            } else if self.take(" - ") {
-                sum -= self.product();
+            if self.take_text(" + ") {
+                sum += self.parse_product();
+            } else if self.take_text(" - ") {
+                sum -= self.parse_product();
             } else {
                 return sum;
             }
         }
     }
 
-    pub fn product(&mut self) -> f64 {
-        let mut product = self.factor();
+    pub fn parse_product(&mut self) -> f64 {
+        let mut product = self.parse_factor();
         loop {
             let goes_on = !self.rest.starts_with(" + ") && !self.rest.starts_with(" - ");
-            if self.take("/") {
-                product /= self.factor();
-            } else if goes_on && self.take(" ") {
-                product *= self.factor();
+            if self.take_text("/") {
+                product /= self.parse_factor();
+            } else if goes_on && self.take_text(" ") {
+                product *= self.parse_factor();
             } else {
                 return product;
             }
         }
     }
 
-    pub fn factor(&mut self) -> f64 {
-        if self.take("(") {
-            let sum = self.sum();
-            assert!(self.take(")"), "{}", self.rest);
-            return sum.powi(self.power());
+    pub fn parse_factor(&mut self) -> f64 {
+        if self.take_text("(") {
+            let sum = self.parse_sum();
+            assert!(self.take_text(")"), "{}", self.rest);
+            return sum.powi(self.parse_power());
         }
         let is_name_character = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '\'');
         let powers = ['²', '³', '⁴', '⁵', '⁶', '⁷'];
         let end = self.rest.find(|c| !is_name_character(c) || powers.contains(&c)).unwrap_or(self.rest.len());
         let (word, rest) = self.rest.split_at(end);
         self.rest = rest;
-        let power = self.power();
-        if self.take("(") {
-            let argument = self.sum();
-            assert!(self.take(")"), "{}", self.rest);
+        let power = self.parse_power();
+        if self.take_text("(") {
+            let argument = self.parse_sum();
+            assert!(self.take_text(")"), "{}", self.rest);
             let found = match word {
                 "sqrt" => argument.sqrt(),
                 "acos" => argument.acos(),
@@ -80,9 +80,9 @@ impl Reader<'_> {
         found.powi(power)
     }
 
-    pub fn power(&mut self) -> i32 {
+    pub fn parse_power(&mut self) -> i32 {
         let powers = [("²", 2), ("³", 3), ("⁴", 4), ("⁵", 5), ("⁶", 6), ("⁷", 7)];
-        powers.into_iter().find(|(sign, _)| self.take(sign)).map_or(1, |(_, power)| power)
+        powers.into_iter().find(|(sign, _)| self.take_text(sign)).map_or(1, |(_, power)| power)
     }
 }
 
@@ -140,13 +140,16 @@ impl Text {
     }
 
     /// Returns the coefficients of a name in all equations, on the left or on the right sides.
-    pub fn column(&self, name: &str, right: bool, parameters: Values<'_>) -> Vec<f64> {
+    pub fn coefficient_column(&self, name: &str, right: bool, parameters: Values<'_>) -> Vec<f64> {
         let indicator_of_name = |word: &str| match word {
             _ if word == name => 1.0,
             _ if self.is_moving(word) => 0.0,
             _ => parameters(word),
         };
-        self.equations.iter().map(|(a, b)| value(if right { b } else { a }, &indicator_of_name)).collect()
+        self.equations
+            .iter()
+            .map(|(a, b)| evaluate_text(if right { b } else { a }, &indicator_of_name))
+            .collect()
     }
 
     /// Returns true for names of variables instead of parameters.
@@ -160,15 +163,15 @@ impl Text {
     }
 
     /// Returns whether all printed stability conditions hold for these parameters.
-    pub fn holds(&self, parameters: Values<'_>) -> bool {
-        self.conditions.iter().all(|condition| value(condition, parameters) > 0.0)
+    pub fn satisfies_conditions(&self, parameters: Values<'_>) -> bool {
+        self.conditions.iter().all(|condition| evaluate_text(condition, parameters) > 0.0)
     }
 
     /// Returns the coefficients of the printed characteristic polynomial in ascending powers, determined from
     /// its values.
-    pub fn coefficients(&self, parameters: Values<'_>) -> Vec<f64> {
+    pub fn characteristic_coefficients(&self, parameters: Values<'_>) -> Vec<f64> {
         let polynomial_value =
-            |s: f64| value(&self.polynomial, &|word| if word == "s" { s } else { parameters(word) });
+            |s: f64| evaluate_text(&self.polynomial, &|word| if word == "s" { s } else { parameters(word) });
         let degree =
             ["⁶", "⁵", "⁴", "³", "²"].iter().position(|p| self.polynomial.contains(&format!("s{p}")));
         let n = degree.map_or(1, |k| 6 - k);
@@ -190,7 +193,7 @@ impl Text {
         sum
     }
 
-    pub fn roots(&self, parameters: Values<'_>) -> Vec<Complex<f64>> {
-        roots(&self.coefficients(parameters))
+    pub fn characteristic_roots(&self, parameters: Values<'_>) -> Vec<Complex<f64>> {
+        roots(&self.characteristic_coefficients(parameters))
     }
 }

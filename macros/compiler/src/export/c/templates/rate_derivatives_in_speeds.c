@@ -1,6 +1,6 @@
     enum { N = @NV@ * @NV@ };
     double way[@NV@], there[@NQ@], rates[@NV@], rate[@NV@], found[@NV@], z[N], y[N], z_there[N], of_way[N], of_rates[N];
-    double moved_by_q[N], moved_by_dv[N], changes[N], of_found[N], changes_there[N], turned[N], sum[N];
+    double moved_by_q[N], moved_by_dv[N], changes[N], of_found[N], changes_there[N], turned[N], sum[N], more[N];
     @PREFIX@_rates_of_speeds(@OWN@q, dv, way);
     @PREFIX@_joints_integrate(@OWN@q, way, there);
     @PREFIX@_rates_of_speeds(@OWN@there, v, rates);
@@ -16,13 +16,16 @@
     @PREFIX@_joints_tangent_rate_derivatives(@OWN@way, rates, of_way, of_rates);
     lw_product_of(of_rates, changes_there, turned);
     lw_product_of(of_way, changes, sum);
-    lw_add_products(@NV@, turned, moved_by_q, sum);
+    lw_product_of(turned, moved_by_q, more);
     for (int k = 0; k < N; ++k) {
-        sum[k] -= of_found[k];
+        sum[k] = sum[k] + more[k] - of_found[k];
     }
     lw_product_of(y, sum, by_q);
     lw_product_of(of_way, z, sum);
-    lw_add_products(@NV@, turned, moved_by_dv, sum);
+    lw_product_of(turned, moved_by_dv, more);
+    for (int k = 0; k < N; ++k) {
+        sum[k] += more[k];
+    }
     lw_product_of(y, sum, by_dv);
-    lw_product_of(of_rates, z_there, sum);
-    lw_product_of(y, sum, by_v);
+    lw_product_of(y, of_rates, sum);
+    lw_product_of(sum, z_there, by_v);

@@ -1,0 +1,129 @@
+//! Muscles: curves of force over length and speed, and the rate of the activation (MuJoCo, *Modeling*,
+//! "Muscles").
+
+use super::activation::{ActuatorLaw, OTHER_INPUTS, TINY};
+use super::defaults::Element;
+use super::formula::Formula;
+use super::record::Record;
+use crate::import::context::Cx;
+
+/// Parameters of the curves of a muscle.
+pub(super) struct Muscle {
+    /// Shortest and longest length of the actuator.
+    lengths: [f64; 2],
+    /// Gain parameters: range of normalised lengths, force, scale, lmin, lmax, vmax, fpmax, fvmax.
+    gain: [f64; 9],
+    /// Bias parameters, in the same order.
+    bias: [f64; 9],
+}
+
+impl Muscle {
+    /// Reads the parameters. Reports those that MuJoCo computes from the inertia or by a simulation.
+    pub(super) fn read(actuator: &Element<'_>, record: &Record<'_>, cx: &mut Cx<'_>) -> Option<Muscle> {
+        let first = |prm: &[f64; 10]| std::array::from_fn(|k| prm[k]);
+        let (gain, bias): ([f64; 9], [f64; 9]) = (first(&record.gain), first(&record.bias));
+        let kinds = [(record.gain_kind, &gain), (record.bias_kind, &bias)];
+        for (_, prm) in kinds.into_iter().filter(|(kind, _)| *kind == "muscle") {
+            let [low, high, force, _, lmin, lmax, vmax, _, fvmax] = *prm;
+            if force < 0.0 {
+                let help = "MuJoCo scales it by the inertia: write the `force` in newtons";
+                return refuse(actuator, "force", "a muscle without `force` is not supported", help, cx);
+            }
+            if low >= high || lmin >= 1.0 || lmax <= 1.0 || vmax <= 0.0 || fvmax <= 1.0 {
+                let message = "a muscle needs an increasing `range`, lmin < 1 < lmax, vmax > 0 and fvmax > 1";
+                return refuse(actuator, "force", message, "correct these values", cx);
+            }
+        }
+        let lengths = actuator.numbers::<2>("lengthrange", cx).map_or([0.0; 2], |found| found.value);
+        if kinds.iter().any(|(kind, _)| *kind == "muscle") && lengths[0] >= lengths[1] {
+            let help =
+                "MuJoCo finds it by a simulation: write the `lengthrange` that MuJoCo saves in the file";
+            return refuse(
+                actuator,
+                "lengthrange",
+                "a muscle without `lengthrange` is not supported",
+                help,
+                cx,
+            );
+        }
+        Some(Muscle { lengths, gain, bias })
+    }
+
+    /// Returns the length that is normalised to one, m.
+    fn unit_length(&self, prm: &[f64; 9]) -> f64 {
+        (self.lengths[1] - self.lengths[0]) / (prm[1] - prm[0])
+    }
+
+    /// Returns the normalised length.
+    fn length(&self, prm: &[f64; 9], law: &ActuatorLaw) -> Formula {
+        let unit = self.unit_length(prm);
+        law.length() * (1.0 / unit) + (prm[0] - self.lengths[0] / unit)
+    }
+
+    /// Returns the force at full activation, which is negative.
+    pub(super) fn gain(&self, law: &ActuatorLaw) -> Formula {
+        let [_, _, force, _, lmin, lmax, vmax, _, fvmax] = self.gain;
+        let length = self.length(&self.gain, law);
+        let speed = law.rate() * (1.0 / (self.unit_length(&self.gain) * vmax));
+        let (low, high) = (0.5 * (lmin + 1.0), 0.5 * (1.0 + lmax));
+        let parabola = |from: f64, width: f64| ((length.clone() + -from) * (1.0 / width)).square() * 0.5;
+        let hill = |from: f64, width: f64| -parabola(from, width) + 1.0;
+        let zero = || law.number(0.0);
+        let beyond = length.clone().choose(lmax, parabola(lmax, lmax - high), zero());
+        let falling = length.clone().choose(high, hill(1.0, high - 1.0), beyond);
+        let rising = length.clone().choose(1.0, hill(1.0, 1.0 - low), falling);
+        let inside = length.clone().choose(low, parabola(lmin, low - lmin), rising);
+        let by_length = length.choose(lmin, zero(), inside);
+        let eccentric = fvmax - 1.0;
+        let lengthening = -(speed.clone() + -eccentric).square() * (1.0 / eccentric) + fvmax;
+        let slow = speed.clone().choose(eccentric, lengthening, law.number(fvmax));
+        let shortening = speed.clone().choose(0.0, (speed.clone() + 1.0).square(), slow);
+        let by_speed = speed.choose(-1.0, zero(), shortening);
+        by_length * by_speed * -force
+    }
+
+    /// Returns the passive force, which is negative.
+    pub(super) fn bias(&self, law: &ActuatorLaw) -> Formula {
+        let [_, _, force, _, _, lmax, _, fpmax, _] = self.bias;
+        let length = self.length(&self.bias, law);
+        let border = 0.5 * (1.0 + lmax);
+        let scale = 1.0 / (border - 1.0);
+        let linear = (length.clone() + -border) * scale + 0.5;
+        let curved = ((length.clone() + -1.0) * scale).square() * 0.5;
+        let stretched = length.clone().choose(border, curved, linear);
+        length.choose(1.0, law.number(0.0), stretched) * (-force * fpmax)
+    }
+}
+
+/// Reports a muscle that is not supported.
+fn refuse<T>(
+    actuator: &Element<'_>,
+    attribute: &str,
+    message: &str,
+    help: &'static str,
+    cx: &mut Cx<'_>,
+) -> Option<T> {
+    cx.report_error(&actuator.place(attribute, cx), message, |d| d.add_help(help).add_help(OTHER_INPUTS));
+    None
+}
+
+/// Returns the rate of the activation. Time constants depend on the activation and on the direction of its
+/// change; `dynprm` contains both, and the width over which they are blended.
+pub(super) fn activation_rate(
+    law: &ActuatorLaw,
+    input: Formula,
+    state: Formula,
+    record: &Record<'_>,
+) -> Formula {
+    let [rise, fall, width, ..] = record.dynprm;
+    let factor = state.clone().clamp(0.0, 1.0) * 1.5 + 0.5;
+    let excess = input.clamp(0.0, 1.0) - state;
+    let rise = factor.clone() * rise.max(TINY);
+    let fall = law.number(fall.max(TINY)) / factor;
+    if width < TINY {
+        return excess.clone().choose(0.0, excess.clone() / fall, excess / rise);
+    }
+    let x = (excess.clone() * (1.0 / width) + 0.5).clamp(0.0, 1.0);
+    let blend = x.clone().square() * x.clone() * (x.clone() * 3.0 * (x * 2.0 + -5.0) + 10.0);
+    excess / (fall.clone() + (rise - fall) * blend)
+}

@@ -1,0 +1,113 @@
+//! Programs without lanes that compute the same bits as a program with lanes.
+
+use super::{Op, Operand, Program};
+
+impl Program {
+    /// Returns the program with one instruction for every lane. Every operation of a lane has the same
+    /// operands as in the program with lanes, and lanes are summed in the order of the runtime, so that the
+    /// results have the same bits.
+    #[must_use]
+    pub fn without_lanes(&self) -> Program {
+        let mut expansion = Expansion { program: self, instructions: Vec::new(), values: Vec::new() };
+        for op in &self.instructions {
+            let lanes = expansion.expand(*op);
+            expansion.values.push(lanes);
+        }
+        let outputs = self.outputs.iter().map(|o| expansion.lane(*o, 0)).collect();
+        let mut program = Program { instructions: expansion.instructions, outputs, ..Program::default() };
+        program.remove_unused();
+        program.counts = program.count_operations();
+        program
+    }
+}
+
+/// Program whose lanes become instructions.
+struct Expansion<'a> {
+    program: &'a Program,
+    /// Instructions so far.
+    instructions: Vec<Op>,
+    /// Operands that hold the lanes of each value.
+    values: Vec<Vec<Operand>>,
+}
+
+impl Expansion<'_> {
+    /// Appends the instructions of an operation, and returns the operands that hold its lanes.
+    fn expand(&mut self, op: Op) -> Vec<Operand> {
+        match op {
+            Op::Lane(k, a) => vec![self.lane(a, k)],
+            Op::Join(n, a, b) => [a, b].iter().flat_map(|o| (0..n).map(|k| self.lane(*o, k))).collect(),
+            Op::Sum(n, a) => {
+                let lanes = (0..n).map(|k| self.lane(a, k)).collect();
+                vec![self.sum(lanes)]
+            }
+            op => {
+                let mut width = 1;
+                op.visit_operands(|o| width = width.max(self.width(o)));
+                let lanes: Vec<Op> = (0..width).map(|k| op.map_operands(|o| self.lane(o, k))).collect();
+                lanes.into_iter().map(|op| self.push(op)).collect()
+            }
+        }
+    }
+
+    /// Appends the sum of lanes: the upper half is added to the lower half until one lane is left.
+    fn sum(&mut self, mut lanes: Vec<Operand>) -> Operand {
+        while lanes.len() > 1 {
+            let half = lanes.len().div_ceil(2);
+            for (k, upper) in lanes.split_off(half).into_iter().enumerate() {
+                lanes[k] = self.push(Op::Add(lanes[k], upper));
+            }
+        }
+        lanes.first().copied().unwrap_or(Operand::Const(0.0))
+    }
+
+    fn push(&mut self, op: Op) -> Operand {
+        self.instructions.push(op);
+        Operand::Value(self.instructions.len() - 1)
+    }
+
+    /// Returns the number of lanes of an operand.
+    fn width(&self, o: Operand) -> usize {
+        match o {
+            Operand::Const(_) | Operand::Symbol(_) => 1,
+            Operand::Value(k) => self.values[k].len(),
+            Operand::Tuple(k) => self.program.tuples[k].len(),
+            Operand::Gather(k) => self.program.gathers[k].len(),
+        }
+    }
+
+    /// Returns the operand that holds a lane. A scalar is the same in all lanes.
+    fn lane(&self, o: Operand, k: usize) -> Operand {
+        match o {
+            Operand::Const(_) | Operand::Symbol(_) => o,
+            Operand::Value(v) => self.values[v][k.min(self.values[v].len() - 1)],
+            Operand::Tuple(t) => Operand::Const(self.program.tuples[t][k]),
+            Operand::Gather(g) => Operand::Symbol(self.program.gathers[g][k]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::expr::Symbol;
+    use crate::lower::{Op, Operand, Program};
+
+    /// `Σ cₖ xₖ` over five lanes, in the order of the runtime, and the last product.
+    #[test]
+    fn lanes_become_instructions() {
+        let instructions = vec![
+            Op::Mul(Operand::Tuple(0), Operand::Gather(0)),
+            Op::Sum(5, Operand::Value(0)),
+            Op::Lane(4, Operand::Value(0)),
+        ];
+        let outputs = vec![Operand::Value(1), Operand::Value(2)];
+        let tuples = vec![vec![1e16, 1.0, -1e16, 1.0, 3.0]];
+        let gathers = vec![(0..5).map(Symbol).collect()];
+        let mut lanes = Program { instructions, outputs, tuples, gathers, ..Program::default() };
+        lanes.remove_unused();
+        let program = lanes.without_lanes();
+        assert!(program.tuples.is_empty() && program.gathers.is_empty());
+        assert_eq!(program.instructions.len(), 9);
+        // (x₀ + x₃, x₁ + x₄, x₂), then (x₀ + x₃ + x₂, x₁ + x₄), then the sum of both.
+        assert_eq!(program.interpret_program(&|_| 1.0), [((1e16 + 1.0) + -1e16) + (1.0 + 3.0), 3.0]);
+    }
+}

@@ -1,0 +1,73 @@
+use crate::testing::{assert_close, assert_derivatives, assert_near, precise_integrator};
+use linkwork::prelude::*;
+use linkwork_models::GearedJoint;
+use std::f64::consts::PI;
+
+const S: GearedJoint = GearedJoint {
+    rotor_inertia: 2e-5,
+    inertia: 0.3,
+    ratio: 80.0,
+    stiffness: 4000.0,
+    backlash: 2e-3,
+    loss: 0.25,
+    creep: 1e-3,
+};
+
+/// Returns the accelerations for a torque of the teeth and a direction of rotation.
+fn accelerations(torque: f64, direction: f64, drive: f64) -> SVector<f64, 2> {
+    let twist = torque / 4000.0 + torque.signum() * 1e-3;
+    let (q, v) = ([80.0 * (twist + 0.1), 0.1].into(), SVector::from([80.0, 1.0]) * direction);
+    assert_close(S.torque(&q), torque, 1e-12);
+    assert_derivatives(&S, &q, &v, &[drive].into(), 1e-6);
+    S.forward_dynamics(&q, &v, &S.generalized_forces(&q, &[drive].into()))
+}
+
+#[test]
+fn teeth_lose_a_part_of_their_load() {
+    for (torque, direction) in [(50.0, 1.0), (50.0, -1.0), (-50.0, 1.0), (-50.0, -1.0)] {
+        let rotor = (0.4 - torque / 80.0 - 0.25 * 50.0 / 80.0 * direction) / 2e-5;
+        let expected = SVector::from([rotor, torque / 0.3]);
+        assert_near(accelerations(torque, direction, 0.4), expected, 1e-11);
+    }
+    // Both inertias accelerate together.
+    let (drive, reduced) = (0.4, 80.0 * 80.0 * 2e-5 + 1.25 * 0.3);
+    let joint = 80.0 * drive / reduced;
+    assert_near(accelerations(0.3 * joint, 1.0, drive), SVector::from([80.0 * joint, joint]), 1e-11);
+}
+
+#[test]
+fn efficiencies() {
+    let power = |drive: f64, torque: f64, direction: f64| {
+        let a = accelerations(torque, direction, drive);
+        assert_close(a[0] * 2e-5, 0.0, 1e-12);
+        (drive * 80.0 * direction, torque * direction)
+    };
+    let (motor, link) = power(50.0 * 1.25 / 80.0, 50.0, 1.0);
+    assert_close(link / motor, 1.0 / 1.25, 1e-12);
+    let (motor, link) = power(50.0 * 0.75 / 80.0, 50.0, -1.0);
+    assert_close(motor / link, 0.75, 1e-12);
+}
+
+#[test]
+fn twist_oscillates_through_the_backlash() -> Result<(), Error> {
+    let lossless = GearedJoint { loss: 0.0, ..S };
+    let reduced = 1.0 / (1.0 / (80.0 * 80.0 * 2e-5) + 1.0 / 0.3);
+    let speed = 0.02;
+    let period = 2.0 * PI * (reduced / 4000.0_f64).sqrt() + 2.0 * 2e-3 / speed;
+    // The centre of mass is at rest: both speeds are inversely proportional to the inertias.
+    let rotor = speed * reduced / (80.0 * 80.0 * 2e-5);
+    let start = SVector::from([80.0 * rotor, rotor - speed]);
+    let run = simulate(&lossless).from([0.0, 0.0], start).duration(period).method(precise_integrator());
+    let end = run.finish()?;
+    assert_near(end.v, start, 1e-5);
+    assert_close(end.q[0] / 80.0 - end.q[1], 0.0, 1e-7);
+    Ok(())
+}
+
+#[test]
+fn a_gear_with_much_friction_is_self_locking() {
+    let worm = GearedJoint { loss: 1.0, ..S };
+    let q = [-80.0 * (1e-3 + 50.0 / 4000.0), 0.0].into();
+    let a = worm.forward_dynamics(&q, &[80.0, 1.0].into(), &[0.0, 0.0].into());
+    assert_close(a[0] * 2e-5, 0.0, 1e-12);
+}

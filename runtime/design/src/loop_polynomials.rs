@@ -1,0 +1,413 @@
+//! Margins of a loop that is a ratio of polynomials. All crossings are roots of polynomials in `x = ω²` with
+//! 32 digits, which the roots of their derivatives separate.
+
+use crate::double_double::DoubleDouble;
+use crate::margins::{CERTAIN, root_between};
+use crate::matrices::C;
+use crate::{
+    Error, GainMargin, Margins, PhaseMargin, Polynomial, StabilityMargin, TransferFunction, ZerosPolesGain,
+};
+use std::f64::consts::PI;
+
+/// Relative rounding error of coefficients.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Coefficient of a polynomial, with a bound of its error by rounding of the loop's coefficients.
+#[derive(Clone, Copy, Default)]
+struct Coefficient {
+    value: DoubleDouble,
+    error: f64,
+}
+
+impl Coefficient {
+    fn rounded(value: f64) -> Self {
+        Self { value: value.into(), error: ROUNDING * value.abs() }
+    }
+
+    fn exact(value: f64) -> Self {
+        Self { value: value.into(), error: 0.0 }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self { value: self.value + other.value, error: self.error + other.error }
+    }
+
+    fn minus(self, other: Self) -> Self {
+        Self { value: self.value - other.value, error: self.error + other.error }
+    }
+
+    fn times(self, other: Self) -> Self {
+        let [one, two] = [self, other].map(|c| c.value.value().abs());
+        let error = one * other.error + self.error * (two + other.error);
+        Self { value: self.value * other.value, error }
+    }
+
+    fn is_zero(self) -> bool {
+        self.value.value() == 0.0
+    }
+}
+
+/// Polynomial, lowest power first.
+#[derive(Clone)]
+struct Terms(Vec<Coefficient>);
+
+impl Terms {
+    /// Removes zeros of high powers, after coefficients that are rounding errors are set to zero.
+    fn rounded(mut self) -> Self {
+        for c in &mut self.0 {
+            if c.value.value().abs() <= c.error {
+                c.value = DoubleDouble::default();
+            }
+        }
+        while self.0.last().is_some_and(|c| c.is_zero()) {
+            self.0.pop();
+        }
+        self
+    }
+
+    /// Combines the coefficients of each power; missing ones are zero.
+    fn combine(&self, other: &Self, f: impl Fn(Coefficient, Coefficient) -> Coefficient) -> Self {
+        let entry = |terms: &Self, k: usize| terms.0.get(k).copied().unwrap_or_default();
+        Self((0..self.0.len().max(other.0.len())).map(|k| f(entry(self, k), entry(other, k))).collect())
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        self.combine(other, Coefficient::plus)
+    }
+
+    fn minus(&self, other: &Self) -> Self {
+        self.combine(other, Coefficient::minus)
+    }
+
+    fn times(&self, other: &Self) -> Self {
+        let mut product = vec![Coefficient::default(); (self.0.len() + other.0.len()).saturating_sub(1)];
+        for (i, a) in self.0.iter().enumerate() {
+            for (j, b) in other.0.iter().enumerate() {
+                product[i + j] = product[i + j].plus(a.times(*b));
+            }
+        }
+        Self(product)
+    }
+
+    fn times_x(&self) -> Self {
+        Self(std::iter::once(Coefficient::default()).chain(self.0.iter().copied()).collect())
+    }
+
+    fn derivative(&self) -> Self {
+        let terms = self.0.iter().enumerate().skip(1);
+        Self(terms.map(|(k, c)| c.times(Coefficient::exact(k as f64))).collect())
+    }
+
+    /// Returns the value at `x`, divided by `x` to the power `degree` if `x` is above one: without overflow.
+    fn evaluate(&self, x: f64, degree: usize) -> Coefficient {
+        let start = Coefficient::default();
+        let horner = |sum: Coefficient, (c, by): (Coefficient, DoubleDouble)| Coefficient {
+            value: sum.value * by + c.value,
+            error: sum.error * by.value() + c.error,
+        };
+        if x <= 1.0 {
+            return self.0.iter().rev().map(|c| (*c, x.into())).fold(start, horner);
+        }
+        let inverse = DoubleDouble::inverse_of(x);
+        let missing = std::iter::repeat_n(Coefficient::default(), (degree + 1).saturating_sub(self.0.len()));
+        self.0.iter().copied().chain(missing).map(|c| (c, inverse)).fold(start, horner)
+    }
+
+    /// Returns the value at `x` up to a positive factor.
+    fn sign_at(&self, x: f64) -> f64 {
+        self.evaluate(x, self.0.len().saturating_sub(1)).value.value()
+    }
+
+    /// Returns points between which the polynomial is monotonic, ascending: bounds of all positive roots, and
+    /// the positive roots of the derivative between them. The list is empty if there are no positive roots,
+    /// by Descartes' rule of signs.
+    fn separators(&self) -> Vec<f64> {
+        let signs: Vec<f64> = self.0.iter().filter(|c| !c.is_zero()).map(|c| c.value.value()).collect();
+        if signs.windows(2).all(|pair| pair[0] * pair[1].signum() > 0.0) {
+            return Vec::new();
+        }
+        let size = |k: usize| self.0[k].value.value().abs().ln();
+        let is_nonzero = |k: &usize| !self.0[*k].is_zero();
+        let all: Vec<usize> = (0..self.0.len()).filter(is_nonzero).collect();
+        let (first, last) = (all[0], all[all.len() - 1]);
+        // Fujiwara's bound, and that of the polynomial with reversed coefficients.
+        let slope = |low: usize, high: usize| (size(low) - size(high)) / (high - low) as f64;
+        let high = all.iter().filter(|k| **k < last).map(|k| slope(*k, last)).fold(f64::MIN, f64::max);
+        let low = all.iter().filter(|k| **k > first).map(|k| slope(first, *k)).fold(f64::MAX, f64::min);
+        let (low, high) = (0.4 * low.exp(), 2.5 * high.exp());
+        // One change of sign is one root.
+        let changes = signs.windows(2).filter(|pair| pair[0] * pair[1].signum() < 0.0).count();
+        let inner = if changes == 1 { Vec::new() } else { self.derivative().positive_roots() };
+        let inner = inner.into_iter().filter(|x| *x > low && *x < high);
+        std::iter::once(low).chain(inner).chain([high]).collect()
+    }
+
+    /// Returns the positive roots at which the polynomial changes its sign, ascending.
+    fn positive_roots(&self) -> Vec<f64> {
+        self.roots_between(&self.separators())
+    }
+
+    /// Returns the positive roots at which the sign changes by more than rounding errors of the coefficients.
+    fn certain_roots(&self) -> Vec<f64> {
+        let is_certain = |x: &f64| {
+            let Coefficient { value, error } = self.evaluate(*x, self.0.len().saturating_sub(1));
+            value.value().abs() > error
+        };
+        let points: Vec<f64> = self.separators().into_iter().filter(is_certain).collect();
+        self.roots_between(&points)
+    }
+
+    /// Returns a root between each two neighbouring points with different signs.
+    fn roots_between(&self, points: &[f64]) -> Vec<f64> {
+        let mut found = Vec::new();
+        for pair in points.windows(2) {
+            let (mut low, mut high) = (pair[0], pair[1]);
+            let is_below = |x: f64| self.sign_at(x) < 0.0;
+            let start = is_below(low);
+            if start == is_below(high) {
+                continue;
+            }
+            while high > 2.0 * low {
+                let middle = low.sqrt() * high.sqrt();
+                *if is_below(middle) == start { &mut low } else { &mut high } = middle;
+            }
+            found.push(root_between(|x| self.sign_at(x), low, high));
+        }
+        found
+    }
+}
+
+/// Real and imaginary part of a polynomial at `iω`: `even(x) + i ω odd(x)` with `x = ω²`.
+struct Parts {
+    even: Terms,
+    odd: Terms,
+}
+
+impl Parts {
+    fn new(coefficients: &[Coefficient]) -> Self {
+        let negative = |c: &Coefficient| Coefficient { value: -c.value, ..*c };
+        let part = |first: usize| {
+            let terms = coefficients.iter().skip(first).step_by(2).enumerate();
+            Terms(terms.map(|(k, c)| if k % 2 == 0 { *c } else { negative(c) }).collect())
+        };
+        Self { even: part(0), odd: part(1) }
+    }
+
+    /// Returns the square of the magnitude.
+    fn square(&self) -> Terms {
+        self.even.times(&self.even).plus(&self.odd.times(&self.odd).times_x())
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        Self { even: self.even.plus(&other.even), odd: self.odd.plus(&other.odd) }
+    }
+}
+
+/// Values of numerator and denominator at one frequency, up to a common positive factor.
+struct Point {
+    /// `N` times the conjugate of `D`.
+    product: C,
+    /// Squared magnitudes of `N` and `D`.
+    squares: [f64; 2],
+    /// Whether rounding of the coefficients changes `N` and `D` little.
+    certain: [bool; 2],
+}
+
+/// Loop `N / D` along the stability boundary. Discrete loops are functions of `w = (z − 1) / (z + 1)`, which
+/// is imaginary there.
+pub(crate) struct LoopPolynomials {
+    /// Coefficients of `N` and `D`, lowest power first.
+    coefficients: [Vec<Coefficient>; 2],
+    numerator: Parts,
+    denominator: Parts,
+    /// Unit of the frequency of a continuous loop, rad/s.
+    unit: f64,
+    period: Option<f64>,
+}
+
+impl LoopPolynomials {
+    /// Creates the polynomials of a transfer function.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`] if coefficients of a discrete loop overflow.
+    pub fn new(g: &TransferFunction) -> Result<Self, Error> {
+        let list = |p: &Polynomial| (0..=p.degree()).map(|k| p.coefficient(k)).collect::<Vec<f64>>();
+        let both = [list(g.numerator()), list(g.denominator())];
+        if g.period().is_none() {
+            let both = both.map(|all| all.into_iter().map(Coefficient::rounded).collect());
+            return Self::of_coefficients(both, None);
+        }
+        // z = (1 + w) / (1 − w).
+        let n = g.denominator().degree().max(g.numerator().degree());
+        let transformed = |all: &Vec<f64>| {
+            let mut sum = Terms(vec![Coefficient::default(); n + 1]);
+            for (k, a) in all.iter().enumerate() {
+                let mut term = Terms(vec![Coefficient::rounded(*a)]);
+                for i in 0..n {
+                    let sign = if i < k { 1.0 } else { -1.0 };
+                    term = term.times(&Terms(vec![Coefficient::exact(1.0), Coefficient::exact(sign)]));
+                }
+                // The binomial coefficients are exact.
+                term.0.iter_mut().for_each(|c| c.error = ROUNDING * c.value.value().abs());
+                sum = sum.plus(&term);
+            }
+            sum.0
+        };
+        Self::of_coefficients([transformed(&both[0]), transformed(&both[1])], g.period())
+    }
+
+    /// Creates the polynomials of a loop with these zeros, poles and gain.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotFinite`] if coefficients overflow.
+    pub fn from_factors(g: &ZerosPolesGain) -> Result<Self, Error> {
+        let is_discrete = g.period.is_some();
+        let expanded = |roots: &[C], gain: f64| {
+            let mut product = vec![C::new(gain, 0.0)];
+            let factor =
+                |root: &C| if is_discrete { [1.0 - root, 1.0 + root] } else { [-root, C::new(1.0, 0.0)] };
+            let excess = if is_discrete { g.poles.len().saturating_sub(roots.len()) } else { 0 };
+            let infinite = std::iter::repeat_n([C::new(1.0, 0.0), C::new(-1.0, 0.0)], excess);
+            for [constant, linear] in roots.iter().map(factor).chain(infinite) {
+                product.push(C::new(0.0, 0.0));
+                for k in (0..product.len()).rev() {
+                    let below = if k > 0 { product[k - 1] } else { C::new(0.0, 0.0) };
+                    product[k] = product[k] * constant + below * linear;
+                }
+            }
+            product.into_iter().map(|c| Coefficient::rounded(c.re)).collect()
+        };
+        Self::of_coefficients([expanded(&g.zeros, g.gain), expanded(&g.poles, 1.0)], g.period)
+    }
+
+    /// Scales frequency and magnitudes by powers of two, and removes factors `s` that numerator and
+    /// denominator share.
+    fn of_coefficients(both: [Vec<Coefficient>; 2], period: Option<f64>) -> Result<Self, Error> {
+        let mut both = both.map(|all| Terms(all).rounded().0);
+        let common = both[0].iter().zip(&both[1]).take_while(|(n, d)| n.is_zero() && d.is_zero()).count();
+        both.iter_mut().for_each(|all| drop(all.drain(..common.min(all.len()))));
+        let size = |c: &Coefficient| c.value.value().abs().log2();
+        let nonzero: Vec<(usize, f64)> =
+            both[1].iter().enumerate().filter(|(_, c)| !c.is_zero()).map(|(k, c)| (k, size(c))).collect();
+        let (Some((low, first)), Some((high, last))) = (nonzero.first().copied(), nonzero.last().copied())
+        else {
+            return Err(Error::Range { what: "a denominator", value: 0.0 });
+        };
+        let unit =
+            if period.is_none() && high > low { ((first - last) / (high - low) as f64).round() } else { 0.0 };
+        let largest =
+            nonzero.iter().map(|(k, size)| size + unit * *k as f64).fold(f64::MIN, f64::max).round();
+        for all in &mut both {
+            for (k, c) in all.iter_mut().enumerate() {
+                *c = c.times(Coefficient::exact((unit * k as f64 - largest).exp2()));
+            }
+            if all.iter().any(|c| !(c.value.value() * c.value.value()).is_finite()) {
+                return Err(Error::NotFinite { what: "the squared magnitude of the loop" });
+            }
+        }
+        let [numerator, denominator] = [&both[0], &both[1]].map(|all| Parts::new(all));
+        Ok(Self { coefficients: both, numerator, denominator, unit: unit.exp2(), period })
+    }
+
+    /// Returns the frequency for the square `x` of the scaled one, rad/s.
+    fn frequency(&self, x: f64) -> f64 {
+        self.period.map_or(self.unit * x.sqrt(), |h| 2.0 / h * x.sqrt().atan())
+    }
+
+    /// Evaluates numerator and denominator.
+    fn point(&self, x: f64) -> Point {
+        let degree = self.coefficients.iter().map(|all| all.len() / 2).max().unwrap_or(0);
+        let root = x.sqrt();
+        let parts = [&self.numerator, &self.denominator]
+            .map(|p| [p.even.evaluate(x, degree), p.odd.evaluate(x, degree)]);
+        let [[ne, no], [de, d_o]] = parts;
+        let x = Coefficient::exact(x);
+        let square =
+            |[even, odd]: [Coefficient; 2]| even.times(even).plus(odd.times(odd).times(x)).value.value();
+        let squares = parts.map(square);
+        let is_certain = |k: usize| {
+            let [even, odd] = parts[k];
+            even.error + root * odd.error <= CERTAIN * squares[k].sqrt()
+        };
+        let real = ne.times(de).plus(no.times(d_o).times(x)).value.value();
+        let imaginary = no.times(de).minus(ne.times(d_o)).value.value();
+        Point { product: C::new(real, root * imaginary), squares, certain: [is_certain(0), is_certain(1)] }
+    }
+
+    /// Returns the imaginary part of `N D̄`, divided by ω.
+    fn imaginary(&self) -> Terms {
+        let (n, d) = (&self.numerator, &self.denominator);
+        n.odd.times(&d.even).minus(&n.even.times(&d.odd)).rounded()
+    }
+
+    /// Returns the difference of the squared magnitudes of `N` and `D`.
+    fn level(&self) -> Terms {
+        self.numerator.square().minus(&self.denominator.square()).rounded()
+    }
+
+    /// Returns the derivative of the squared distance from −1, times the fourth power of `|D|`.
+    fn slope(&self) -> Terms {
+        let (p, r) = (self.numerator.plus(&self.denominator).square(), self.denominator.square());
+        p.derivative().times(&r).minus(&p.times(&r.derivative())).rounded()
+    }
+
+    /// Returns the value of the loop at zero frequency, or at infinite `s` or `w`.
+    fn limit(&self, at_zero: bool) -> f64 {
+        let [n, d] = &self.coefficients;
+        let value = |all: &[Coefficient], k: usize| all.get(k).map_or(0.0, |c| c.value.value());
+        if at_zero {
+            return value(n, 0) / value(d, 0);
+        }
+        let top = n.len().max(d.len()).saturating_sub(1);
+        value(n, top) / value(d, top)
+    }
+
+    /// Returns all margins.
+    pub fn margins(&self) -> Margins {
+        let end = |value: f64, frequency: f64| {
+            let is_negative = value < 0.0 && value.is_finite();
+            is_negative.then_some(GainMargin { factor: -1.0 / value, frequency })
+        };
+        let between = self.imaginary().certain_roots().into_iter().filter_map(|x| {
+            let at = self.point(x);
+            let is_negative = at.product.re < 0.0 && at.certain == [true; 2];
+            is_negative
+                .then(|| GainMargin { factor: -at.squares[1] / at.product.re, frequency: self.frequency(x) })
+        });
+        let top = self.period.and_then(|h| end(self.limit(false), PI / h));
+        let phase = self.level().certain_roots().into_iter().map(|x| PhaseMargin {
+            degrees: (-self.point(x).product).arg().to_degrees(),
+            frequency: self.frequency(x),
+        });
+        Margins {
+            gain: end(self.limit(true), 0.0).into_iter().chain(between).chain(top).collect(),
+            phase: phase.collect(),
+            stability: self.stability_margin(),
+        }
+    }
+
+    fn stability_margin(&self) -> StabilityMargin {
+        let top = self.period.map_or(f64::INFINITY, |h| PI / h);
+        let end = |value: f64| if value.is_finite() { (1.0 + value).abs() } else { f64::INFINITY };
+        let ends = [(end(self.limit(false)), top), (end(self.limit(true)), 0.0)];
+        let inner = self.slope().positive_roots().into_iter().filter_map(|x| {
+            let Point { product, squares, certain } = self.point(x);
+            let value = product / squares[1];
+            certain[1].then(|| ((1.0 + value).norm(), self.frequency(x)))
+        });
+        let all = ends.into_iter().chain(inner);
+        let (distance, frequency) = all.fold((f64::INFINITY, top), |best, other| {
+            // Smaller differences are rounding errors.
+            if other.0 < best.0 * (1.0 - 1e-14) { other } else { best }
+        });
+        StabilityMargin { distance, frequency }
+    }
+
+    /// Returns the frequencies of all crossings, rad/s.
+    pub fn frequencies(&self) -> Vec<f64> {
+        let all = [self.imaginary(), self.level()];
+        all.iter().flat_map(Terms::positive_roots).map(|x| self.frequency(x)).collect()
+    }
+}
