@@ -79,7 +79,8 @@
 //! determine the impulses of redundant contacts (a table on four legs), they have the least norm if all
 //! stick; if some slip there may be several solutions. Newton's law of restitution together with friction can
 //! add energy (Kane's paradox), or have no solution. All coefficients of restitution are then reduced
-//! together.
+//! together, to a fraction that is found by bisection. In a step, bisection ends after 128 iterations of
+//! Newton's method.
 
 use crate::blocks::zeros;
 use crate::constraint::ConstraintError;
@@ -109,6 +110,7 @@ mod selection;
 mod solution;
 mod stepping;
 mod total;
+mod velocities;
 
 pub use apart::{Apart, apart};
 #[doc(hidden)]
@@ -136,6 +138,7 @@ use solution::{Acted, act};
 #[doc(hidden)]
 pub use stepping::step;
 use stepping::{Came, closed};
+use velocities::ContactVelocities;
 
 /// Indices of the contact velocities of one contact: the gap velocity first, then the slip velocities. Those
 /// of a friction moment ([`PRESSED_BY`](Contacts::PRESSED_BY)) are relative angular velocities only, rad/s.
@@ -189,6 +192,21 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
     #[inline(always)]
     fn contact_tables(&self) -> ([Rows; NK], [usize; NK]) {
         (Self::CONTACT_ROWS, Self::PRESSED_BY)
+    }
+
+    /// Returns for each contact the columns of the Jacobian, from the first to behind the last, outside of
+    /// which its rows are zero.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn contact_columns(&self) -> [(usize, usize); NK] {
+        [(0, NV); NK]
+    }
+
+    /// Whether contact velocities may differ from zero where the velocity is zero.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn contacts_drift(&self) -> bool {
+        true
     }
 
     /// Returns the gap (signed distance) of each contact, m or rad: zero at touch, negative for overlapping
@@ -403,11 +421,13 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    match closed(mechanism, t, q, free, None)? {
+    match closed(mechanism, t, (q, free), None)? {
         Some(closed) => {
             let selection = Selection::<NK, NR>::select(Layout::of(mechanism), &closed);
             let mut acted = Acted::nothing(selection, false);
-            act(mechanism, t, (q, free), &closed, (|| *before, None), &mut acted)
+            let velocities = ContactVelocities::at(mechanism, t, q);
+            let before = || selection.rates(before);
+            act(mechanism, (t, &velocities), (q, free), &closed, (before, None), &mut acted)
         }
         None => Ok(Solved { v: *free, impulses: SVector::zeros() }),
     }
@@ -446,18 +466,20 @@ where
     let free = project_end_of_step(&system, free, t)?;
     let came = Came::from((q, v), h, given * (h * constant(0.5)));
     let end = free.v - given;
-    let Some(closed) = closed(mechanism, t + h, &free.q, &end, Some(&came)).map_err(constraint_error)? else {
-        return Ok(SVector::zeros());
-    };
-    let previous_contact_rates = || came.rates(mechanism, t + h, &free.q);
+    let velocities = ContactVelocities::at(mechanism, t + h, &free.q);
+    let closed =
+        closed(mechanism, t + h, (&free.q, &end), Some((&came, &velocities))).map_err(constraint_error)?;
+    let Some(closed) = closed else { return Ok(SVector::zeros()) };
     let selection = Selection::<NK, NR>::select(Layout::of(mechanism), &closed);
     let mut acted = Acted::nothing(selection, true);
+    let carried = came.velocity_at_end(mechanism, t + h, &free.q);
+    let before = || ContactVelocities::<M, T, NQ, NV, NR>::select(&selection, velocities.of(&carried));
     let solved = act(
         mechanism,
-        t + h,
+        (t + h, &velocities),
         (&free.q, &end),
         &closed,
-        (previous_contact_rates, Some(((&given, &impulses), true))),
+        (before, Some(((&given, &impulses), true))),
         &mut acted,
     );
     Ok(solved.map_err(constraint_error)?.impulses / h)

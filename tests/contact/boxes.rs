@@ -184,6 +184,19 @@ fn gaps_are_distances() {
     assert!(beside < 4, "{beside}");
 }
 
+/// Checks the columns of the Jacobian that steps read: those of the bodies of each contact. Nothing moves the
+/// surfaces of bodies at rest.
+#[test]
+fn contacts_have_the_columns_of_their_bodies() {
+    use linkwork::contact::Contacts;
+    let m = Two { gravity: G, friction: 0.4, restitution: 0.0 };
+    let columns = m.contact_columns();
+    for (name, columns) in Two::CONTACTS.iter().zip(columns) {
+        assert_eq!(columns, if name.starts_with("seat") { (0, 12) } else { (0, 6) }, "{name}");
+    }
+    assert!(!m.contacts_drift());
+}
+
 /// Checks boxes that lie face on face: flush, rotated, and crossed such that no corner of either is on the
 /// other. They stay at rest, and their contact points carry the whole weight.
 #[test]

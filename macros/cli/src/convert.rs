@@ -48,6 +48,14 @@ pub fn run_convert(matches: &ArgMatches) -> Result<(), Stop> {
         ));
     }
     let description = &source.mechanism.description;
+    let has_state = |drive: &&Drive| matches!(drive.law, DriveLaw::Expression { .. });
+    if let Some(drive) = description.drives.iter().find(has_state) {
+        return Err(Stop::Failure(format!(
+            "`convert` cannot write the actuator `{}`, whose force depends on a state or on its inputs: keep \
+             the file, `#[mechanism(mjcf = \"…\")]`",
+            drive.name.text
+        )));
+    }
     // A file that would not compile itself, for example with limits that exclude every value, has no valid
     // struct either.
     let graph = Graph::new();
@@ -420,11 +428,15 @@ impl<'a> Struct<'a> {
         let Some(on) = self.length(drive) else {
             return self.notes.push(format!("`{name}`, which acts on a constant length, is omitted"));
         };
-        // The friction law is regularised in the velocity of the weighted sum, so that the weight cannot
-        // become a factor.
-        let is_scaled = matches!(drive.law, DriveLaw::Friction(_));
+        // The friction law is regularised in the velocity of the weighted sum, and polynomials of higher degree
+        // are not proportional to a power of the weight, so that the weight cannot become a factor.
+        let is_scaled = match drive.law {
+            DriveLaw::Friction(_) | DriveLaw::PolynomialDamper(_) => true,
+            DriveLaw::Slack { stiffness, .. } => stiffness[1..] != [0.0; 2],
+            _ => false,
+        };
         if let [(joint, w)] = drive.on.weighted_joints()
-            && (w.abs() == 1.0 || !is_scaled)
+            && (*w == 1.0 || !is_scaled || (*w == -1.0 && matches!(drive.law, DriveLaw::Friction(_))))
         {
             let (on, w, kind) = (self.joints.field_or_same(&joint.text), *w, self.kind_of_joint(&joint.text));
             let (figures, element) = match drive.law {
@@ -432,7 +444,7 @@ impl<'a> Struct<'a> {
                     let range = range.map(|end| end / w);
                     (
                         slack_spring_energy(
-                            stiffness * w * w,
+                            stiffness.map(|k| k * w * w),
                             if w < 0.0 { [range[1], range[0]] } else { range },
                         ),
                         "Spring",
@@ -448,6 +460,7 @@ impl<'a> Struct<'a> {
                     (format!("stiffness = {}{free}", format_number(stiffness * w * w)), "Spring")
                 }
                 DriveLaw::Damper(damping) => (damper_law(damping * w * w), "Dashpot"),
+                DriveLaw::PolynomialDamper(damping) => (polynomial_damper_law(damping), "Dashpot"),
                 DriveLaw::Friction(force) => {
                     (format!("coulomb = {}", format_number((force * w).abs())), "Friction")
                 }
@@ -455,7 +468,7 @@ impl<'a> Struct<'a> {
                     (format!("inertance = {}", format_number(inertance * w * w)), "Inerter")
                 }
                 DriveLaw::Push(force) => (format!("value = {}", format_number(force * w)), motor_type(kind)),
-                DriveLaw::Input(_) => return,
+                DriveLaw::Input(_) | DriveLaw::Expression { .. } => return,
             };
             return self.declare_named_element(
                 &format!("#[acts(on = {on}, {figures})]"),
@@ -463,22 +476,23 @@ impl<'a> Struct<'a> {
                 element,
             );
         }
-        self.on_length(&on, name, drive.law);
+        self.on_length(&on, name, &drive.law);
     }
 
     /// Adds a spring or another element on the length of a cable, or on a sum of coordinates.
-    fn on_length(&mut self, on: &str, name: &str, law: DriveLaw) {
-        let (figures, element) = match law {
+    fn on_length(&mut self, on: &str, name: &str, law: &DriveLaw) {
+        let (figures, element) = match *law {
             DriveLaw::Spring { stiffness, free } => (
                 format!("stiffness = {}, free_length = {}", format_number(stiffness), format_number(free)),
                 "Spring",
             ),
             DriveLaw::Slack { stiffness, range } => (slack_spring_energy(stiffness, range), "Spring"),
             DriveLaw::Damper(damping) => (damper_law(damping), "Dashpot"),
+            DriveLaw::PolynomialDamper(damping) => (polynomial_damper_law(damping), "Dashpot"),
             DriveLaw::Friction(force) => (format!("coulomb = {}", format_number(force)), "Friction"),
             DriveLaw::Inerter(inertance) => (format!("inertance = {}", format_number(inertance)), "Inerter"),
             DriveLaw::Push(force) => (format!("value = {}", format_number(force)), "Force"),
-            DriveLaw::Input(_) => return,
+            DriveLaw::Input(_) | DriveLaw::Expression { .. } => return,
         };
         self.declare_named_element(&format!("#[acts(on = {on}, {figures})]"), ("element", name), element);
     }
@@ -545,8 +559,22 @@ fn constant_lengths(description: &Description) -> BTreeSet<String> {
     names.map(|(_, drive)| drive.name.text.clone()).collect()
 }
 
-/// Returns the energy of a spring that is slack within a range.
-fn slack_spring_energy(stiffness: f64, [low, high]: [f64; 2]) -> String {
-    let (half, low, high) = (format_number(stiffness / 2.0), format_number(low), format_number(high));
-    format!("energy = {half} * (pow(min(stretch - {low}, 0), 2) + pow(max(stretch - {high}, 0), 2))")
+/// Returns the law of a damper whose force is a polynomial of the magnitude of the speed.
+fn polynomial_damper_law(damping: [f64; 3]) -> String {
+    let [first, second, third] = damping.map(format_number);
+    format!("force = ({first} + ({second} + {third} * abs(speed)) * abs(speed)) * speed")
+}
+
+/// Returns the energy of a spring that is slack within a range, and whose force is a polynomial of the excess
+/// beyond it, with these coefficients of its first three powers.
+fn slack_spring_energy(stiffness: [f64; 3], [low, high]: [f64; 2]) -> String {
+    let (from, to) = (format_number(low), format_number(high));
+    let power = |n: u8| match low == high {
+        true => format!("pow(stretch - {from}, {n})"),
+        false => format!("(pow(min(stretch - {from}, 0), {n}) + pow(max(stretch - {to}, 0), {n}))"),
+    };
+    let terms = [(stiffness[0] / 2.0, 2), (stiffness[1] / 3.0, 3), (stiffness[2] / 4.0, 4)];
+    let terms = terms.into_iter().filter(|(k, _)| *k != 0.0);
+    let terms: Vec<String> = terms.map(|(k, n)| format!("{} * {}", format_number(k), power(n))).collect();
+    format!("energy = {}", terms.join(" + "))
 }

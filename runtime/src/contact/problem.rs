@@ -1,13 +1,16 @@
 //! Impulses of all closed contacts: a complementarity problem with friction cones.
 
 use super::layout::Layout;
+use super::selection::FEW;
 use super::total::Total;
 use super::{Law, Rows, Touch};
 use crate::Real;
 use crate::private::{constant, epsilon, positive_part};
+use core::cell::Cell;
 use core::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
+mod banded;
 mod basis;
 mod convex;
 mod islands;
@@ -18,9 +21,9 @@ mod search;
 mod transport;
 mod trial;
 
-pub(super) use basis::{Basis, dot};
+pub(super) use basis::{Basis, Columns, dot};
 pub(super) use linear::Equations;
-use trial::{Mode, Trial};
+use trial::Mode;
 
 /// A number for each rate.
 type List<T, const NR: usize> = Total<T, NR>;
@@ -31,6 +34,9 @@ type Square<T, const NR: usize> = Total<Total<T, NR>, NR>;
 const FARTHEST: f64 = 8.0;
 /// Number of rows above which the restitution that the energy allows is found less exactly.
 const LARGE: usize = 18;
+/// Number of iterations of Newton's method in a step of a simulation after which the restitution that the
+/// energy allows is not refined further.
+const MAX_ITERATIONS: usize = 128;
 /// Rounding errors of contact velocities that a solution may leave in the equations.
 const ROUNDINGS: f64 = 64.0;
 
@@ -61,8 +67,8 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     base: List<T, NR>,
     /// `u₀`: contact velocities with the impulses `base`.
     free: List<T, NR>,
-    /// `W`.
-    weights: Square<T, NR>,
+    /// `W`; `None` if it is the product of an exact `B`.
+    weights: Option<Square<T, NR>>,
     /// `B` of `W = B Bᵀ`, where it is known.
     pub(super) basis: Basis<T, NR>,
     /// Smallest normal velocity.
@@ -79,6 +85,8 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     velocities: usize,
     /// Factor of all steps, which affects the convergence of Newton's method.
     scale: T,
+    /// Number of iterations of Newton's method so far.
+    iterations: Cell<usize>,
     /// Whether impulses that violate the contact conditions are better than none.
     is_relaxed: bool,
     /// Largest violation of the contact conditions by the impulses found last, as a contact velocity.
@@ -104,7 +112,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             is_compressed: false,
             base: Total::repeat(T::zero()),
             free: Total::repeat(T::zero()),
-            weights: Total::repeat(Total::repeat(T::zero())),
+            weights: None,
             basis: Basis::none(),
             least: Total::repeat(T::zero()),
             floor: Total::repeat(T::zero()),
@@ -113,6 +121,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             step: Total::repeat(T::zero()),
             velocities: usize::MAX,
             scale: T::one(),
+            iterations: Cell::new(0),
             is_relaxed,
             violation: T::zero(),
             closest: Total::repeat(T::zero()),
@@ -184,9 +193,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Returns impulses at the rows of the mechanism, with the impulses `base`.
     pub(super) fn spread(&self, impulses: &List<T, NR>) -> SVector<T, NR> {
-        let mut all = *impulses;
-        all.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse += *base);
-        self.scatter(&all)
+        self.scatter(&self.total(impulses))
     }
 
     /// Returns values of the rows of closed contacts at the rows of the mechanism; zeros elsewhere.
@@ -202,6 +209,23 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// least.
     pub(super) fn relaxed(&self, found: Result<List<T, NR>, usize>) -> Result<List<T, NR>, usize> {
         found.or_else(|contact| if self.is_relaxed { Ok(self.closest) } else { Err(contact) })
+    }
+
+    /// Counts an iteration of Newton's method.
+    fn count_iteration(&self) {
+        self.iterations.set(self.iterations.get().saturating_add(1));
+    }
+
+    /// Whether another fraction of the restitution may be tried: in a step their number is bounded.
+    pub(super) fn may_refine(&self) -> bool {
+        !self.is_relaxed || self.iterations.get() < MAX_ITERATIONS
+    }
+
+    /// Returns impulses with those that act in addition.
+    pub(super) fn total(&self, impulses: &List<T, NR>) -> List<T, NR> {
+        let mut all = *impulses;
+        all.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse += *base);
+        all
     }
 
     /// Returns the largest violation of the contact conditions by the impulses found last, as a contact
@@ -228,6 +252,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             .any(|k| entry(before, self.contacts[k].1.first) < T::zero())
     }
 
+    /// Sets the violation of the contact conditions to that of impulses found earlier.
+    pub(super) fn set_violation(&mut self, violation: T) {
+        self.violation = violation;
+    }
+
     /// Sets the number of velocities that determine the contact velocities.
     pub(super) fn depends_on(&mut self, velocities: usize) {
         self.velocities = velocities;
@@ -235,21 +264,35 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Copies the rows of closed contacts from `W = G M⁻¹ Gᵀ` of all contacts.
     pub(super) fn weigh(&mut self, weights: &SMatrix<T, NR, NR>) {
-        let places = self.places;
-        let none = T::zero();
+        let (places, none) = (self.places, T::zero());
+        let own = self.weights.insert(linear::square());
         for (j, place) in places.iter().enumerate().take(self.size) {
             let Some(column) = weights.data.0.get(*place) else { continue };
-            for (row, i) in self.weights.iter_mut().zip(places.iter()).take(self.size) {
+            for (row, i) in own.iter_mut().zip(places.iter()).take(self.size) {
                 row[j] = column.get(*i).copied().unwrap_or(none);
             }
         }
-        let diagonal = self.weights.iter().enumerate().take(self.size);
-        let reach = diagonal.fold(none, |reach, (i, row)| reach.max(row[i]));
+        self.set_steps();
+    }
+
+    /// Sets the steps of the contact velocities, after `B` or `W`.
+    pub(super) fn set_steps(&mut self) {
+        let mut diagonal = List::<T, NR>::repeat(T::zero());
+        (0..self.size).for_each(|i| diagonal[i] = self.weight(i, i));
+        let reach = diagonal.iter().take(self.size).fold(T::zero(), |reach, weight| reach.max(*weight));
         for k in 0..self.count {
-            let trace = self.all_of(k).fold(T::zero(), |sum, i| sum + self.weights[i][i]);
+            let trace = self.all_of(k).fold(T::zero(), |sum, i| sum + diagonal[i]);
             // Bodies that constraints hold move by rounding errors alone.
             let moves = trace > reach * epsilon::<T>() * constant(ROUNDINGS);
             self.step[k] = if moves { T::one() / trace } else { T::zero() };
+        }
+    }
+
+    /// Returns an entry of `W`.
+    fn weight(&self, i: usize, j: usize) -> T {
+        match &self.weights {
+            Some(weights) => weights[i][j],
+            None => self.basis.product(i, j),
         }
     }
 
@@ -270,7 +313,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             rates.iter_mut().zip(changes.iter()).for_each(|(rate, change)| *rate += *change);
             return rates;
         }
-        for (rate, row) in rates.iter_mut().zip(self.weights.iter()).take(self.size) {
+        let Some(weights) = &self.weights else { return rates };
+        for (rate, row) in rates.iter_mut().zip(weights.iter()).take(self.size) {
             for (weight, impulse) in row.iter().zip(impulses.iter()).take(self.size) {
                 *rate += *weight * *impulse;
             }
@@ -358,12 +402,16 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Returns the rounding error of contact velocities after impulses.
     fn rounding(&self, impulses: &List<T, NR>) -> T {
-        let mut most = T::zero();
-        for (free, row) in self.free.iter().zip(self.weights.iter()).take(self.size) {
-            let terms = row.iter().zip(impulses.iter()).take(self.size);
-            most =
-                most.max(terms.fold(free.abs(), |sum, (weight, impulse)| sum + (*weight * *impulse).abs()));
-        }
+        let most = match &self.weights {
+            Some(weights) => {
+                self.free.iter().zip(weights.iter()).take(self.size).fold(T::zero(), |most, (free, row)| {
+                    let terms = row.iter().zip(impulses.iter()).take(self.size);
+                    let sum = |sum, (weight, impulse): (&T, &T)| sum + (*weight * *impulse).abs();
+                    most.max(terms.fold(free.abs(), sum))
+                })
+            }
+            None => self.basis.magnitude(&self.free, impulses),
+        };
         (0..self.count).fold(most, |most, k| most.max(self.least[k])) * epsilon() * constant(ROUNDINGS)
     }
 
@@ -384,6 +432,22 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (0..self.count).filter(|k| self.is_gap(*k)).all(|k| entry(gaps, self.contacts[k].0).abs() <= enough)
     }
 
+    /// Sets `B`, and `W` if `B` is not exact, to those of selected rows of another problem.
+    fn weigh_selected<const OK: usize, const OR: usize>(
+        &mut self,
+        other: &Problem<T, OK, OR>,
+        rows: &[usize],
+    ) {
+        self.basis.select(&other.basis, rows);
+        if self.basis.is_exact() {
+            return;
+        }
+        let own = self.weights.insert(linear::square());
+        for (row, i) in own.iter_mut().zip(rows) {
+            row.iter_mut().zip(rows).for_each(|(to, j)| *to = other.weight(*i, *j));
+        }
+    }
+
     /// Returns impulses without friction that close gaps and penetrations as displacements, or `None` if all
     /// are small compared with `near`. Contacts that stay closed and have a gap of at most `reach` are
     /// closed; separating ones penetrate no deeper than before.
@@ -391,18 +455,35 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         &self,
         impulses: &List<T, NR>,
         gaps: &SVector<T, NK>,
+        distances: (T, T),
+    ) -> Option<SVector<T, NR>> {
+        let normals = (0..self.count).filter(|k| self.is_gap(*k)).count();
+        // Matrices of normal impulses are smaller.
+        match const { NR > FEW && NK > FEW } && normals <= FEW {
+            true => self.close_in::<FEW, FEW>(impulses, gaps, distances),
+            false => self.close_in::<NK, NR>(impulses, gaps, distances),
+        }
+    }
+
+    /// [`close`](Self::close) in arrays for up to `GK` contacts and `GR` normal impulses.
+    fn close_in<const GK: usize, const GR: usize>(
+        &self,
+        impulses: &List<T, NR>,
+        gaps: &SVector<T, NK>,
         (near, reach): (T, T),
     ) -> Option<SVector<T, NR>> {
-        let Trial { rates, worst, .. } = self.tried(*impulses);
+        let rates = self.rates(impulses);
+        let worst = self.tried_with(*impulses, rates).worst.0;
         // Contacts stay closed if their normal velocity is zero to rounding, whether or not they have an
         // impulse.
-        let rest = self.rounding(impulses).max(worst.0) * constant(ROUNDINGS);
-        let (mut kept, mut stay) = (Self::empty(true), Total::<_, NK>::repeat(false));
+        let rest = self.rounding(impulses).max(worst) * constant(ROUNDINGS);
+        let (mut kept, mut stay) = (Problem::<T, GK, GR>::empty(true), Total::<_, GK>::repeat(false));
         let (mut overlap, mut distance) = (T::zero(), T::zero());
         let enough = Self::enough(near);
+        let mut normals = Total::<_, GR>::repeat(0);
         for k in (0..self.count).filter(|k| self.is_gap(*k)) {
             let n = self.rows[k].first;
-            let (contact, Rows { first, .. }) = self.contacts[k];
+            let (contact, _) = self.contacts[k];
             let gap = entry(gaps, contact);
             // A contact with a larger gap has moved to another place of its surfaces.
             if gap <= reach {
@@ -411,9 +492,10 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 if stay[c] {
                     (overlap, distance) = (overlap.max(-gap), distance.max(gap));
                 }
-                kept.contacts[c] = (contact, Rows { first, count: 1 });
-                kept.places[c] = first;
-                kept.rows[c] = Rows { first: n, count: 1 };
+                normals[c] = n;
+                kept.contacts[c] = (contact, Rows { first: c, count: 1 });
+                kept.places[c] = c;
+                kept.rows[c] = Rows { first: c, count: 1 };
                 kept.pressed_by[c] = c;
                 kept.free[c] = gap;
                 // Separating surfaces are not displaced, but must not penetrate deeper.
@@ -426,34 +508,22 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             return None;
         }
         kept.size = kept.count;
-        for c in 0..kept.count {
-            for d in 0..kept.count {
-                kept.weights[c][d] = self.weights[kept.rows[c].first][kept.rows[d].first];
-            }
-        }
-        let mut normals = Total::<_, NK>::repeat(0);
-        for c in 0..kept.count {
-            normals[c] = kept.rows[c].first;
-            kept.rows[c].first = c;
-        }
-        kept.basis.select(&self.basis, normals.get(..kept.count).unwrap_or_default());
+        kept.weigh_selected(self, normals.get(..kept.count).unwrap_or_default());
+        let spread = |pushes: &List<T, GR>| {
+            let mut all = List::<T, NR>::repeat(T::zero());
+            normals.iter().zip(pushes.iter()).take(kept.count).for_each(|(n, push)| all[*n] = *push);
+            all
+        };
         // Longest displacement at a contact.
-        let farthest = |pushes: &List<T, NR>| {
-            let along = |row: &List<T, NR>| {
-                normals
-                    .iter()
-                    .zip(pushes.iter())
-                    .take(kept.count)
-                    .fold(T::zero(), |sum, (n, push)| sum + row[*n] * *push)
-            };
-            let rows = self.weights.iter().take(self.size);
-            rows.fold(T::zero(), |most, row| most.max(along(row).abs()))
+        let farthest = |pushes: &List<T, GR>| {
+            let displacements = self.changes(&spread(pushes));
+            displacements.iter().take(self.size).fold(T::zero(), |most, x| most.max(x.abs()))
         };
         let most = overlap.max(distance) * constant(FARTHEST);
         // Equations can contradict each other: gaps of parallel faces differ if a contact has moved to
         // another edge, and one displacement cannot close them all. Open contacts then stay open. If overlaps
         // still differ, the conditions without friction alone decide.
-        let is_consistent = |shut: &Total<bool, NK>, pushes: &List<T, NR>| {
+        let is_consistent = |shut: &Total<bool, GK>, pushes: &List<T, GR>| {
             let left = kept.rates(pushes);
             (0..kept.count).all(|c| !shut[c] || left[c].abs() <= enough) && farthest(pushes) <= most
         };
@@ -464,7 +534,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let mut pushes = found.map_or(List::repeat(T::zero()), |(_, pushes)| pushes);
         let left = kept.rates(&pushes);
         if left.iter().zip(kept.least.iter()).take(kept.size).any(|(gap, least)| *gap < *least - enough) {
-            let mut rest = kept.with(left);
+            let mut rest = Problem { free: left, ..kept };
             let found = rest.solve();
             let more = rest.relaxed(found).ok()?;
             pushes.iter_mut().zip(more.iter()).for_each(|(push, more)| *push += *more);
@@ -473,12 +543,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 pushes.iter_mut().for_each(|push| *push *= most / way);
             }
         }
-        Some(kept.spread(&pushes))
-    }
-
-    /// Returns the problem with other contact velocities without impulses.
-    fn with(&self, free: List<T, NR>) -> Self {
-        Self { free, ..*self }
+        Some(self.scatter(&spread(&pushes)))
     }
 }
 

@@ -1,5 +1,6 @@
 //! How velocities answer to impulses at contacts.
 
+use super::problem::Basis;
 use super::{Contacts, Responses, Rows};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
@@ -20,7 +21,7 @@ where
     let mut velocities = SMatrix::<T, NV, NR>::zeros();
     let features = mechanism.features();
     let is_plain = !features.constrained && !features.feedback;
-    let factor = if is_plain { Factor::factorise(mechanism.mass_matrix(t, q)) } else { None };
+    let factor = if is_plain { Factor::factorise(&mechanism.mass_matrix(t, q)) } else { None };
     let still = SVector::zeros();
     let none =
         if factor.is_none() { mechanism.impulse(t, q, &still, T::zero(), &SVector::zeros()) } else { still };
@@ -45,6 +46,32 @@ where
     Responses { velocities, rates }
 }
 
+/// Effects of impulses at selected contacts on the velocities of a mechanism. The matrices are large and
+/// filled in place.
+pub(super) enum Effects<T, const NV: usize, const CR: usize> {
+    /// Not computed yet.
+    Unknown,
+    /// `L` of `M = L Lᵀ`. The effect of impulses is `L⁻ᵀ Bᵀ Λ`.
+    Factor(Factor<T, NV>),
+    /// `M⁻¹ Gᵀ`, with the effects of constraints.
+    Matrix(SMatrix<T, NV, CR>),
+}
+
+impl<T: Real, const NV: usize, const CR: usize> Effects<T, NV, CR> {
+    /// Returns the change of the velocity by impulses at the selected contacts.
+    pub(super) fn velocity(&self, basis: &Basis<T, CR>, impulses: &SVector<T, CR>) -> SVector<T, NV> {
+        match self {
+            Self::Unknown => SVector::zeros(),
+            Self::Factor(factor) => {
+                let mut w = [T::zero(); NV];
+                basis.write_velocity(impulses, &mut w);
+                SVector::from(factor.solve_upper(w))
+            }
+            Self::Matrix(velocities) => velocities * impulses,
+        }
+    }
+}
+
 /// The factor `L` of `M = L Lᵀ` (Cholesky), whose rows begin at their first entry that is not zero: bodies
 /// that no joint connects have blocks of their own.
 pub(super) struct Factor<T, const N: usize> {
@@ -52,27 +79,48 @@ pub(super) struct Factor<T, const N: usize> {
     rows: [[T; N]; N],
     /// Index of the first entry of each row.
     starts: [usize; N],
+    /// Index behind the last row of each row's block.
+    ends: [usize; N],
 }
 
 impl<T: Real, const N: usize> Factor<T, N> {
     /// Factorises a matrix; `None` where it is not positive definite.
-    pub(super) fn factorise(m: SMatrix<T, N, N>) -> Option<Self> {
+    pub(super) fn factorise(m: &SMatrix<T, N, N>) -> Option<Self> {
+        let mut factor = Self::none();
+        factor.fill(m).then_some(factor)
+    }
+
+    /// Returns zeros, to be [filled](Self::fill).
+    pub(super) fn none() -> Self {
+        Self { rows: [[T::zero(); N]; N], starts: [0; N], ends: [N; N] }
+    }
+
+    /// Factorises a matrix in place; false if it is not positive definite.
+    pub(super) fn fill(&mut self, matrix: &SMatrix<T, N, N>) -> bool {
+        let Self { rows: m, starts, ends } = self;
         // Symmetric: columns are rows.
-        let mut m = m.data.0;
-        let mut starts = [0; N];
-        for (i, (start, row)) in starts.iter_mut().zip(&m).enumerate() {
+        *m = matrix.data.0;
+        for (i, (start, row)) in starts.iter_mut().zip(&*m).enumerate() {
             *start = first(row).min(i);
+        }
+        let (mut least, mut end) = (N, N);
+        for i in (0..N).rev() {
+            least = least.min(starts[i]);
+            if least >= i {
+                ends.iter_mut().take(end).skip(i).for_each(|entry| *entry = end);
+                (least, end) = (N, i);
+            }
         }
         for j in 0..N {
             let pivot = (starts[j]..j).fold(m[j][j], |pivot, k| pivot - m[j][k] * m[j][k]);
             // It is not where it is no number, either.
             let positive = pivot > T::zero();
             if !positive {
-                return None;
+                return false;
             }
             let reciprocal = T::one() / pivot.sqrt();
             m[j][j] = reciprocal;
-            for i in j + 1..N {
+            for i in j + 1..ends[j] {
                 if starts[i] <= j {
                     let from = starts[i].max(starts[j]);
                     let entry = (from..j).fold(m[i][j], |entry, k| entry - m[i][k] * m[j][k]);
@@ -80,27 +128,44 @@ impl<T: Real, const N: usize> Factor<T, N> {
                 }
             }
         }
-        Some(Self { rows: m, starts })
+        true
+    }
+
+    /// Returns the index behind the last entry of the block of row `j`.
+    pub(super) fn block_end(&self, j: usize) -> usize {
+        self.ends.get(j).copied().unwrap_or(N)
     }
 
     /// Returns the solution `x` of `L Lᵀ x = p`.
     pub(super) fn solve(&self, p: [T; N]) -> [T; N] {
-        self.solve_upper(self.solve_lower(p))
+        let mut x = p;
+        self.solve_lower(&mut x, first(&p), N);
+        self.solve_upper(x)
     }
 
-    /// Returns the solution `y` of `L y = p`.
-    pub(super) fn solve_lower(&self, mut x: [T; N]) -> [T; N] {
-        let Self { rows, starts } = self;
-        let start = first(&x);
-        for i in start..N {
+    /// Replaces `p` by the solution `y` of `L y = p`. Entries before `start` are zero, and so are those of
+    /// the solution from `end` on.
+    pub(super) fn solve_lower(&self, x: &mut [T; N], start: usize, end: usize) {
+        let Self { rows, starts, .. } = self;
+        for i in start..end.min(N) {
             x[i] = (starts[i].max(start)..i).fold(x[i], |sum, k| sum - rows[i][k] * x[k]) * rows[i][i];
         }
-        x
+    }
+
+    /// Returns `Lᵀ x`.
+    pub(super) fn multiply_upper(&self, x: &[T; N]) -> [T; N] {
+        let Self { rows, starts, .. } = self;
+        let mut product = [T::zero(); N];
+        for i in 0..N {
+            product[i] = x[i] / rows[i][i];
+            (starts[i]..i).for_each(|k| product[k] += rows[i][k] * x[i]);
+        }
+        product
     }
 
     /// Returns the solution `x` of `Lᵀ x = y`.
     pub(super) fn solve_upper(&self, mut x: [T; N]) -> [T; N] {
-        let Self { rows, starts } = self;
+        let Self { rows, starts, .. } = self;
         for i in (0..N).rev() {
             if x[i] != T::zero() {
                 x[i] *= rows[i][i];

@@ -1,9 +1,10 @@
 //! Contacts that take part in a step, numbered among themselves.
 
 use super::layout::Layout;
-use super::problem::{Basis, dot, entry, put};
-use super::response::Factor;
+use super::problem::{Basis, Columns, Problem, dot, entry, put};
+use super::response::{Effects, Factor};
 use super::total::Total;
+use super::velocities::ContactVelocities;
 use super::{Contacts, Law, Responses, Restitution, Rows};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
@@ -61,6 +62,11 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
         self.contacts[k]
     }
 
+    /// Returns a selected row's index in the mechanism.
+    pub(super) fn row(&self, i: usize) -> usize {
+        self.rows[i]
+    }
+
     /// Returns true for entries that are selected contacts.
     pub(super) fn closed(&self) -> [bool; CK] {
         let mut closed = [false; CK];
@@ -100,9 +106,8 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
         all
     }
 
-    /// Computes the effects of impulses at the selected contacts, and `B` of `W = B Bᵀ` if it is a
-    /// by-product.
-    pub(super) fn fill_responses<
+    /// Computes the effects of impulses at the selected contacts, and `B` or `W` of a problem.
+    pub(super) fn fill_effects<
         M,
         T,
         const NQ: usize,
@@ -113,38 +118,121 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
     >(
         &self,
         mechanism: &M,
-        (t, q): (T, &SVector<T, NQ>),
+        (t, q, velocities): (T, &SVector<T, NQ>, &ContactVelocities<'_, M, T, NQ, NV, NR>),
         closed: &[bool; NK],
-        responses: &mut Responses<T, NV, CR>,
-        basis: &mut Basis<T, CR>,
+        effects: &mut Effects<T, NV, CR>,
+        problem: &mut Problem<T, CK, CR>,
     ) where
         T: Real,
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        let Responses { velocities, rates } = responses;
         if NR <= FEW {
             let all = mechanism.contact_responses(t, q, closed);
-            for (j, (velocities, rates)) in
-                velocities.data.0.iter_mut().zip(&mut rates.data.0).enumerate().take(self.size)
-            {
-                let from = self.rows[j];
-                if let (Some(all), Some(changes)) =
-                    (all.velocities.data.0.get(from), all.rates.data.0.get(from))
-                {
-                    *velocities = *all;
-                    (0..self.size).for_each(|i| {
-                        if let (Some(to), Some(change)) = (rates.get_mut(i), changes.get(self.rows[i])) {
-                            *to = *change;
-                        }
-                    });
-                }
-            }
+            let Responses { velocities, rates } = self.chosen_responses(&all);
+            problem.weigh(&rates);
+            *effects = Effects::Matrix(velocities);
             return;
         }
-        let jacobian = mechanism.contact_jacobian(t, q);
+        let jacobian = velocities.jacobian();
         let features = mechanism.features();
         let is_plain = !features.constrained && !features.feedback;
-        let factor = if is_plain { Factor::factorise(mechanism.mass_matrix(t, q)) } else { None };
+        if is_plain {
+            *effects = Effects::Factor(Factor::none());
+        }
+        if let Effects::Factor(factor) = effects
+            && factor.fill(&mechanism.mass_matrix(t, q))
+        {
+            if self.fill_basis(jacobian, mechanism.contact_columns(), factor, &mut problem.basis) {
+                problem.set_steps();
+                return;
+            }
+            let matrix = self.fill_matrix(jacobian, |row| factor.solve(row), problem);
+            *effects = Effects::Matrix(matrix);
+            return;
+        }
+        let still = SVector::zeros();
+        let none = mechanism.impulse(t, q, &still, T::zero(), &still);
+        let solve =
+            |row: [T; NV]| (mechanism.impulse(t, q, &still, T::zero(), &SVector::from(row)) - none).data.0[0];
+        *effects = Effects::Matrix(self.fill_matrix(jacobian, solve, problem));
+    }
+
+    /// Returns the effects of impulses at the selected contacts from those at all contacts.
+    fn chosen_responses<T: Real, const NV: usize, const NR: usize>(
+        &self,
+        all: &Responses<T, NV, NR>,
+    ) -> Responses<T, NV, CR> {
+        let mut chosen = Responses::zero_effects();
+        let Responses { velocities, rates } = &mut chosen;
+        let columns = velocities.data.0.iter_mut().zip(&mut rates.data.0);
+        for ((velocities, rates), from) in columns.zip(self.rows.iter()).take(self.size) {
+            if let (Some(all), Some(changes)) =
+                (all.velocities.data.0.get(*from), all.rates.data.0.get(*from))
+            {
+                *velocities = *all;
+                for (to, i) in rates.iter_mut().zip(self.rows.iter()).take(self.size) {
+                    *to = changes.get(*i).copied().unwrap_or(T::zero());
+                }
+            }
+        }
+        chosen
+    }
+
+    /// Computes `B = G L⁻ᵀ` for the selected rows of the Jacobian; false if it has more columns than the
+    /// arrays.
+    fn fill_basis<T: Real, const NV: usize, const NK: usize, const NR: usize>(
+        &self,
+        jacobian: &SMatrix<T, NR, NV>,
+        reach: [(usize, usize); NK],
+        factor: &Factor<T, NV>,
+        basis: &mut Basis<T, CR>,
+    ) -> bool {
+        // Columns of each contact that are not zero, with the whole blocks of the bodies that move.
+        let (mut is_used, mut own) = ([false; NV], Total::<_, CK>::repeat((NV, 0)));
+        for k in 0..self.count {
+            let Rows { first: top, count } = self.layout.rows(k);
+            let (first, last) = reach.get(self.contacts[k]).copied().unwrap_or((0, NV));
+            let mut column = first;
+            while column < last {
+                let entries = jacobian.data.0.get(column);
+                let entry = |i: usize| entries.and_then(|entries| entries.get(self.rows[i]));
+                if (top..top + count).all(|i| entry(i).is_none_or(|entry| *entry == T::zero())) {
+                    column += 1;
+                    continue;
+                }
+                let end = factor.block_end(column);
+                own[k] = (own[k].0.min(column), end);
+                is_used.iter_mut().take(end).skip(column).for_each(|is_used| *is_used = true);
+                column = end;
+            }
+        }
+        let columns = Columns::of(is_used);
+        if !basis.begin(&columns) {
+            return false;
+        }
+        for k in 0..self.count {
+            let (Rows { first: top, count }, (first, last)) = (self.layout.rows(k), own[k]);
+            for i in top..top + count {
+                let mut row = [T::zero(); NV];
+                let entries = row.iter_mut().zip(&jacobian.data.0).take(last).skip(first);
+                entries.for_each(|(to, column)| {
+                    *to = column.get(self.rows[i]).copied().unwrap_or(T::zero());
+                });
+                factor.solve_lower(&mut row, first, last);
+                basis.push(&columns, first, row.get(first..last).unwrap_or_default());
+            }
+        }
+        true
+    }
+
+    /// Returns `M⁻¹ Gᵀ`, with a function that returns the effect of a generalized impulse, and sets `W` of a
+    /// problem.
+    fn fill_matrix<T: Real, const NV: usize, const NR: usize>(
+        &self,
+        jacobian: &SMatrix<T, NR, NV>,
+        solve: impl Fn([T; NV]) -> [T; NV],
+        problem: &mut Problem<T, CK, CR>,
+    ) -> SMatrix<T, NV, CR> {
         // Rows of the Jacobian.
         let mut own = [[T::zero(); NV]; CR];
         for (own, i) in own.iter_mut().zip(self.rows.iter()).take(self.size) {
@@ -152,23 +240,13 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
                 *entry = column.get(*i).copied().unwrap_or(T::zero());
             }
         }
-        if let Some(factor) = factor {
-            // Rows of `B = G L⁻ᵀ`.
-            own.iter_mut().take(self.size).for_each(|row| *row = factor.solve_lower(*row));
-            for (velocity, row) in velocities.data.0.iter_mut().zip(&own).take(self.size) {
-                *velocity = factor.solve_upper(*row);
-            }
-            self.fill_products(&own, &own, rates);
-            basis.set(own.iter().take(self.size));
-        } else {
-            let still = SVector::zeros();
-            let none = mechanism.impulse(t, q, &still, T::zero(), &still);
-            for (velocity, own) in velocities.data.0.iter_mut().zip(&own).take(self.size) {
-                *velocity =
-                    (mechanism.impulse(t, q, &still, T::zero(), &SVector::from(*own)) - none).data.0[0];
-            }
-            self.fill_products(&own, &velocities.data.0, rates);
+        let Responses { mut velocities, mut rates } = Responses::zero_effects();
+        for (velocity, own) in velocities.data.0.iter_mut().zip(&own).take(self.size) {
+            *velocity = solve(*own);
         }
+        self.fill_products(&own, &velocities.data.0, &mut rates);
+        problem.weigh(&rates);
+        velocities
     }
 
     /// Writes the symmetric matrix of the scalar products of rows on the left and on the right; entries of
@@ -179,7 +257,6 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
         right: &[[T; NV]; CR],
         products: &mut SMatrix<T, CR, CR>,
     ) {
-        let is_same = core::ptr::eq(left, right);
         // Entries of each row that are not zero.
         let mut reach = [(0, 0); CR];
         for (reach, row) in reach.iter_mut().zip(left).take(self.size) {
@@ -187,12 +264,9 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
             let from = row.iter().position(is_any).unwrap_or(NV);
             *reach = (from, row.iter().rposition(is_any).map_or(from, |last| last + 1));
         }
-        for (j, (other, own)) in right.iter().zip(&reach).enumerate().take(self.size) {
-            let (first, last) = if is_same { *own } else { (0, NV) };
+        for (j, other) in right.iter().enumerate().take(self.size) {
             for (i, (row, (from, to))) in left.iter().zip(&reach).enumerate().take(self.size).skip(j) {
-                let (from, to) = (first.max(*from), last.min(*to));
-                // Contacts of different bodies have no common entries.
-                let (Some(row), Some(other)) = (row.get(from..to), other.get(from..to)) else { continue };
+                let (Some(row), Some(other)) = (row.get(*from..*to), other.get(*from..*to)) else { continue };
                 let product = dot(row, other);
                 for (row, column) in [(i, j), (j, i)] {
                     let column = products.data.0.get_mut(column);

@@ -1,11 +1,11 @@
 //! Impulses of closed contacts, and the velocity after them.
 
 use super::problem::{Equations, Problem};
+use super::response::Effects;
 use super::selection::Selection;
 use super::total::Total;
-use super::{
-    Assumed, Contacts, Law, Responses, Solved, lawful, phase, touching_distance, unsolved_contact_error,
-};
+use super::velocities::ContactVelocities;
+use super::{Assumed, Contacts, Law, Solved, lawful, phase, touching_distance, unsolved_contact_error};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::private::constant;
@@ -19,14 +19,24 @@ pub(super) struct Acted<T, const NV: usize, const CK: usize, const CR: usize> {
     pub(super) impulses: Total<T, CR>,
     /// Velocity before the impulses, with the correction for contact forces that rotate in the step.
     pub(super) free: SVector<T, NV>,
-    /// Effects of the impulses; `None` if no contact is loaded.
-    pub(super) responses: Option<Responses<T, NV, CR>>,
+    /// Effects of the impulses, unknown if no contact is loaded.
+    effects: Effects<T, NV, CR>,
 }
 
 impl<T: Real, const NV: usize, const CK: usize, const CR: usize> Acted<T, NV, CK, CR> {
     pub(super) fn nothing(selection: Selection<CK, CR>, is_relaxed: bool) -> Self {
         let (impulses, free) = (Total::repeat(T::zero()), SVector::zeros());
-        Self { selection, problem: Problem::empty(is_relaxed), impulses, free, responses: None }
+        Self { selection, problem: Problem::empty(is_relaxed), impulses, free, effects: Effects::Unknown }
+    }
+
+    /// Whether contacts are loaded.
+    pub(super) fn is_loaded(&self) -> bool {
+        !matches!(self.effects, Effects::Unknown)
+    }
+
+    /// Returns the change of the velocity by impulses.
+    pub(super) fn velocity(&self, impulses: &SVector<T, CR>) -> SVector<T, NV> {
+        self.effects.velocity(&self.problem.basis, impulses)
     }
 }
 
@@ -47,10 +57,10 @@ pub(super) fn act<
     const CR: usize,
 >(
     mechanism: &M,
-    t: T,
+    (t, velocities): (T, &ContactVelocities<'_, M, T, NQ, NV, NR>),
     (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
     closed: &[bool; NK],
-    (before, given): (impl Fn() -> SVector<T, NR>, Option<(Assumed<'_, T, NV>, bool)>),
+    (before, given): (impl Fn() -> SVector<T, CR>, Option<(Assumed<'_, T, NV>, bool)>),
     acted: &mut Acted<T, NV, CK, CR>,
 ) -> Result<Solved<T, NV, NR>, ConstraintError>
 where
@@ -58,26 +68,24 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let mut solved = Solved { v: *free, impulses: SVector::zeros() };
-    let after = mechanism.contact_rates(t, q, free);
     let laws = lawful(mechanism)?;
-    let Acted { selection, problem, .. } = acted;
+    let Acted { selection, problem, effects, .. } = acted;
     let (layout, laws) = (selection.layout(), selection.laws(&laws));
-    problem.select(layout, &laws, &selection.closed(), &selection.rates(&after));
+    let after = ContactVelocities::<M, T, NQ, NV, NR>::select(selection, velocities.of(free));
+    problem.select(layout, &laws, &selection.closed(), &after);
     if laws.iter().any(|law| law.stiction > law.friction) {
-        let rates = selection.rates(&before());
+        let rates = before();
         problem.stick(&laws, |k| phase::length(&rates, layout.tangents(k)) <= touching_distance());
     }
     let is_loaded = problem.is_loaded();
     let before = match is_loaded && laws.iter().all(|law| law.restitution == T::zero()) {
         true => SVector::zeros(),
-        false => selection.rates(&before()),
+        false => before(),
     };
     if !is_loaded && !problem.was_loaded(&before) {
         return Ok(solved);
     }
-    let responses = acted.responses.insert(Responses::zero_effects());
-    selection.fill_responses(mechanism, (t, q), closed, responses, &mut problem.basis);
-    problem.weigh(&responses.rates);
+    selection.fill_effects(mechanism, (t, q, velocities), closed, effects, problem);
     problem.depends_on(NV);
     let failed = |contact| unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>(selection.contact(contact));
     let mut equations = Equations::new();
@@ -89,10 +97,10 @@ where
     let still = SVector::<T, NV>::zeros();
     let recorded = recorded.map(|all| problem.gather(&all));
     let transported = given.filter(|given| is_moving && **given != still).map(|given| {
-        let rates = selection.rates(&(mechanism.contact_rates(t, q, &(free + given)) - after));
-        problem.transport(given, (&rates, recorded.as_ref()), responses, &mut equations)
+        let rates = ContactVelocities::<M, T, NQ, NV, NR>::select(selection, velocities.changes(given));
+        problem.transport(given, (&rates, recorded.as_ref()), effects, &mut equations)
     });
-    let start = transported.map(|(start, correction)| {
+    let start = transported.and_then(|(start, correction)| {
         solved.v += correction;
         start
     });
@@ -101,10 +109,7 @@ where
     problem.compress(&laws, &before).map_err(failed)?;
     problem.aim(&laws, &before, T::one());
     // Only prescribed motions and restitution can add energy.
-    let may_gain = problem.rebounds() && {
-        let driven = mechanism.contact_rates(t, q, &SVector::zeros());
-        driven.iter().all(|rate| *rate == T::zero())
-    };
+    let may_gain = problem.rebounds() && !velocities.is_driven();
     let mut found = problem.solve_from(start.as_ref(), &mut equations);
     while found.as_ref().is_ok_and(|impulses| problem.slide(impulses)) {
         found = problem.solve();
@@ -113,34 +118,47 @@ where
         Ok(impulses) if !(may_gain && problem.gains(&impulses)) => impulses,
         Err(contact) if !problem.rebounds() => problem.relaxed(Err(contact)).map_err(failed)?,
         _ => {
-            let found = tempered(problem, &laws, &before, may_gain);
+            let found = tempered(problem, (&laws, &before), (start, &mut equations), may_gain);
             problem.relaxed(found).map_err(failed)?
         }
     };
     let all = problem.spread(&impulses);
     solved.impulses = selection.spread(&all);
-    solved.v += responses.velocities * all;
+    solved.v += effects.velocity(&problem.basis, &all);
     acted.impulses = impulses;
     Ok(solved)
 }
 
 /// Returns impulses with the largest common fraction of all restitutions for which they exist. If no motion
-/// is prescribed, this fraction adds no energy either.
+/// is prescribed, this fraction adds no energy either. The search begins at the impulses of `start`.
 fn tempered<T: Real, const NK: usize, const NR: usize>(
     problem: &mut Problem<T, NK, NR>,
-    laws: &[Law<T>; NK],
-    before: &SVector<T, NR>,
+    (laws, before): (&[Law<T>; NK], &SVector<T, NR>),
+    (mut start, equations): (Option<Total<T, NR>>, &mut Equations<T, NR>),
     may_gain: bool,
 ) -> Result<Total<T, NR>, usize> {
     // Each bisection determines one bit of the fraction.
-    let (mut least, mut step) = (T::zero(), T::one());
+    let (mut least, mut step, mut found) = (T::zero(), T::one(), None);
     for _ in 0..problem.halvings() {
+        if !problem.may_refine() {
+            break;
+        }
         step *= constant(0.5);
         problem.aim(laws, before, least + step);
-        if problem.solve().is_ok_and(|impulses| !(may_gain && problem.gains(&impulses))) {
+        if let Ok(impulses) = problem.solve_from(start.as_ref(), equations)
+            && !(may_gain && problem.gains(&impulses))
+        {
             least += step;
+            start = Some(problem.total(&impulses));
+            found = Some((impulses, problem.violation()));
         }
     }
     problem.aim(laws, before, least);
-    problem.solve()
+    match found {
+        Some((impulses, violation)) => {
+            problem.set_violation(violation);
+            Ok(impulses)
+        }
+        None => problem.solve_from(start.as_ref(), equations),
+    }
 }

@@ -1,9 +1,10 @@
 //! Effects of contacts in a step: impulses, and displacements that remove penetrations.
 
 use super::layout::Layout;
-use super::problem::{Problem, entry, put};
+use super::problem::{Equations, Problem, entry, put};
 use super::selection::{FEW, Selection};
 use super::total::Total;
+use super::velocities::ContactVelocities;
 use super::{Acted, Assumed, Contacts, Impulses, Law, Rows, Touched, act, touching_distance};
 use crate::Real;
 use crate::constraint::ConstraintError;
@@ -20,48 +21,53 @@ const MEDIUM: usize = 72;
 const LARGE: usize = 144;
 
 /// Start of a step.
-pub(super) struct Came<'a, T, const NQ: usize, const NV: usize, const NR: usize> {
+pub(super) struct Came<'a, T, const NQ: usize, const NV: usize> {
     /// The configuration and the velocity.
     start: (&'a SVector<T, NQ>, &'a SVector<T, NV>),
-    /// Contact velocities of its velocity at the end of the step ([`rates_at_end`]), evaluated on demand.
-    rates: Cell<Option<SVector<T, NR>>>,
+    /// Its velocity at the end of the step ([`velocity_at_end`](Self::velocity_at_end)), evaluated on demand.
+    carried: Cell<Option<SVector<T, NV>>>,
     /// Duration of the step.
     h: T,
     /// Displacement by the contact forces that were assumed.
     held: SVector<T, NV>,
 }
 
-impl<'a, T: Real, const NQ: usize, const NV: usize, const NR: usize> Came<'a, T, NQ, NV, NR> {
+impl<'a, T: Real, const NQ: usize, const NV: usize> Came<'a, T, NQ, NV> {
     /// Returns the start of a step of `h` seconds from a state, with the displacement `held` by the assumed
     /// contact forces.
     pub(super) fn from(start: (&'a SVector<T, NQ>, &'a SVector<T, NV>), h: T, held: SVector<T, NV>) -> Self {
-        Self { start, rates: Cell::new(None), h, held }
+        Self { start, carried: Cell::new(None), h, held }
     }
 
-    /// Returns the contact velocities of the initial velocity at the end of the step, in the configuration
-    /// `q`.
-    pub(super) fn rates<M, const NU: usize, const NK: usize>(
+    /// Returns the initial velocity in the configuration `q` at the end of the step. Impulses act there;
+    /// restitution and the work of impulses are about the same directions as they are.
+    pub(super) fn velocity_at_end<M, const NU: usize, const NK: usize, const NR: usize>(
         &self,
         mechanism: &M,
         t: T,
         q: &SVector<T, NQ>,
-    ) -> SVector<T, NR>
+    ) -> SVector<T, NV>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        if let Some(rates) = self.rates.get() {
-            return rates;
+        if let Some(carried) = self.carried.get() {
+            return carried;
         }
-        let rates = rates_at_end(mechanism, t, self.start, q);
-        self.rates.set(Some(rates));
-        rates
+        let (start, v) = self.start;
+        let carried = match self.h == T::zero() {
+            true => *v,
+            false => mechanism.carry(t, start, &mechanism.difference(start, q), v),
+        };
+        self.carried.set(Some(carried));
+        carried
     }
 }
 
-/// Which contacts are closed, if any is, where a motion has led to the configuration `q` and the velocity
-/// `free`: those whose gap is none there, with or without what contacts have been taken to do, and those that
-/// were closed before and did not part. Of these the other contacts may press any, whichever way it would go
-/// without them all.
+/// Returns the contacts that are closed, if any is, where a motion has led to the configuration `q` and the
+/// velocity `free`: those with a gap of zero there, with or without the assumed contact forces, and those
+/// that were closed before and did not separate. Of these the other contacts may press any, whichever way it
+/// would go without them all.
+#[allow(clippy::type_complexity, reason = "sizes of arrays")]
 pub(super) fn closed<
     M,
     T,
@@ -73,9 +79,8 @@ pub(super) fn closed<
 >(
     mechanism: &M,
     t: T,
-    q: &SVector<T, NQ>,
-    free: &SVector<T, NV>,
-    came: Option<&Came<'_, T, NQ, NV, NR>>,
+    (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
+    came: Option<(&Came<'_, T, NQ, NV>, &ContactVelocities<'_, M, T, NQ, NV, NR>)>,
 ) -> Result<Option<[bool; NK]>, ConstraintError>
 where
     T: Real,
@@ -87,7 +92,7 @@ where
     }
     let mut closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= touching_distance());
     let open = |closed: &[bool; NK]| closed.iter().any(|is_closed| !is_closed);
-    if let Some(came) = came.filter(|came| came.h > T::zero() && open(&closed)) {
+    if let Some((came, velocities)) = came.filter(|(came, _)| came.h > T::zero() && open(&closed)) {
         let (h, held, still) = (&came.h, &came.held, SVector::<T, NV>::zeros());
         let starts = mechanism.contact_gaps(t - *h, came.start.0);
         let is_held = *held != still;
@@ -97,42 +102,28 @@ where
             return Ok(closed.contains(&true).then_some(closed));
         }
         let layout = Layout::of(mechanism);
-        let apart = match is_held {
-            false => SVector::zeros(),
-            // What is driven moves by itself.
-            true => mechanism.contact_rates(t, q, held) - mechanism.contact_rates(t, q, &still),
-        };
-        let (rates, after) = (came.rates(mechanism, t, q), mechanism.contact_rates(t, q, free));
+        let carried = came.velocity_at_end(mechanism, t, q);
+        let (rate, after) = (velocities.of(&carried), velocities.of(free));
+        let displacement = velocities.changes(held);
         for (k, (closed, (gap, start))) in closed.iter_mut().zip(gaps.iter().zip(&starts)).enumerate() {
+            if *closed || (!is_held && *start > touching_distance()) {
+                continue;
+            }
             let (by, place) = layout.pressing(k);
-            let of = |vector: &SVector<T, NR>| entry(vector, place);
-            let parts = positive_part(of(&rates) * *h);
+            let apart = if is_held { displacement(by, place) } else { T::zero() };
+            *closed = *gap - apart <= touching_distance();
+            if *closed || *start > touching_distance() {
+                continue;
+            }
+            let parts = positive_part(rate(by, place) * *h);
             // Where faces and edges take turns a contact may be at another place than before.
             let Rows { first, count } = layout.rows(by);
-            let ways = (first..first + count).fold(of(&apart).abs(), |sum, i| {
-                sum + (entry(&rates, i).abs() + entry(&after, i).abs()) * *h
-            });
-            let stays = *start + parts <= touching_distance() && *gap <= touching_distance::<T>() + ways;
-            *closed |= *gap - of(&apart) <= touching_distance() || stays;
+            let ways = (first..first + count)
+                .fold(apart.abs(), |sum, i| sum + (rate(by, i).abs() + after(by, i).abs()) * *h);
+            *closed = *start + parts <= touching_distance() && *gap <= touching_distance::<T>() + ways;
         }
     }
     Ok(closed.contains(&true).then_some(closed))
-}
-
-/// The rates at contacts that the velocity `v` at the configuration `start` would have where a step has led
-/// to the configuration `q`: there impulses act, and restitution and their work are about the same directions
-/// as they are.
-fn rates_at_end<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
-    mechanism: &M,
-    t: T,
-    (start, v): (&SVector<T, NQ>, &SVector<T, NV>),
-    q: &SVector<T, NQ>,
-) -> SVector<T, NR>
-where
-    T: Real,
-    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
-{
-    mechanism.contact_rates(t, q, &mechanism.carry(t, start, &mechanism.difference(start, q), v))
 }
 
 /// [`solve`] for a step of `h` seconds from `start`, which has led to a configuration and, without contacts,
@@ -170,29 +161,31 @@ where
         }
     };
     let still = SVector::<T, NV>::zeros();
-    let Some(closed) = closed(mechanism, t, q, free, Some(&came))? else {
+    let velocities = ContactVelocities::at(mechanism, t, q);
+    let Some(closed) = closed(mechanism, t, (q, free), Some((&came, &velocities)))? else {
         let is_led = h != T::zero() && *given != still;
         return Ok(if is_led { led(free, &still) } else { Touched::state_without_contacts(*q, *free) });
     };
     let (rows, _) = mechanism.contact_tables();
     let rows = rows.iter().zip(&closed).filter(|(_, is_closed)| **is_closed);
     let rows = rows.fold(0, |sum, (rows, _)| sum + rows.count);
-    let run = (came, (start, v), (q, free), (given, impulses));
+    let run = (&came, (start, v), (q, free), (given, impulses));
+    let at_end = (t, &velocities);
     // Matrices of few closed contacts are small, however many contacts a mechanism has.
     if const { NR > SMALL } && rows <= SMALL {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, SMALL, SMALL>(mechanism, t, run, &closed, led)
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, SMALL, SMALL>(mechanism, at_end, run, &closed, led)
     } else if const { NR > MEDIUM } && rows <= MEDIUM {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, MEDIUM, MEDIUM>(mechanism, t, run, &closed, led)
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, MEDIUM, MEDIUM>(mechanism, at_end, run, &closed, led)
     } else if const { NR > LARGE } && rows <= LARGE {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, LARGE, LARGE>(mechanism, t, run, &closed, led)
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, LARGE, LARGE>(mechanism, at_end, run, &closed, led)
     } else {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, NK, NR>(mechanism, t, run, &closed, led)
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, NK, NR>(mechanism, at_end, run, &closed, led)
     }
 }
 
 /// Start of a step, its end without contacts, and the change of velocity by the assumed contact forces.
-type Run<'a, T, const NQ: usize, const NV: usize, const NR: usize> = (
-    Came<'a, T, NQ, NV, NR>,
+type Run<'a, T, const NQ: usize, const NV: usize> = (
+    &'a Came<'a, T, NQ, NV>,
     (&'a SVector<T, NQ>, &'a SVector<T, NV>),
     (&'a SVector<T, NQ>, &'a SVector<T, NV>),
     Assumed<'a, T, NV>,
@@ -213,8 +206,8 @@ fn act_in_step<
     const CR: usize,
 >(
     mechanism: &M,
-    t: T,
-    (came, (start, v), (q, free), (given, recorded)): Run<'_, T, NQ, NV, NR>,
+    (t, velocities): (T, &ContactVelocities<'_, M, T, NQ, NV, NR>),
+    (came, (start, v), (q, free), (given, recorded)): Run<'_, T, NQ, NV>,
     closed: &[bool; NK],
     led: impl Fn(&SVector<T, NV>, &SVector<T, NV>) -> Touched<T, NQ, NV>,
 ) -> Result<Touched<T, NQ, NV>, ConstraintError>
@@ -225,47 +218,47 @@ where
     let (h, still) = (came.h, SVector::<T, NV>::zeros());
     let selection = Selection::<CK, CR>::select(Layout::of(mechanism), closed);
     let mut acted = Acted::nothing(selection, true);
-    let before = || came.rates(mechanism, t, q);
+    let own_rates = || {
+        let carried = came.velocity_at_end(mechanism, t, q);
+        ContactVelocities::<M, T, NQ, NV, NR>::select(&selection, velocities.of(&carried))
+    };
     let moves = |far: T| v.iter().any(|v| v.abs() * h > far);
     let is_moving = moves(touching_distance::<T>() * constant(10.0));
-    let after =
-        act(mechanism, t, (q, free), closed, (before, Some(((given, recorded), is_moving))), &mut acted)?.v;
+    let assumed = Some(((given, recorded), is_moving));
+    let after = act(mechanism, (t, velocities), (q, free), closed, (own_rates, assumed), &mut acted)?.v;
     if h == T::zero() {
         let (held, violation) = (after - free, acted.problem.violation());
         let impulses = Impulses::record(&selection, &acted.problem.spread(&acted.impulses));
         return Ok(Touched { q: *q, v: after, held, impulses, violation });
     }
-    let Acted { problem, impulses, free: corrected, responses: Some(responses), .. } = &mut acted else {
+    if !acted.is_loaded() {
         return Ok(led(&after, &still));
-    };
-    let corrected = *corrected;
-    let own_rates = || selection.rates(&came.rates(mechanism, t, q));
+    }
+    let corrected = acted.free;
     let mut touched = led(&after, &(after - corrected));
-    let responses = &responses.velocities;
     // The energy without what contacts have done: they have worked along the mean of the velocities.
     let most = || {
-        let carried = mechanism.carry(t, start, &mechanism.difference(start, q), v);
-        let mean = (carried + free + given) * constant::<T>(0.5);
+        let mean = (came.velocity_at_end(mechanism, t, q) + free + given) * constant::<T>(0.5);
         let work = mechanism.generalized_momentum(t, q, &mean).dot(given);
         energy(mechanism, t, &Touched::state_without_contacts(*q, free + given)) - work
     };
-    if problem.rebounds() {
-        let led = |impulses: &SVector<T, CR>| {
-            let by_contacts = responses * impulses;
-            led(&(corrected + by_contacts), &by_contacts)
-        };
+    if acted.problem.rebounds() {
+        let led = |by_contacts: &SVector<T, NV>| led(&(corrected + by_contacts), by_contacts);
         let laws = selection.laws(&mechanism.contact_laws());
-        if let Some(less) = tempered(mechanism, t, (problem, &laws, &own_rates()), &led, (&touched, most())) {
-            (touched, *impulses) = less;
+        if let Some(less) =
+            tempered(mechanism, t, (&mut acted, &laws, &own_rates()), &led, (&touched, most()))
+        {
+            (touched, acted.impulses) = less;
         }
     }
+    let (problem, impulses) = (&acted.problem, &acted.impulses);
     touched.violation = problem.violation();
     touched.impulses = Impulses::record(&selection, &problem.spread(impulses));
     if !is_moving && !moves(touching_distance::<T>() * constant(1e-3)) {
-        let states = ((start, v), q, &touched, &after);
-        let creep = creep_reversal(mechanism, t, states, h, (problem, &selection));
+        let states = ((start, v), &touched, &after);
+        let creep = creep_reversal(mechanism, velocities, states, h, (problem, &selection));
         if let Some(creep) = creep {
-            touched.q = mechanism.integrate(&touched.q, &(responses * creep));
+            touched.q = mechanism.integrate(&touched.q, &acted.velocity(&creep));
         }
     }
     let gaps = mechanism.contact_gaps(t, &touched.q);
@@ -275,7 +268,7 @@ where
     }
     let speed = own_rates().iter().fold(problem.speed(), |most, rate| most.max(rate.abs()));
     match problem.close(impulses, &own, (touching_distance(), touching_distance::<T>() + speed * h)) {
-        Some(pushes) => Ok(pushed(mechanism, t, (&touched, &gaps), &(responses * pushes), most)),
+        Some(pushes) => Ok(pushed(mechanism, t, (&touched, &gaps), &acted.velocity(&pushes), most)),
         None => Ok(touched),
     }
 }
@@ -296,13 +289,8 @@ fn creep_reversal<
     const CR: usize,
 >(
     mechanism: &M,
-    t: T,
-    ((start, v), q, touched, after): (
-        (&SVector<T, NQ>, &SVector<T, NV>),
-        &SVector<T, NQ>,
-        &Touched<T, NQ, NV>,
-        &SVector<T, NV>,
-    ),
+    velocities: &ContactVelocities<'_, M, T, NQ, NV, NR>,
+    ((start, v), touched, after): ((&SVector<T, NQ>, &SVector<T, NV>), &Touched<T, NQ, NV>, &SVector<T, NV>),
     h: T,
     (problem, selection): (&Problem<T, CK, CR>, &Selection<CK, CR>),
 ) -> Option<SVector<T, CR>>
@@ -316,10 +304,8 @@ where
     if largest(&excess) <= largest(&touched.held) * h * epsilon::<T>().sqrt() {
         return None;
     }
-    let driven = mechanism.contact_rates(t, q, &SVector::zeros());
-    let (crept, slip) =
-        (mechanism.contact_rates(t, q, &excess) - driven, mechanism.contact_rates(t, q, after));
-    let (crept, slip) = (selection.rates(&crept), selection.rates(&slip));
+    let crept = ContactVelocities::<M, T, NQ, NV, NR>::select(selection, velocities.changes(&excess));
+    let slip = ContactVelocities::<M, T, NQ, NV, NR>::select(selection, velocities.of(after));
     let (layout, mut back) = (selection.layout(), SVector::<T, CR>::zeros());
     for tangents in (0..CK).map(|k| layout.tangents(k)) {
         if tangents.clone().all(|i| entry(&slip, i).abs() <= touching_distance::<T>() * touching_distance()) {
@@ -345,8 +331,8 @@ fn tempered<
 >(
     mechanism: &M,
     t: T,
-    (problem, laws, before): (&mut Problem<T, CK, CR>, &[Law<T>; CK], &SVector<T, CR>),
-    led: &impl Fn(&SVector<T, CR>) -> Touched<T, NQ, NV>,
+    (acted, laws, before): (&mut Acted<T, NV, CK, CR>, &[Law<T>; CK], &SVector<T, CR>),
+    led: &impl Fn(&SVector<T, NV>) -> Touched<T, NQ, NV>,
     (all, most): (&Touched<T, NQ, NV>, T),
 ) -> Option<(Touched<T, NQ, NV>, Total<T, CR>)>
 where
@@ -358,19 +344,27 @@ where
         return None;
     }
     let (mut found, mut least, mut step) = (None, T::zero(), T::one());
-    for round in 0..=problem.halvings() {
+    let (mut equations, mut violation) = (Equations::new(), acted.problem.violation());
+    let mut start = Some(acted.problem.total(&acted.impulses));
+    for round in 0..=acted.problem.halvings() {
+        if found.is_some() && !acted.problem.may_refine() {
+            break;
+        }
         // None of it, then a bit of the part each.
         let part = if round == 0 { T::zero() } else { least + step };
-        problem.aim(laws, before, part);
-        if let Ok(impulses) = problem.solve() {
-            let touched = led(&problem.spread(&impulses));
+        acted.problem.aim(laws, before, part);
+        if let Ok(impulses) = acted.problem.solve_from(start.as_ref(), &mut equations) {
+            start = Some(acted.problem.total(&impulses));
+            let touched = led(&acted.velocity(&acted.problem.spread(&impulses)));
             if round == 0 || energy(mechanism, t, &touched) <= most {
                 (found, least) = (Some((touched, impulses)), part);
+                violation = acted.problem.violation();
             }
         }
         step *= constant(0.5);
     }
-    problem.aim(laws, before, least);
+    acted.problem.aim(laws, before, least);
+    acted.problem.set_violation(violation);
     found
 }
 

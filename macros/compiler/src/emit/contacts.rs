@@ -3,7 +3,9 @@
 use super::interface::Interface;
 use super::signature::Signature;
 use crate::catalogue::{ContactSizes, Need, Shape};
-use crate::mechanism::Model;
+use crate::expr::replace::replace_all;
+use crate::kinematics::velocity_gradients;
+use crate::mechanism::{Contact, Model, Quantity};
 use std::fmt::Write;
 
 /// Unilateral contact, for the emitter.
@@ -26,19 +28,36 @@ pub struct UnilateralContact {
     laws: [Option<f64>; 3],
     /// True if the static coefficient of friction differs from the kinetic one.
     has_stiction: bool,
+    /// Index of the first velocity that changes its contact velocities, and behind the last.
+    columns: (usize, usize),
+    /// True if its contact velocities may differ from zero at rest, because of prescribed motions.
+    drifts: bool,
 }
 
 impl UnilateralContact {
     /// Returns the unilateral contacts of a model.
     pub fn from_model(model: &Model<'_>) -> Vec<UnilateralContact> {
-        let contact_from_model = |c: &crate::mechanism::Contact<'_>| UnilateralContact {
-            name: c.name.clone(),
-            rates: c.rates.len(),
-            pressed_by: c.pressed_by,
-            turns: c.turns,
-            of_impulses: c.of_impulses,
-            laws: [c.friction, c.restitution, c.stiction].map(|law| law.constant_value()),
-            has_stiction: c.stiction != c.friction,
+        let rates = model.contact_rates();
+        let gradients = velocity_gradients(&rates);
+        let at_rest = replace_all(&rates, &|symbol| {
+            matches!(Quantity::from_symbol(symbol), Quantity::Velocity(_)).then(|| model.graph.zero())
+        });
+        let mut rows = gradients.iter().zip(&at_rest);
+        let contact_from_model = |c: &Contact<'_>| {
+            let own: Vec<_> = rows.by_ref().take(c.rates.len()).collect();
+            let used = || own.iter().flat_map(|(gradient, _)| gradient.iter()).map(|(column, _)| *column);
+            let columns = used().min().zip(used().max()).map_or((0, 0), |(first, last)| (first, last + 1));
+            UnilateralContact {
+                name: c.name.clone(),
+                rates: c.rates.len(),
+                pressed_by: c.pressed_by,
+                turns: c.turns,
+                of_impulses: c.of_impulses,
+                laws: [c.friction, c.restitution, c.stiction].map(|law| law.constant_value()),
+                has_stiction: c.stiction != c.friction,
+                columns,
+                drifts: own.iter().any(|(_, rate)| **rate != model.graph.zero()),
+            }
         };
         model.contacts.iter().map(contact_from_model).collect()
     }
@@ -53,6 +72,8 @@ impl UnilateralContact {
             of_impulses: false,
             laws: [None; 3],
             has_stiction: false,
+            columns: (0, 0),
+            drifts: false,
         }
     }
 }
@@ -106,7 +127,12 @@ pub fn write_trait(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
              {{ ::linkwork::contact::Responses::from_list(&self.__contact_responses({pass}q)) }}\n        "
         )
     } else {
-        String::new()
+        let columns: Vec<(usize, usize)> = i.contacts.iter().map(|contact| contact.columns).collect();
+        let drifts = i.contacts.iter().any(|contact| contact.drifts);
+        format!(
+            "#[inline]\nfn contact_columns(&self) -> [(usize, usize); {count}] {{ {columns:?} }}
+            #[inline]\nfn contacts_drift(&self) -> bool {{ {drifts} }}\n        "
+        )
     };
     let pressed_by = if i.contacts.iter().any(|c| c.pressed_by.is_some()) {
         let all: Vec<usize> = i.contacts.iter().enumerate().map(|(k, c)| c.pressed_by.unwrap_or(k)).collect();

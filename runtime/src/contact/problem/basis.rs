@@ -4,6 +4,8 @@ use super::{List, Problem, Square};
 use crate::Real;
 use crate::contact::total::Total;
 use crate::private::{constant, epsilon};
+use core::ops::Range;
+use nalgebra::SVector;
 
 /// Part of the largest diagonal entry of `W` that counts as zero for a pivot, in rounding errors.
 const ROUNDINGS: f64 = 64.0;
@@ -15,36 +17,80 @@ pub(in super::super) struct Basis<T, const NR: usize> {
     rows: Square<T, NR>,
     /// Columns of the first entry of each row that is not zero, and behind the last.
     reach: Total<(usize, usize), NR>,
+    /// Number of rows.
+    size: usize,
+    /// Entry of `w` for each column.
+    columns: Total<usize, NR>,
     /// Number of columns; zero if `B` is not computed yet.
     rank: usize,
     /// Whether `B Bᵀ` equals `W` to rounding of each entry.
     is_exact: bool,
 }
 
-/// A linear combination of rows: its entries, and the columns that contain them.
-#[derive(Clone, Copy)]
-pub(super) struct Combination<T, const NR: usize> {
-    entries: List<T, NR>,
-    reach: (usize, usize),
+/// Entries of `w` that a matrix `B` has columns for.
+pub(in super::super) struct Columns<const N: usize> {
+    is_used: [bool; N],
+    /// Number of used entries before each.
+    index: [usize; N],
+    count: usize,
 }
 
-impl<T: Real, const NR: usize> Combination<T, NR> {
-    /// Returns zero.
-    pub(super) fn zero() -> Self {
-        Self { entries: List::repeat(T::zero()), reach: (NR, 0) }
+impl<const N: usize> Columns<N> {
+    /// Returns the columns for the used entries.
+    pub(in super::super) fn of(is_used: [bool; N]) -> Self {
+        let (mut index, mut count) = ([0; N], 0);
+        for (index, is_used) in index.iter_mut().zip(&is_used) {
+            *index = count;
+            count += usize::from(*is_used);
+        }
+        Self { is_used, index, count }
+    }
+}
+
+/// Rows of a contact and its friction moments.
+pub(super) const ROWS: usize = 6;
+/// Rows whose products are added at once.
+const AT_ONCE: usize = 3;
+
+/// Derivatives of the impulses of a contact and its friction moments with respect to their contact
+/// velocities.
+pub(super) struct ContactBlock<T> {
+    rows: [usize; ROWS],
+    count: usize,
+    entries: [[T; ROWS]; ROWS],
+}
+
+impl<T: Real> ContactBlock<T> {
+    /// Returns zeros for one row.
+    pub(super) fn new(row: usize) -> Self {
+        Self { rows: [row; ROWS], count: 1, entries: [[T::zero(); ROWS]; ROWS] }
     }
 
-    /// Adds a multiple of a row.
-    pub(super) fn add(&mut self, factor: T, (first, row): (usize, &[T])) {
-        let last = first + row.len();
-        self.reach = (self.reach.0.min(first), self.reach.1.max(last));
-        add(self.entries.get_mut(first..last).unwrap_or_default(), factor, row);
+    /// Adds rows of friction with zeros, and returns the index of the first.
+    pub(super) fn push(&mut self, rows: Range<usize>) -> usize {
+        let first = self.count;
+        for row in rows {
+            if let Some(entry) = self.rows.get_mut(self.count) {
+                *entry = row;
+                self.count += 1;
+            }
+        }
+        first
     }
 
-    /// Returns the first column of the entries, and the entries.
-    pub(super) fn row(&self) -> (usize, &[T]) {
-        let (first, last) = self.reach;
-        (first, self.entries.get(first..last).unwrap_or_default())
+    /// Adds to the derivative of an impulse with respect to a contact velocity.
+    pub(super) fn add(&mut self, i: usize, j: usize, value: T) {
+        if let Some(entry) = self.entries.get_mut(i).and_then(|row| row.get_mut(j)) {
+            *entry += value;
+        }
+    }
+
+    /// Adds the product of a column and a row of values to the rows of friction from `first` on.
+    pub(super) fn add_product(&mut self, first: usize, factor: T, [x, y]: [T; 2]) {
+        self.add(first, first, factor * x * x);
+        self.add(first, first + 1, factor * x * y);
+        self.add(first + 1, first, factor * x * y);
+        self.add(first + 1, first + 1, factor * y * y);
     }
 }
 
@@ -52,44 +98,58 @@ impl<T: Real, const NR: usize> Basis<T, NR> {
     /// Returns `B` without columns, which is not computed yet.
     pub(in super::super) fn none() -> Self {
         let rows = Square::repeat(List::repeat(T::zero()));
-        Self { rows, reach: Total::repeat((0, 0)), rank: 0, is_exact: false }
+        let (reach, columns) = (Total::repeat((0, 0)), Total::repeat(0));
+        Self { rows, reach, size: 0, columns, rank: 0, is_exact: false }
     }
 
-    /// Sets the rows of `B`. Columns of zeros are left out; if more columns remain than the arrays have,
-    /// there are none.
-    pub(in super::super) fn set<'a, const N: usize>(&mut self, rows: impl Iterator<Item = &'a [T; N]> + Clone)
-    where
-        T: 'a,
-    {
-        (self.rank, self.is_exact) = (0, false);
-        let mut is_used = [false; N];
-        for row in rows.clone() {
-            is_used.iter_mut().zip(row).for_each(|(is_used, entry)| *is_used |= *entry != T::zero());
+    /// Begins `B` with columns, and without rows; false if the columns are more than the arrays have.
+    pub(in super::super) fn begin<const N: usize>(&mut self, columns: &Columns<N>) -> bool {
+        (self.size, self.rank, self.is_exact) = (0, 0, false);
+        if columns.count == 0 || columns.count > NR {
+            return false;
         }
-        let rank = is_used.iter().filter(|is_used| **is_used).count();
-        if rank > NR {
-            return;
+        let used = columns.is_used.iter().enumerate().filter(|(_, is_used)| **is_used);
+        self.columns.iter_mut().zip(used).for_each(|(to, (column, _))| *to = column);
+        (self.rank, self.is_exact) = (columns.count, true);
+        true
+    }
+
+    /// Adds a row with the entries of `w` from `first` on, zeros elsewhere.
+    pub(in super::super) fn push<const N: usize>(&mut self, columns: &Columns<N>, first: usize, w: &[T]) {
+        let Columns { is_used, index, .. } = columns;
+        let (row, mut reach) = (&mut self.rows[self.size], (NR, 0));
+        let places = index.iter().zip(is_used).skip(first);
+        for (entry, (index, _)) in
+            w.iter().zip(places).filter(|(entry, (_, is_used))| **is_used && **entry != T::zero())
+        {
+            row[*index] = *entry;
+            reach = (reach.0.min(*index), *index + 1);
         }
-        let mut size = 0;
-        for (to, row) in self.rows.iter_mut().zip(rows) {
-            let entries = row.iter().zip(&is_used).filter(|(_, is_used)| **is_used);
-            to.iter_mut().zip(entries).for_each(|(to, (entry, _))| *to = *entry);
-            size += 1;
-        }
-        (self.rank, self.is_exact) = (rank, rank > 0);
-        self.find_reach(size);
+        self.reach[self.size] = if reach.1 > 0 { reach } else { (0, 0) };
+        self.size += 1;
     }
 
     /// Sets the rows to `chosen` ones of another matrix `B`.
     pub(super) fn select<const N: usize>(&mut self, from: &Basis<T, N>, chosen: &[usize]) {
-        if from.rank > 0 {
-            self.set(chosen.iter().map(|i| &*from.rows[*i]));
-            self.is_exact &= from.is_exact;
+        if from.rank == 0 {
+            return;
+        }
+        let mut is_used = [false; N];
+        for (first, row) in chosen.iter().map(|i| from.row(*i)) {
+            let entries = is_used.iter_mut().skip(first).zip(row);
+            entries.for_each(|(is_used, entry)| *is_used |= *entry != T::zero());
+        }
+        let columns = Columns::of(is_used);
+        if self.begin(&columns) {
+            chosen.iter().map(|i| from.row(*i)).for_each(|(first, row)| self.push(&columns, first, row));
+            self.columns.iter_mut().take(self.rank).for_each(|column| *column = from.columns[*column]);
+            self.is_exact = from.is_exact;
         }
     }
 
     /// Finds the entries of the first `size` rows that are not zero.
     fn find_reach(&mut self, size: usize) {
+        self.size = size;
         for (row, reach) in self.rows.iter().zip(self.reach.iter_mut()).take(size) {
             let row = row.get(..self.rank).unwrap_or_default();
             let is_any = |entry: &T| *entry != T::zero();
@@ -114,12 +174,59 @@ impl<T: Real, const NR: usize> Basis<T, NR> {
         (first, self.rows[i].get(first..last).unwrap_or_default())
     }
 
+    /// Adds `Bᵀ H B` for a block `H` to a matrix. `ends` has the index behind the last entry of each row.
+    pub(super) fn add_block(
+        &self,
+        block: &ContactBlock<T>,
+        matrix: &mut Square<T, NR>,
+        ends: &mut List<usize, NR>,
+    ) {
+        let ContactBlock { rows, count, entries } = block;
+        let (mut first, mut last) = (NR, 0);
+        for i in rows.iter().take(*count) {
+            let (start, row) = self.row(*i);
+            if !row.is_empty() {
+                (first, last) = (first.min(start), last.max(start + row.len()));
+            }
+        }
+        let columns = |i: usize| self.rows[i].get(first..last).unwrap_or_default();
+        for top in (0..*count).step_by(AT_ONCE) {
+            let mut products = [List::<T, NR>::repeat(T::zero()); AT_ONCE];
+            let mut left = [&[] as &[T]; AT_ONCE];
+            let mut is_any = false;
+            for ((product, left), i) in products.iter_mut().zip(&mut left).zip(top..*count) {
+                let product = product.get_mut(..last.saturating_sub(first)).unwrap_or_default();
+                let (Some(row), Some(factors)) = (rows.get(i), entries.get(i)) else { continue };
+                *left = columns(*row);
+                for (factor, j) in factors.iter().zip(rows).take(*count) {
+                    if *factor != T::zero() {
+                        add(product, *factor, columns(*j));
+                        is_any = true;
+                    }
+                }
+            }
+            if !is_any {
+                continue;
+            }
+            let [a, b, c] = products;
+            let [x, y, z] = left.map(|left| |i: usize| left.get(i).copied().unwrap_or(T::zero()));
+            let own = matrix.iter_mut().zip(ends.iter_mut()).take(last).skip(first).enumerate();
+            for (i, (row, end)) in own {
+                *end = (*end).max(last);
+                let (x, y, z) = (x(i), y(i), z(i));
+                let terms = a.iter().zip(b.iter()).zip(c.iter());
+                let entries = row.get_mut(first..last).unwrap_or_default();
+                entries.iter_mut().zip(terms).for_each(|(to, ((a, b), c))| *to += x * *a + y * *b + z * *c);
+            }
+        }
+    }
+
     /// Returns `B w`.
     pub(super) fn rates(&self, w: &List<T, NR>) -> List<T, NR> {
         let mut rates = List::repeat(T::zero());
-        for (rate, (row, (first, last))) in rates.iter_mut().zip(self.rows.iter().zip(self.reach.iter())) {
-            let entries = row.get(*first..*last).unwrap_or_default();
-            *rate = dot(entries, w.get(*first..*last).unwrap_or_default());
+        for (i, rate) in rates.iter_mut().enumerate().take(self.size) {
+            let (first, row) = self.row(i);
+            *rate = dot(row, w.get(first..first + row.len()).unwrap_or_default());
         }
         rates
     }
@@ -127,13 +234,60 @@ impl<T: Real, const NR: usize> Basis<T, NR> {
     /// Returns `Bᵀ Λ`.
     pub(super) fn velocity(&self, impulses: &List<T, NR>) -> List<T, NR> {
         let mut w = List::repeat(T::zero());
-        for (impulse, (row, (first, last))) in impulses.iter().zip(self.rows.iter().zip(self.reach.iter())) {
+        for (i, impulse) in impulses.iter().enumerate().take(self.size) {
             if *impulse != T::zero() {
-                let entries = row.get(*first..*last).unwrap_or_default();
-                add(w.get_mut(*first..*last).unwrap_or_default(), *impulse, entries);
+                let (first, row) = self.row(i);
+                add(w.get_mut(first..first + row.len()).unwrap_or_default(), *impulse, row);
             }
         }
         w
+    }
+
+    /// Writes the entries of `w` that impulses change.
+    pub(in super::super) fn write_velocity<const N: usize>(&self, impulses: &SVector<T, NR>, w: &mut [T; N]) {
+        self.scatter(&self.velocity(&List::new(impulses.data.0[0], T::zero())), w);
+    }
+
+    /// Writes the entries of `w` of all columns.
+    pub(super) fn scatter<const N: usize>(&self, own: &List<T, NR>, w: &mut [T; N]) {
+        for (column, value) in self.columns.iter().zip(own.iter()).take(self.rank) {
+            if let Some(entry) = w.get_mut(*column) {
+                *entry = *value;
+            }
+        }
+    }
+
+    /// Returns the values of `w` for all columns.
+    pub(super) fn gather<const N: usize>(&self, w: &[T; N]) -> List<T, NR> {
+        let mut own = List::repeat(T::zero());
+        for (value, column) in own.iter_mut().zip(self.columns.iter()).take(self.rank) {
+            *value = w.get(*column).copied().unwrap_or(T::zero());
+        }
+        own
+    }
+
+    /// Returns the entry of `B Bᵀ` for two rows.
+    pub(super) fn product(&self, i: usize, j: usize) -> T {
+        let ((first, row), (start, other)) = (self.row(i), self.row(j));
+        let from = first.max(start);
+        let (row, other) = (row.get(from - first..), other.get(from - start..));
+        dot(row.unwrap_or_default(), other.unwrap_or_default())
+    }
+
+    /// Returns the largest sum of the magnitudes of the terms of a contact velocity, from magnitudes `free`
+    /// on.
+    pub(super) fn magnitude(&self, free: &List<T, NR>, impulses: &List<T, NR>) -> T {
+        let mut w = List::<T, NR>::repeat(T::zero());
+        let rows = || (0..self.size).map(|i| self.row(i));
+        for ((first, row), impulse) in rows().zip(impulses.iter()) {
+            if *impulse != T::zero() {
+                w.iter_mut().skip(first).zip(row).for_each(|(w, entry)| *w += (*impulse * *entry).abs());
+            }
+        }
+        rows().zip(free.iter()).fold(T::zero(), |most, ((first, row), free)| {
+            let terms = row.iter().zip(w.iter().skip(first));
+            most.max(terms.fold(free.abs(), |sum, (entry, w)| sum + entry.abs() * *w))
+        })
     }
 }
 
@@ -147,7 +301,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         // Columns first, one after another.
         let mut columns = Square::<T, NR>::repeat(List::repeat(T::zero()));
         let mut left = List::<T, NR>::repeat(T::zero());
-        (0..size).for_each(|i| left[i] = self.weights[i][i]);
+        (0..size).for_each(|i| left[i] = self.weight(i, i));
         let reach = left.iter().take(size).fold(T::zero(), |most, x| most.max(*x));
         let mut rank = 0;
         while rank < size {
@@ -165,7 +319,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             let reciprocal = T::one() / pivot.sqrt();
             let (done, rest) = columns.split_at_mut_checked(rank).unwrap_or_default();
             let Some(column) = rest.first_mut().and_then(|column| column.get_mut(..size)) else { break };
-            column.iter_mut().zip(self.weights[best].iter()).for_each(|(to, from)| *to = *from);
+            column.iter_mut().enumerate().for_each(|(i, to)| *to = self.weight(best, i));
             for before in done.iter() {
                 let factor = before[best];
                 if factor != T::zero() {
@@ -195,17 +349,4 @@ pub(in super::super) fn dot<T: Real>(a: &[T], b: &[T]) -> T {
 /// Adds a multiple of a vector to another.
 pub(super) fn add<T: Real>(to: &mut [T], factor: T, from: &[T]) {
     to.iter_mut().zip(from).for_each(|(to, from)| *to += factor * *from);
-}
-
-/// Adds a multiple of the product of a column and a row to a matrix.
-pub(super) fn add_product<T: Real, const NR: usize>(
-    matrix: &mut Square<T, NR>,
-    factor: T,
-    (top, left): (usize, &[T]),
-    (first, right): (usize, &[T]),
-) {
-    let rows = matrix.get_mut(top..top + left.len()).unwrap_or_default();
-    for (row, value) in rows.iter_mut().zip(left).filter(|(_, value)| **value != T::zero()) {
-        add(row.get_mut(first..first + right.len()).unwrap_or_default(), factor * *value, right);
-    }
 }

@@ -18,8 +18,8 @@
 //! the impulses of a problem.
 
 use super::super::total::Total;
-use super::basis::{Combination, add, add_product, dot};
-use super::linear::{identify, square};
+use super::banded::identify;
+use super::basis::{ContactBlock, ROWS, add, dot};
 use super::trial::Trial;
 use super::{List, Problem, Square};
 use crate::Real;
@@ -43,7 +43,7 @@ const NEAR: [f64; 2] = [2e-2, 1e-4];
 const ENOUGH: f64 = 1e-12;
 const GOOD: f64 = 1e-10;
 /// Kinds of friction of a contact: slip, spin and rolling.
-const PARTS: usize = 3;
+pub(super) const PARTS: usize = 3;
 
 /// Friction of a contact, or one of its moments.
 #[derive(Clone, Copy)]
@@ -159,7 +159,7 @@ impl<T: Real> Cone<T> {
 
 /// Factorises a symmetric positive definite matrix of `size` rows in place, of which the lower half is read:
 /// `L` with the reciprocals of its diagonal.
-fn cholesky<T: Real, const NR: usize>(matrix: &mut Square<T, NR>, size: usize) {
+pub(super) fn cholesky<T: Real, const NR: usize>(matrix: &mut Square<T, NR>, size: usize) {
     for i in 0..size {
         let (done, rest) = matrix.split_at_mut_checked(i).unwrap_or_default();
         let Some(own) = rest.first_mut() else { return };
@@ -175,7 +175,7 @@ fn cholesky<T: Real, const NR: usize>(matrix: &mut Square<T, NR>, size: usize) {
 }
 
 /// Solves for `x` with the factor of [`cholesky`].
-fn substitute<T: Real, const NR: usize>(factor: &Square<T, NR>, size: usize, x: &mut List<T, NR>) {
+pub(super) fn substitute<T: Real, const NR: usize>(factor: &Square<T, NR>, size: usize, x: &mut List<T, NR>) {
     for (i, own) in factor.iter().enumerate().take(size) {
         let sum = dot(own.get(..i).unwrap_or_default(), x.get(..i).unwrap_or_default());
         x[i] = (x[i] - sum) * own[i];
@@ -254,44 +254,51 @@ impl<'a, T: Real, const NK: usize, const NR: usize> Convex<'a, T, NK, NR> {
 
     /// Makes `matrix` the derivative of the gradient by `w`: `1 + Bᵀ H B`.
     fn curvature(&self, matrix: &mut Square<T, NR>) {
-        let (basis, one) = (&self.problem.basis, T::one());
-        identify(matrix, basis.rank());
+        let mut ends = identify(matrix, self.problem.basis.rank());
         let mut wanted = List::repeat(T::zero());
         for cone in self.cones() {
             self.predict(cone, &self.rates, &mut wanted);
-            let found = cone.project(&wanted, &self.weights);
-            // Along the cone: the normal rate, and the rates of friction at its bound.
-            let mut along = Combination::<T, NR>::zero();
-            along.add(one, basis.row(cone.normal));
-            for (k, part) in cone.parts() {
-                let (Some(size), Some(bounded)) = (found.sizes.get(k), found.bounded.get(k)) else {
-                    continue;
-                };
-                let rows = part.first..part.first + part.count;
-                let weight = self.weights[part.first];
-                if !bounded {
-                    if found.is_pressed || cone.floor > T::zero() {
-                        rows.for_each(|i| add_product(matrix, one / weight, basis.row(i), basis.row(i)));
-                    }
-                    continue;
+            let block = self.block(cone, &wanted);
+            self.problem.basis.add_block(&block, matrix, &mut ends);
+        }
+    }
+
+    /// Returns the block of `H` of a cone, with the impulses `wanted` before their projection.
+    fn block(&self, cone: &Cone<T>, wanted: &List<T, NR>) -> ContactBlock<T> {
+        let (found, one, none) = (cone.project(wanted, &self.weights), T::one(), T::zero());
+        let mut block = ContactBlock::new(cone.normal);
+        // Along the cone: the normal rate, and the rates of friction at its bound.
+        let mut along = [none; ROWS];
+        along[0] = one;
+        for (k, part) in cone.parts() {
+            let (Some(size), Some(bounded)) = (found.sizes.get(k), found.bounded.get(k)) else { continue };
+            let weight = self.weights[part.first];
+            let first = block.push(part.first..part.first + part.count);
+            if !bounded {
+                if found.is_pressed || cone.floor > none {
+                    (first..first + part.count).for_each(|i| block.add(i, i, one / weight));
                 }
-                if found.is_pressed {
-                    rows.for_each(|i| along.add(part.friction * wanted[i] / *size, basis.row(i)));
-                }
-                // Across the direction of friction.
-                let bound = part.friction * (found.normal + cone.floor);
-                if part.count == 2 && bound > T::zero() {
-                    let (x, y) = (wanted[part.first] / *size, wanted[part.first + 1] / *size);
-                    let mut across = Combination::<T, NR>::zero();
-                    across.add(-y, basis.row(part.first));
-                    across.add(x, basis.row(part.first + 1));
-                    add_product(matrix, bound / (*size * weight), across.row(), across.row());
-                }
+                continue;
             }
-            if found.is_pressed {
-                add_product(matrix, one / found.along, along.row(), along.row());
+            for (along, i) in along.iter_mut().skip(first).zip(part.first..part.first + part.count) {
+                *along = part.friction * wanted[i] / *size;
+            }
+            // Across the direction of friction.
+            let bound = part.friction * (found.normal + cone.floor);
+            if part.count == 2 && bound > none {
+                let (x, y) = (wanted[part.first] / *size, wanted[part.first + 1] / *size);
+                block.add_product(first, bound / (*size * weight), [-y, x]);
             }
         }
+        if found.is_pressed {
+            for (i, row) in along.iter().enumerate() {
+                along
+                    .iter()
+                    .enumerate()
+                    .for_each(|(j, column)| block.add(i, j, *row * *column / found.along));
+            }
+        }
+        block
     }
 
     /// Returns the negative gradient, `Bᵀ Λ − w`.
@@ -313,6 +320,7 @@ impl<'a, T: Real, const NK: usize, const NR: usize> Convex<'a, T, NK, NR> {
             if left <= reach * little || (step > 0 && left <= reach * enough) {
                 return step;
             }
+            self.problem.count_iteration();
             let mut change = gradient;
             self.curvature(matrix);
             cholesky(matrix, rank);
@@ -388,26 +396,30 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Returns the diagonal entry of `W` for each impulse, the largest one for all of a contact's friction.
     fn cone_weights(&self, cones: &Total<Cone<T>, NK>, count: usize) -> List<T, NR> {
-        let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weights[i][i]));
+        let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weight(i, i)));
         let least = reach * epsilon::<T>().sqrt() + epsilon();
         let mut weights = List::repeat(T::one());
         for cone in cones.iter().take(count) {
-            weights[cone.normal] = self.weights[cone.normal][cone.normal].max(least);
+            weights[cone.normal] = self.weight(cone.normal, cone.normal).max(least);
             for (_, part) in cone.parts() {
                 let rows = part.first..part.first + part.count;
-                let most = rows.clone().fold(least, |most, i| most.max(self.weights[i][i]));
+                let most = rows.clone().fold(least, |most, i| most.max(self.weight(i, i)));
                 rows.for_each(|i| weights[i] = most);
             }
         }
         weights
     }
 
-    /// Returns the best impulses of a sequence of convex problems that begins at given impulses.
+    /// Returns the best impulses of a sequence of convex problems that begins at given impulses; `matrix` is
+    /// workspace.
     #[inline(never)]
-    pub(super) fn by_convex_problems(&self, start: &List<T, NR>) -> Trial<T, NK, NR> {
+    pub(super) fn by_convex_problems(
+        &self,
+        start: &List<T, NR>,
+        matrix: &mut Square<T, NR>,
+    ) -> Trial<T, NK, NR> {
         let mut convex = Convex::new(self);
         let weights = convex.weights;
-        let mut matrix = square();
         let mut best = self.tried(*start);
         convex.begin(start);
         if (0..self.size).any(|i| start[i] != T::zero()) {
@@ -422,7 +434,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             convex.weights = weights.each(|weight| weight * regularisation);
             convex.evaluate();
             let enough = (left / speed).min(T::one()) * constant(1e-2);
-            steps += 1 + convex.minimise(&mut matrix, STEPS_OF_ONE, enough);
+            steps += 1 + convex.minimise(matrix, STEPS_OF_ONE, enough);
             let found = self.tried(convex.impulses);
             let is_slow = found.worst.0 > left * constant(0.5);
             left = found.worst.0;
@@ -431,7 +443,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 best = found;
             }
             if near.next_if(|near| left <= *near).is_some() {
-                let exact = self.newton(found);
+                let exact = self.newton(found, matrix);
                 if exact.worst.0 < best.worst.0 {
                     best = exact;
                 }

@@ -12,6 +12,9 @@ const SMALL: usize = super::super::selection::FEW;
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// Returns the group of each contact, and the number of groups.
     pub(super) fn groups(&self) -> (Total<usize, NK>, usize) {
+        if self.basis.is_exact() {
+            return self.groups_by_columns();
+        }
         let (mut group, mut count) = (Total::repeat(usize::MAX), 0);
         let mut reached = Total::<usize, NK>::repeat(0);
         for first in 0..self.count {
@@ -35,10 +38,53 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         (group, count)
     }
 
+    /// Returns the group of each contact, and the number of groups: contacts with entries in common columns
+    /// of `B` are in one group.
+    fn groups_by_columns(&self) -> (Total<usize, NK>, usize) {
+        // Each column refers to an earlier one of its group, the first one to itself.
+        let mut earlier = List::<usize, NR>::repeat(0);
+        earlier.iter_mut().enumerate().for_each(|(column, earlier)| *earlier = column);
+        let first_of = |earlier: &List<usize, NR>, mut column: usize| {
+            while earlier[column] != column {
+                column = earlier[column];
+            }
+            column
+        };
+        let mut own = Total::<usize, NK>::repeat(0);
+        for k in 0..self.count {
+            let mut known = if self.is_gap(k) { None } else { Some(own[self.pressed_by[k]]) };
+            for i in self.all_of(k) {
+                let (start, row) = self.basis.row(i);
+                for (column, _) in (start..).zip(row).filter(|(_, entry)| **entry != T::zero()) {
+                    let known = known.get_or_insert(column);
+                    if earlier[column] == *known {
+                        continue;
+                    }
+                    let (one, other) = (first_of(&earlier, column), first_of(&earlier, *known));
+                    *known = one.min(other);
+                    earlier[one.max(other)] = *known;
+                    earlier[column] = *known;
+                }
+            }
+            own[k] = known.unwrap_or_default();
+        }
+        let (mut group, mut count) = (Total::repeat(0), 0);
+        let mut known = List::<usize, NR>::repeat(usize::MAX);
+        for k in 0..self.count {
+            let column = first_of(&earlier, own[k]);
+            if known[column] == usize::MAX {
+                known[column] = count;
+                count += 1;
+            }
+            group[k] = known[column];
+        }
+        (group, count)
+    }
+
     /// Whether impulses at one contact change contact velocities of the other, or press its friction.
     fn are_coupled(&self, k: usize, other: usize) -> bool {
         self.pressed_by[k] == self.pressed_by[other]
-            || self.all_of(k).any(|i| self.all_of(other).any(|j| self.weights[i][j] != T::zero()))
+            || self.all_of(k).any(|i| self.all_of(other).any(|j| self.weight(i, j) != T::zero()))
     }
 
     /// Returns the impulses that are found for each group of contacts alone; the search begins at the
@@ -89,10 +135,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             own.size += count;
         }
         let places = own.places;
-        for (row, i) in own.weights.iter_mut().zip(places.iter()).take(own.size) {
-            row.iter_mut().zip(places.iter()).take(own.size).for_each(|(to, j)| *to = self.weights[*i][*j]);
-        }
-        own.basis.select(&self.basis, places.get(..own.size).unwrap_or_default());
+        own.weigh_selected(self, places.get(..own.size).unwrap_or_default());
         // A part of the velocities, as an estimate.
         own.velocities = (self.velocities.saturating_mul(own.size) / self.size.max(1)).max(1);
         let start = start.map(|start| {
@@ -102,6 +145,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         });
         let found = own.solve_from(start.as_ref(), &mut Equations::new());
         let found = found.unwrap_or(own.closest);
+        self.iterations.set(self.iterations.get().saturating_add(own.iterations.get()));
         (0..own.size).for_each(|i| impulses[places[i]] = found[i]);
     }
 }

@@ -2,6 +2,8 @@
 
 use super::super::Touch;
 use super::super::total::Total;
+use super::banded::identify;
+use super::basis::ContactBlock;
 use super::{List, Problem, ROUNDINGS, Square, entry};
 use crate::Real;
 use crate::private::{constant, epsilon};
@@ -39,6 +41,12 @@ impl<T: Real, const NR: usize> Equations<T, NR> {
     /// Returns workspace without content.
     pub(in super::super) fn new() -> Self {
         Self { matrix: None, content: Content::Other }
+    }
+
+    /// Returns the matrix as workspace; its content is lost.
+    pub(super) fn workspace(&mut self) -> &mut Square<T, NR> {
+        self.content = Content::Other;
+        self.matrix.get_or_insert_with(square)
     }
 }
 
@@ -149,21 +157,22 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 size += 1;
             }
         }
-        let mut system = self.weights;
+        let mut system = square();
         self.among(&held, size, &mut system);
         !factorise(&mut system, size, false)
     }
 
     /// Makes `system` `W` among `size` rates.
     fn among(&self, held: &List<usize, NR>, size: usize, system: &mut Square<T, NR>) {
-        if size == self.size {
+        if let Some(weights) = self.weights.as_ref().filter(|_| size == self.size) {
             // All of them.
-            *system = self.weights;
+            *system = *weights;
             return;
         }
-        for (row, i) in system.iter_mut().zip(held.iter()).take(size) {
-            for (entry, j) in row.iter_mut().zip(held.iter()).take(size) {
-                *entry = self.weights[*i][*j];
+        for (k, i) in held.iter().enumerate().take(size) {
+            for (other, j) in held.iter().enumerate().take(k + 1) {
+                let weight = self.weight(*i, *j);
+                (system[k][other], system[other][k]) = (weight, weight);
             }
         }
     }
@@ -245,7 +254,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let Equations { matrix, content } = equations;
         let least = epsilon::<T>().sqrt().sqrt();
         let pivot = |i: usize| matrix.as_ref().map_or(T::zero(), |matrix| matrix[i][i]);
-        let is_small = |i: usize| pivot(i) * self.weights[i][i] * least > T::one();
+        let is_small = |i: usize| pivot(i) * self.weight(i, i) * least > T::one();
         // Forces that move light bodies far cancel each other.
         let cancels = self.rounding(forces) * least > self.speed() * epsilon() * constant(ROUNDINGS);
         *content != Content::Factors || cancels || (0..self.size).any(is_small)
@@ -266,14 +275,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     fn held_system(&self, slips: &Total<bool, NK>, rates: &SVector<T, NR>) -> Square<T, NR> {
         let places = self.places;
         let mut system = square();
-        identify(&mut system, self.size);
+        let _ = identify(&mut system, self.size);
         for k in 0..self.count {
             let (n, tangents) = self.of(k);
             let slip = |i: usize| entry(rates, places[i]);
             let speed = tangents.clone().fold(T::zero(), |sum, i| sum + slip(i) * slip(i)).sqrt();
             for i in self.all_of(k) {
                 if i == n || !slips[k] {
-                    system[i] = self.weights[i];
+                    (0..self.size).for_each(|j| system[i][j] = self.weight(i, j));
                 } else if speed > T::zero() {
                     system[i][n] = self.friction[k] * slip(i) / speed;
                 }
@@ -285,12 +294,12 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// The matrix of [`held_system`](Self::held_system) where rates that depend on each other are told apart
     /// by a little.
     fn lifted(&self, system: &Square<T, NR>, slips: &Total<bool, NK>) -> Square<T, NR> {
-        let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weights[i][i]));
+        let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weight(i, i)));
         let mut system = *system;
         for k in 0..self.count {
             let (n, _) = self.of(k);
             for i in self.all_of(k).filter(|i| *i == n || !slips[k]) {
-                system[i][i] += lift(self.weights[i][i], reach);
+                system[i][i] += lift(self.weight(i, i), reach);
             }
         }
         system
@@ -347,7 +356,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// [`answers`](Self::answers) where nothing slips and the motion tells all rates apart: `−W⁻¹`.
     fn answers_of_independent(&self, slips: &Total<bool, NK>) -> Option<SMatrix<T, NR, NR>> {
         let is_plain = |k: usize| !slips[k] && self.step[k] > T::zero();
-        let mut system = self.weights;
+        let mut system = square();
+        self.among(&List::new(core::array::from_fn(|i| i), 0), self.size, &mut system);
         if !(0..self.count).all(is_plain) || !factorise(&mut system, self.size, false) {
             return None;
         }
@@ -380,6 +390,24 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             }
         }
         Some(all)
+    }
+
+    /// Makes `matrix` `1 + Bᵀ R⁻¹ B`, with the regularisation `R` of rows that may depend on each other.
+    pub(super) fn fill_regularised(&self, matrix: &mut Square<T, NR>) {
+        let mut ends = identify(matrix, self.basis.rank());
+        let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weight(i, i)));
+        for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
+            let (n, _) = self.of(k);
+            let holds = self.friction[k] > T::zero();
+            let mut rows = self.all_of(k).filter(|i| *i == n || holds);
+            let Some(first) = rows.next() else { continue };
+            let mut block = ContactBlock::new(first);
+            rows.for_each(|i| _ = block.push(i..i + 1));
+            for (j, i) in self.all_of(k).filter(|i| *i == n || holds).enumerate() {
+                block.add(j, j, T::one() / lift(self.weight(i, i), reach));
+            }
+            self.basis.add_block(&block, matrix, &mut ends);
+        }
     }
 
     pub(super) fn lift(&self) -> T {
@@ -519,12 +547,4 @@ fn subtract<T: Real, const N: usize>(from: &mut [T; N], factor: T, row: &[T; N])
 /// Zeros.
 pub(super) fn square<T: Real, const NR: usize>() -> Square<T, NR> {
     Square::repeat(List::repeat(T::zero()))
-}
-
-/// Makes the first `size` rows those of the unit matrix.
-pub(super) fn identify<T: Real, const NR: usize>(system: &mut Square<T, NR>, size: usize) {
-    for (i, row) in system.iter_mut().enumerate().take(size) {
-        row.fill(T::zero());
-        row[i] = T::one();
-    }
 }

@@ -7,8 +7,10 @@
 //! motion depends on then stay the same.
 
 use super::super::total::Total;
-use super::basis::{Combination, add_product};
-use super::linear::{eliminate, identify, square};
+use super::banded::{eliminate_banded, identify};
+use super::basis::ContactBlock;
+use super::convex::PARTS;
+use super::linear::square;
 use super::trial::{Mode, Trial};
 use super::{List, Problem, Square};
 use crate::Real;
@@ -25,10 +27,10 @@ const SHORTEST: f64 = 1e-2;
 
 impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// Returns the best impulses that Newton's method finds. A step is halved until the residual falls; if it
-    /// does not, the whole step is taken, a limited number of times.
-    pub(super) fn newton(&self, start: Trial<T, NK, NR>) -> Trial<T, NK, NR> {
-        let (mut trial, mut best, mut rises) = (start, start, 0);
-        let mut matrix = square();
+    /// does not, the whole step is taken, a limited number of times; `matrix` is workspace.
+    pub(super) fn newton(&self, start: Trial<T, NK, NR>, matrix: &mut Square<T, NR>) -> Trial<T, NK, NR> {
+        let (mut best, mut rises) = ((start.left, start.impulses), 0);
+        let mut trial = start;
         for _ in 0..STEPS {
             if self.solves(&trial) {
                 // Sums of changes accumulate rounding errors.
@@ -37,36 +39,39 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                     return trial;
                 }
             }
-            let change = self.newton_step(&trial, &mut matrix);
+            self.count_iteration();
+            let change = self.newton_step(&trial, matrix);
             let rates = self.changes(&change);
             let after = |part: T| {
                 let impulses = moved(&trial.impulses, &change, part);
                 self.tried_with(impulses, moved(&trial.rates, &rates, part))
             };
-            let whole = after(T::one());
-            let (mut next, mut part) = (whole, T::one());
-            while next.left >= trial.left && part > constant(SHORTEST) {
-                part *= constant(0.5);
-                next = after(part);
-            }
-            let falls = next.left < trial.left;
-            if !falls {
-                rises += 1;
-                next = whole;
+            let mut next = after(T::one());
+            let falls = |next: &Trial<T, NK, NR>| next.left < trial.left;
+            if !falls(&next) {
+                let (whole, mut part) = (next, T::one());
+                while next.left >= trial.left && part > constant(SHORTEST) {
+                    part *= constant(0.5);
+                    next = after(part);
+                }
+                if !falls(&next) {
+                    rises += 1;
+                    next = whole;
+                }
             }
             if rises > RISES {
                 break;
             }
             let is_stalled = next.left > trial.left * constant(STALLED);
             trial = next;
-            if trial.left < best.left {
-                best = trial;
+            if trial.left < best.0 {
+                best = (trial.left, trial.impulses);
             }
             if is_stalled && self.is_enough(&trial) {
                 break;
             }
         }
-        self.tried(best.impulses)
+        self.tried(best.1)
     }
 
     /// Returns the result of [`newton`](Self::newton) from impulses that satisfy the contact conditions with
@@ -74,13 +79,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     pub(super) fn follow(&self, start: List<T, NR>, before: &Total<T, NK>) -> Trial<T, NK, NR> {
         let mut trial = self.tried(start);
         trial.modes = self.modes(before, &start, &trial.rates);
-        let change = self.newton_step(&trial, &mut square());
-        self.newton(self.tried(moved(&start, &change, T::one())))
+        let mut matrix = square();
+        let change = self.newton_step(&trial, &mut matrix);
+        self.newton(self.tried(moved(&start, &change, T::one())), &mut matrix)
     }
 
     /// Returns the impulses after one more step, if the smallest normal velocities of pressed contacts are
     /// not yet exact to their own rounding errors.
-    pub(super) fn refined(&self, trial: Trial<T, NK, NR>) -> Trial<T, NK, NR> {
+    pub(super) fn refined(&self, trial: Trial<T, NK, NR>, matrix: &mut Square<T, NR>) -> Trial<T, NK, NR> {
         let Trial { impulses, left, worst, .. } = &trial;
         let half = epsilon::<T>().sqrt();
         let little = half * half.sqrt();
@@ -88,7 +94,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         if pressed.map(|k| self.free[self.of(k).0].abs() * little).all(|most| worst.0 <= most) {
             return trial;
         }
-        let change = self.newton_step(&trial, &mut square());
+        let change = self.newton_step(&trial, matrix);
         let next = self.tried(moved(impulses, &change, T::one()));
         if next.left < *left { next } else { trial }
     }
@@ -96,53 +102,51 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// Returns the change of the impulses in a step; `matrix` is workspace.
     fn newton_step(&self, trial: &Trial<T, NK, NR>, matrix: &mut Square<T, NR>) -> List<T, NR> {
         let constant_part = self.impulse_changes(trial, &List::repeat(T::zero()));
-        let mut change = self.basis.velocity(&constant_part).each(|x| [x]);
-        self.fill_derivative(trial, matrix);
-        eliminate(matrix, &mut change, self.basis.rank());
-        self.impulse_changes(trial, &self.basis.rates(&change.each(|[x]| x)))
+        let mut change = self.basis.velocity(&constant_part);
+        let mut ends = self.fill_derivative(trial, matrix);
+        eliminate_banded(matrix, (&mut change, &mut ends), self.basis.rank());
+        self.impulse_changes(trial, &self.basis.rates(&change))
     }
 
-    /// Makes `matrix` `1 + Bᵀ H B`.
-    fn fill_derivative(&self, trial: &Trial<T, NK, NR>, matrix: &mut Square<T, NR>) {
-        let (one, none) = (T::one(), T::zero());
-        identify(matrix, self.basis.rank());
-        let row = |i: usize| self.basis.row(i);
+    /// Makes `matrix` `1 + Bᵀ H B`, and returns the index behind the last entry of each row.
+    fn fill_derivative(&self, trial: &Trial<T, NK, NR>, matrix: &mut Square<T, NR>) -> List<usize, NR> {
+        let mut ends = identify(matrix, self.basis.rank());
         for k in (0..self.count).filter(|k| self.is_gap(*k)) {
-            let (n, _) = self.of(k);
-            let presses = self.presses(trial, k);
-            // Direction of the normal impulse, and of the friction at its bound.
-            let mut along = Combination::<T, NR>::zero();
-            if presses {
-                along.add(one, row(n));
-            }
-            for part in (k..self.count).filter(|part| self.pressed_by[*part] == k) {
-                let tangents = self.of(part).1;
-                match trial.modes[part].1 {
-                    Mode::Open => {}
-                    Mode::Stick => {
-                        let factor = self.stiffness(part);
-                        tangents.for_each(|i| add_product(matrix, factor, row(i), row(i)));
+            self.basis.add_block(&self.derivative(trial, k), matrix, &mut ends);
+        }
+        ends
+    }
+
+    /// Returns the block of `H` of a contact.
+    fn derivative(&self, trial: &Trial<T, NK, NR>, k: usize) -> ContactBlock<T> {
+        let presses = self.presses(trial, k);
+        let pressed = if presses { self.stiffness(k) } else { T::zero() };
+        let mut block = ContactBlock::new(self.of(k).0);
+        block.add(0, 0, pressed);
+        // Friction moments follow their contact.
+        for part in (k..self.count.min(k + PARTS)).filter(|part| self.pressed_by[*part] == k) {
+            let tangents = self.of(part).1;
+            match trial.modes[part].1 {
+                Mode::Open => {}
+                Mode::Stick => {
+                    let (factor, first) = (self.stiffness(part), block.push(tangents.clone()));
+                    (first..first + tangents.len()).for_each(|i| block.add(i, i, factor));
+                }
+                Mode::Slip { size, direction } => {
+                    let first = block.push(tangents.clone());
+                    // The friction at its bound follows the normal impulse.
+                    for (i, d) in (first..first + tangents.len()).zip(direction) {
+                        block.add(i, 0, pressed * self.friction[part] * d);
                     }
-                    Mode::Slip { size, direction } => {
-                        if presses {
-                            for (i, d) in tangents.clone().zip(direction) {
-                                along.add(self.friction[part] * d, row(i));
-                            }
-                        }
-                        let (bound, factor) = self.across(trial, part, size);
-                        if tangents.len() == 2 && bound > none {
-                            let ([x, y], mut across) = (direction, Combination::<T, NR>::zero());
-                            across.add(-y, row(tangents.start));
-                            across.add(x, row(tangents.start + 1));
-                            add_product(matrix, bound / size * factor, across.row(), across.row());
-                        }
+                    let (bound, factor) = self.across(trial, part, size);
+                    if tangents.len() == 2 && bound > T::zero() {
+                        let [x, y] = direction;
+                        block.add_product(first, bound / size * factor, [-y, x]);
                     }
                 }
             }
-            if presses {
-                add_product(matrix, self.stiffness(k), along.row(), row(n));
-            }
         }
+        block
     }
 
     /// Returns the changes of the impulses in a step that changes the contact velocities by `rates`.

@@ -1,7 +1,7 @@
 //! Search for impulses that satisfy the conditions of all contacts.
 
 use super::super::total::Total;
-use super::linear::Equations;
+use super::linear::{Equations, square};
 use super::trial::Trial;
 use super::{List, Problem};
 use crate::Real;
@@ -134,18 +134,19 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             return start;
         }
         self.prepare_basis();
-        let found = self.newton(start);
+        let matrix = equations.workspace();
+        let found = self.newton(start, matrix);
         if self.solves(&found) || self.is_enough(&found) {
             // Compared with fast slip, residuals of slow normal velocities are small.
-            return self.refined(found);
+            return self.refined(found, matrix);
         }
-        let convex = self.by_convex_problems(&start.impulses);
+        let convex = self.by_convex_problems(&start.impulses, matrix);
         if self.solves(&convex) || self.is_enough(&convex) {
             return convex;
         }
-        let found = self.newton(convex);
+        let found = self.newton(convex, matrix);
         match found.worst.0 < convex.worst.0 {
-            true => self.refined(found),
+            true => self.refined(found, matrix),
             false => convex,
         }
     }
@@ -228,7 +229,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         // With strong friction, only the set of closed contacts is unknown.
         for kept in 0_u32..1 << self.count.min(GUESSED) {
             let start = self.together(&self.those(|k| k >= GUESSED || kept >> k & 1 == 1));
-            let guess = self.newton(self.tried(start));
+            let guess = self.newton(self.tried(start), &mut square());
             if self.solves(&guess) {
                 return guess.impulses;
             }
@@ -296,7 +297,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// Newton's method with steps of the map by this factor.
     fn newton_scaled(&mut self, impulses: List<T, NR>, scale: f64) -> Trial<T, NK, NR> {
         self.scale = constant(scale);
-        let found = self.newton(self.tried(impulses)).impulses;
+        let found = self.newton(self.tried(impulses), &mut square()).impulses;
         self.scale = T::one();
         self.tried(found)
     }
@@ -343,7 +344,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         for one in 0..self.count {
             for other in one..self.count {
                 let start = self.together(&self.those(|k| k == one || k == other));
-                let found = self.newton(self.tried(start));
+                let found = self.newton(self.tried(start), &mut square());
                 if !self.solves(&found) {
                     continue;
                 }
@@ -369,7 +370,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 (0..self.count).fold(T::zero(), |sum, other| {
                     let part = |columns: Range<usize>| {
                         let square = rows.clone().fold(T::zero(), |sum, i| {
-                            columns.clone().fold(sum, |sum, j| sum + self.weights[i][j] * self.weights[i][j])
+                            columns.clone().fold(sum, |sum, j| sum + self.weight(i, j) * self.weight(i, j))
                         });
                         square.sqrt()
                     };

@@ -1,7 +1,8 @@
 //! Contact forces that rotate in a step: corrections that make the impulses of a step of second order.
 
-use super::super::Responses;
-use super::linear::Equations;
+use super::super::response::{Effects, Factor};
+use super::convex::{cholesky, substitute};
+use super::linear::{Equations, square};
 use super::{List, Problem, entry};
 use crate::Real;
 use crate::private::constant;
@@ -23,34 +24,46 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// conditions. If `Λ₀` is not unique, it is the impulses `recorded` in the previous step, with the
     /// smallest change that gives `rates`.
     ///
-    /// Returns impulses at the end of the step that change the rates as much as `Λ₀`, and the correction.
+    /// Returns impulses at the end of the step that change the rates as much as `Λ₀`, and the correction. If
+    /// the search has other impulses to begin at, they may be left out.
     pub(in super::super) fn transport<const NV: usize>(
         &mut self,
         given: &SVector<T, NV>,
         (rates, recorded): (&SVector<T, NR>, Option<&List<T, NR>>),
-        responses: &Responses<T, NV, NR>,
+        effects: &Effects<T, NV, NR>,
         equations: &mut Equations<T, NR>,
-    ) -> (List<T, NR>, SVector<T, NV>) {
+    ) -> (Option<List<T, NR>>, SVector<T, NV>) {
         let half = constant::<T>(0.5);
-        let (impulses, is_regular) = self.impulses_for(rates, equations);
-        let mut correction = (given - responses.velocities * self.scatter(&impulses)) * half;
-        let mut changes = List::<T, NR>::repeat(T::zero());
-        if !is_regular {
-            let changed = self.changes(&impulses);
-            for i in 0..self.size {
-                changes[i] = (entry(rates, self.places[i]) - changed[i]) * half;
+        let mut impulses = None;
+        let sliding = recorded.filter(|recorded| self.slip_correction(recorded, rates).is_some());
+        let is_redundant = self.size > self.basis.rank();
+        let (mut correction, changes) = match effects {
+            Effects::Factor(factor) if recorded.is_some() && sliding.is_none() && is_redundant => {
+                self.unreached(given, factor)
             }
-        }
-        let at_start = if is_regular {
-            Some(impulses)
-        } else {
-            let recorded = recorded.filter(|recorded| self.slip_correction(recorded, rates).is_some());
-            recorded.map(|recorded| self.nearest(recorded, rates, equations))
+            _ => {
+                let (found, is_regular) = self.impulses_for(rates, equations);
+                impulses = Some(found);
+                let velocity = |impulses| effects.velocity(&self.basis, &self.scatter(impulses));
+                let mut correction = (given - velocity(&found)) * half;
+                let mut changes = List::<T, NR>::repeat(T::zero());
+                if !is_regular {
+                    let changed = self.changes(&found);
+                    for i in 0..self.size {
+                        changes[i] = (entry(rates, self.places[i]) - changed[i]) * half;
+                    }
+                }
+                let at_start = match is_regular {
+                    true => Some(found),
+                    false => sliding.map(|recorded| self.nearest(recorded, rates, equations)),
+                };
+                if let Some(turned) = at_start.and_then(|at_start| self.slip_correction(&at_start, rates)) {
+                    correction += velocity(&turned);
+                    changes = self.added(changes, &turned);
+                }
+                (correction, changes)
+            }
         };
-        if let Some(turned) = at_start.and_then(|at_start| self.slip_correction(&at_start, rates)) {
-            correction += responses.velocities * self.scatter(&turned);
-            changes = self.added(changes, &turned);
-        }
         let size = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
         if size(&correction) <= size(given) * constant(LARGEST) {
             for i in 0..self.size {
@@ -61,6 +74,30 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             correction = SVector::zeros();
         }
         (impulses, correction)
+    }
+
+    /// Returns half of the part of a velocity that no impulses cause, and the contact velocities of this
+    /// half.
+    ///
+    /// With `w = Lᵀ v`, what two passes of a regularised least-squares problem leave of it is
+    /// `(1 + Bᵀ R⁻¹ B)⁻² w`, with the small regularisation `R` of dependent rows.
+    fn unreached<const NV: usize>(
+        &self,
+        v: &SVector<T, NV>,
+        factor: &Factor<T, NV>,
+    ) -> (SVector<T, NV>, List<T, NR>) {
+        let (rank, half) = (self.basis.rank(), constant::<T>(0.5));
+        let mut matrix = square();
+        self.fill_regularised(&mut matrix);
+        cholesky(&mut matrix, rank);
+        let mut all = factor.multiply_upper(&v.data.0[0]);
+        let mut rest = self.basis.gather(&all);
+        substitute(&matrix, rank, &mut rest);
+        substitute(&matrix, rank, &mut rest);
+        rest.iter_mut().take(rank).for_each(|x| *x *= half);
+        all.iter_mut().for_each(|x| *x *= half);
+        self.basis.scatter(&rest, &mut all);
+        (SVector::from(factor.solve_upper(all)), self.basis.rates(&rest))
     }
 
     /// Returns impulses near others that change the rates of the mechanism by `rates`.

@@ -1,0 +1,122 @@
+//! Contact velocities in one configuration.
+
+use super::problem::{entry, put};
+use super::selection::{FEW, Selection};
+use super::{Contacts, Rows};
+use crate::Real;
+use core::cell::OnceCell;
+use nalgebra::{SMatrix, SVector};
+
+/// Contact velocities of a mechanism in one configuration, as linear functions of its velocity. Mechanisms
+/// with many contacts evaluate the Jacobian once, and with it only the contact velocities that are needed.
+pub(super) struct ContactVelocities<'a, M, T, const NQ: usize, const NV: usize, const NR: usize> {
+    mechanism: &'a M,
+    t: T,
+    q: &'a SVector<T, NQ>,
+    jacobian: OnceCell<SMatrix<T, NR, NV>>,
+    /// Contact velocities of the mechanism at rest, which prescribed motions cause.
+    drift: OnceCell<SVector<T, NR>>,
+}
+
+impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
+    ContactVelocities<'a, M, T, NQ, NV, NR>
+{
+    /// Returns the contact velocities in a configuration.
+    pub(super) fn at(mechanism: &'a M, t: T, q: &'a SVector<T, NQ>) -> Self {
+        Self { mechanism, t, q, jacobian: OnceCell::new(), drift: OnceCell::new() }
+    }
+
+    /// Returns the Jacobian of all contacts.
+    pub(super) fn jacobian<const NU: usize, const NK: usize>(&self) -> &SMatrix<T, NR, NV>
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        self.jacobian.get_or_init(|| self.mechanism.contact_jacobian(self.t, self.q))
+    }
+
+    /// Returns the contact velocities at rest; `None` if no prescribed motion may cause any.
+    fn drift<const NU: usize, const NK: usize>(&self) -> Option<&SVector<T, NR>>
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        let drift = || self.mechanism.contact_rates(self.t, self.q, &SVector::zeros());
+        self.mechanism.contacts_drift().then(|| self.drift.get_or_init(drift))
+    }
+
+    /// Whether prescribed motions cause contact velocities.
+    pub(super) fn is_driven<const NU: usize, const NK: usize>(&self) -> bool
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        self.drift().is_some_and(|drift| drift.iter().any(|rate| *rate != T::zero()))
+    }
+
+    /// Returns a function of the contact velocities for a velocity, which takes a contact and one of its
+    /// rows.
+    pub(super) fn of<const NU: usize, const NK: usize>(
+        &self,
+        v: &SVector<T, NV>,
+    ) -> impl Fn(usize, usize) -> T
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        let all = (NR <= FEW).then(|| self.mechanism.contact_rates(self.t, self.q, v));
+        let drift = if NR <= FEW { None } else { self.drift() };
+        let change = self.changes_from_jacobian(v);
+        move |k, row| match (&all, drift) {
+            (Some(all), _) => entry(all, row),
+            (None, Some(drift)) => change(k, row) + entry(drift, row),
+            (None, None) => change(k, row),
+        }
+    }
+
+    /// Returns a function of the changes of the contact velocities for a change of the velocity, which takes
+    /// a contact and one of its rows.
+    pub(super) fn changes<const NU: usize, const NK: usize>(
+        &self,
+        change: &SVector<T, NV>,
+    ) -> impl Fn(usize, usize) -> T
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        let all = (NR <= FEW).then(|| {
+            let rates = |v| self.mechanism.contact_rates(self.t, self.q, v);
+            match self.drift() {
+                Some(drift) => rates(change) - drift,
+                None => rates(change),
+            }
+        });
+        let change = self.changes_from_jacobian(change);
+        move |k, row| all.as_ref().map_or_else(|| change(k, row), |all| entry(all, row))
+    }
+
+    /// [`changes`](Self::changes) from the Jacobian, which the first call of the function evaluates.
+    fn changes_from_jacobian<const NU: usize, const NK: usize>(
+        &self,
+        change: &SVector<T, NV>,
+    ) -> impl Fn(usize, usize) -> T
+    where
+        M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
+    {
+        let columns = self.mechanism.contact_columns();
+        move |k, row| {
+            let (first, last) = columns.get(k).copied().unwrap_or((0, NV));
+            let terms = self.jacobian().data.0.iter().zip(&change.data.0[0]).take(last).skip(first);
+            terms.fold(T::zero(), |sum, (column, v)| sum + column.get(row).copied().unwrap_or(T::zero()) * *v)
+        }
+    }
+
+    /// Returns values of a function of contacts and rows for selected contacts.
+    pub(super) fn select<const CK: usize, const CR: usize>(
+        selection: &Selection<CK, CR>,
+        rate: impl Fn(usize, usize) -> T,
+    ) -> SVector<T, CR> {
+        let (layout, mut rates) = (selection.layout(), SVector::zeros());
+        for k in 0..selection.count() {
+            let Rows { first, count } = layout.rows(k);
+            (first..first + count)
+                .for_each(|i| put(&mut rates, i, rate(selection.contact(k), selection.row(i))));
+        }
+        rates
+    }
+}
