@@ -133,7 +133,7 @@ pub fn any_turn(random: &mut Random) -> UnitQuaternion<f64> {
 }
 
 /// Returns the position on the line from `far` to the origin at which the minimum of the gaps is `wanted`.
-fn position_with_gap(gap: impl Fn(Vector3<f64>) -> f64, far: Vector3<f64>, wanted: f64) -> Vector3<f64> {
+pub fn position_with_gap(gap: impl Fn(Vector3<f64>) -> f64, far: Vector3<f64>, wanted: f64) -> Vector3<f64> {
     let mut steps = (0..=200).map(|k| 1.0 - f64::from(k) / 200.0);
     let mut inside = steps.find(|part| gap(far * *part) <= wanted).expect("surfaces meet");
     let mut out = inside + 1.0 / 200.0;

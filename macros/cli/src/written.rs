@@ -42,6 +42,7 @@ fn spell_expression(e: &Expr, role: Role, rename: &dyn Fn(&str, Role) -> Option<
         |all: &[Expr]| all.iter().map(spell_in_body_role).collect::<Vec<_>>().join(", ");
     match &e.kind {
         ExprKind::Number(x) => format_number(*x),
+        ExprKind::Text(text) => format!("{text:?}"),
         ExprKind::Name(name) => rename(name, role).unwrap_or_else(|| name.clone()),
         ExprKind::Field(of, name) => format!("{}.{}", spell_in_body_role(of), name.text),
         ExprKind::Method(of, name, arguments) => {

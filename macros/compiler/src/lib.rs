@@ -9,6 +9,7 @@ pub mod emit;
 pub mod equations;
 pub mod export;
 pub mod expr;
+mod hull;
 pub mod import;
 pub mod kinematics;
 pub mod language;

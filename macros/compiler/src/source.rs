@@ -41,6 +41,7 @@ pub fn read_source(
             merge_imported_file(&mut mechanism, imported, cx);
         }
     }
+    files.extend(import::read_hulls(&mut mechanism.description, folder, cx));
     Some(Source { mechanism, files, imported: cx.len() == before })
 }
 

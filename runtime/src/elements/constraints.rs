@@ -109,10 +109,16 @@ pub enum Slipping {}
 /// | a point, `sphere(radius)` | `plane(normal)`, `sphere(radius)`, `capsule(radius, length, axis)`, `cylinder(radius, axis)`, `cone(half_angle, axis)`; inside of `bowl(radius)`, `tube(radius, axis)`, `funnel(half_angle, axis)` |
 /// | `capsule(radius, length, axis)`: two points, at its ends; `length` is between the centres of these | `plane(normal)` |
 /// | `capsule(radius, length, axis)`: one point, where the axes are nearest | `capsule(radius, length, axis)` |
-/// | `sphere(radius)` with its centre outside | `cuboid(a, b, c)`, `cylinder(radius, length, axis)` |
+/// | `sphere(radius)` with its centre outside | `cuboid(a, b, c)` |
+/// | `sphere(radius)` | `cylinder(radius, length, axis)`, `hull(points)` whose points are numbers |
 /// | `cuboid(a, b, c)`, a box with these lengths along the body's axes: eight points, its corners | `plane(normal)` |
 /// | `cuboid(a, b, c)`: thirteen points, of faces that look at each other where edges begin and end or are cut off, and of two edges that cross | `cuboid(a, b, c)` |
 /// | `capsule(radius, length, axis)`: five points, the ends, where the sides of a face cut it off, and where it crosses an edge | `cuboid(a, b, c)` |
+/// | `capsule(…)`: the ends, and the point nearest to the other axis | `cylinder(radius, axis)` |
+/// | `capsule(…)`: five points of its axis | `cylinder(radius, length, axis)` |
+/// | `cuboid(a, b, c)`: three points of a face and an edge | `cylinder(radius, axis)` |
+/// | `cuboid(a, b, c)`: sixteen points of the rim and of edges | `cylinder(radius, length, axis)` |
+/// | `hull(points)` or `hull("foot.stl")`, a convex hull: its vertices | `plane(normal)`, `terrain(height)` |
 /// | `cylinder(radius, length, axis)`, with two ends: eight points, of each rim the lowest and those a quarter turn away, which move as the points of the body that are there | `plane(normal)` |
 /// | `circle(radius, axis)`, `torus(radius, tube_radius, axis)`, `ellipsoid(a, b, c)` | `plane(normal)` |
 /// | a point, `sphere(radius)`, the ends of a `capsule(…)`, the corners of a `cuboid(…)` | `terrain(height)` |
@@ -131,9 +137,15 @@ pub enum Slipping {}
 /// A plane bounds a half space; a cylinder without a length, a tube and a cone are unbounded. The contact
 /// point of a circle or a torus that lies flat on a plane is at its centre.
 ///
-/// `foot.collision()` is all collision geometry of the link `foot` in the URDF file: spheres, boxes,
-/// cylinders and capsules. `collision()` is that of every link: `#[contact(collision(), ground.plane(z),
-/// friction = 0.8)]`. Meshes are an error; replace them by explicit surfaces.
+/// The points of a hull are in the axes of the body, and not in one plane. A hull has from 4 to 32 vertices.
+/// That of a mesh, an STL, OBJ or MSH file, has at most 32 vertices of the mesh. If the mesh has more, the
+/// points farthest outside are used; the documentation of the mechanism states the largest distance of the
+/// mesh from the hull. It is an error if this distance is larger than a tenth of the size. Points that depend
+/// on parameters are all used.
+///
+/// `foot.collision()` is all collision geometry of the link `foot` in the file: spheres, boxes, cylinders,
+/// capsules, and meshes as their hulls. `collision()` is that of every link: `#[contact(collision(),
+/// ground.plane(z), friction = 0.8)]`.
 ///
 /// `friction`, the coefficient of Coulomb friction, and `restitution`, the ratio of the separation velocity
 /// to the approach velocity, are zero by default, and may be expressions of parameters. `restitution =

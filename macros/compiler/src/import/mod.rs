@@ -13,7 +13,9 @@ use std::path::Path;
 mod context;
 mod element;
 mod file;
+mod hulls;
 mod imported;
+mod mesh;
 mod misplaced;
 mod mjcf;
 mod pose;
@@ -27,6 +29,7 @@ mod xml;
 mod tests;
 
 pub use file::{LARGEST_FILE, read_file, with_plain_blanks};
+pub use hulls::read_hulls;
 pub use imported::Imported;
 
 /// Reads the text of a file. Paths of other files are relative to the folder of the file, which is
@@ -46,15 +49,15 @@ pub fn import_file(
     }
     let text = &*xml::clean_xml_text(text);
     match options.format {
-        FileFormat::Urdf => import_urdf(text, options, cx),
+        FileFormat::Urdf => import_urdf(text, &folder.join(&options.path.text), options, cx),
         FileFormat::Mjcf => mjcf::import(text, &folder.join(&options.path.text), options, cx),
         FileFormat::Sdf => sdf::import_sdf(text, &folder.join(&options.path.text), options, cx),
     }
 }
 
-fn import_urdf(text: &str, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
+fn import_urdf(text: &str, path: &Path, options: &FileOptions, cx: &mut Diagnostics) -> Option<Imported> {
     let cx = &mut context::Cx::new(text, &options.path, cx);
     let declared = OnceCell::new();
     let document = xml::parse(text, &declared, options.format, cx)?;
-    urdf::read_root_element(document.root_element(), options, cx)
+    urdf::read_root_element(document.root_element(), path.parent().unwrap_or(path), options, cx)
 }

@@ -34,6 +34,8 @@ pub enum ArgumentKind {
     Coordinate,
     /// A height, m, as an expression of the horizontal coordinates `u`, `w`.
     Height,
+    /// A list of points in body axes, m, or the path of a mesh.
+    Points,
 }
 
 impl Argument {
@@ -72,7 +74,7 @@ impl ArgumentKind {
             ArgumentKind::Inertia => Some((INERTIA, "kg·m²")),
             ArgumentKind::Angle | ArgumentKind::HalfAngle => Some((PLAIN, "rad")),
             ArgumentKind::Number | ArgumentKind::Direction => Some((PLAIN, "1")),
-            ArgumentKind::Vector | ArgumentKind::Coordinate => None,
+            ArgumentKind::Vector | ArgumentKind::Coordinate | ArgumentKind::Points => None,
         }
     }
 }

@@ -2,7 +2,7 @@
 //! supported.
 
 use super::{Argument, ArgumentKind};
-use SurfaceId::{Capsule, Circle, Cone, Cuboid, Drum, Ellipsoid, Sphere, Torus};
+use SurfaceId::{Capsule, Circle, Cone, Cuboid, Cylinder, Drum, Ellipsoid, Hull, Sphere, Torus};
 
 /// A row of the table of surfaces.
 #[derive(Debug)]
@@ -30,8 +30,9 @@ const ON_PLANE: &[Option<SurfaceId>] = &[
     Some(Capsule),
     Some(Cuboid),
     Some(Drum),
+    Some(Hull),
 ];
-const ON_TERRAIN: &[Option<SurfaceId>] = &[None, Some(Sphere), Some(Capsule), Some(Cuboid)];
+const ON_TERRAIN: &[Option<SurfaceId>] = &[None, Some(Sphere), Some(Capsule), Some(Cuboid), Some(Hull)];
 
 const RADIUS: Argument = Argument::length("radius");
 const LENGTH: Argument = Argument::length("length");
@@ -65,9 +66,9 @@ table! {
         /// The inside of a sphere.
         Bowl = surface_row("bowl", &[RADIUS], ROUND, &[Sphere]);
         /// The outside of an infinitely long cylinder.
-        Cylinder = surface_row("cylinder", &[RADIUS, AXIS], ROUND, &[Sphere]);
+        Cylinder = surface_row("cylinder", &[RADIUS, AXIS], &[None, Some(Sphere), Some(Capsule)], &[Sphere]);
         /// A cylinder with two ends.
-        Drum = surface_row("cylinder", &[RADIUS, LENGTH, AXIS], &[Some(Sphere)], &[]);
+        Drum = surface_row("cylinder", &[RADIUS, LENGTH, AXIS], &[Some(Sphere), Some(Capsule)], &[]);
         /// The inside of a cylinder.
         Tube = surface_row("tube", &[RADIUS, AXIS], ROUND, &[Sphere]);
         /// The outside of a cone, with the axis from the apex into the cone.
@@ -82,9 +83,12 @@ table! {
         /// A height over x and y, as an expression of the horizontal coordinates `u`, `w`.
         Terrain = surface_row("terrain", &[Argument::new("height", ArgumentKind::Height)], ON_TERRAIN, &[]);
         /// A box, by its edges.
-        Cuboid = surface_row("cuboid", AXES, &[Some(Sphere), Some(Capsule), Some(Cuboid)], &[]);
+        Cuboid = surface_row("cuboid", AXES,
+            &[Some(Sphere), Some(Capsule), Some(Cuboid), Some(Cylinder), Some(Drum)], &[]);
         /// A cylinder between two hemispheres, by radius and distance of their centres.
         Capsule = surface_row("capsule", &[RADIUS, LENGTH, AXIS], &[None, Some(Sphere), Some(Capsule)], &[]);
+        /// The convex hull of points.
+        Hull = surface_row("hull", &[Argument::new("points", ArgumentKind::Points)], &[Some(Sphere)], &[]);
     }
 }
 

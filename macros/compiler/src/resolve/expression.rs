@@ -149,6 +149,10 @@ impl<'a, 'g> Scope<'a, 'g> {
                 .add_help(VECTOR_SYNTAX);
                 None
             }
+            ExprKind::Text(_) => {
+                cx.report_error(e.place.clone(), "expected a scalar or a vector, found a path");
+                None
+            }
             ExprKind::Tuple(items) => {
                 let error = cx.report_error(e.place.clone(), "expected a scalar or a vector, found a list");
                 match items.as_slice() {

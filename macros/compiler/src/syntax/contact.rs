@@ -2,13 +2,16 @@
 
 use super::arguments::Arguments;
 use super::keys::{Keys, check_relations};
-use super::{Contact, Description, Expr, ExprKind, Name};
+use super::{Collision, Contact, Description, Expr, ExprKind, Name};
 use crate::diag::Diagnostics;
 use crate::language::{Callable, Method, OtherKind};
 
 /// Syntax of a contact of a file's links.
 pub const CONTACT_HELP: &str =
     "declare a field for it: `#[contact(collision(), ground.plane(z), friction = 0.8)] floor: Contact`";
+
+/// Maximum number of contact points of a mechanism: the generated code grows with their number.
+pub const MAX_CONTACT_POINTS: usize = 128;
 
 /// Reads the declaration of a unilateral contact.
 pub fn read_contact(
@@ -58,6 +61,22 @@ pub fn collision_link(surface: &Expr) -> Option<Option<&Expr>> {
         }
         _ => None,
     }
+}
+
+/// Returns the indices of the shapes that `link.collision()`, `link.collision(2)` or `collision()` denotes;
+/// `None` for other surfaces.
+pub fn select_collisions(surface: &Expr, all: &[Collision]) -> Option<Vec<usize>> {
+    let link = collision_link(surface)?.and_then(Expr::as_name);
+    let of_link = |part: &Collision| link.is_none_or(|name| part.on.body.text == name);
+    let parts = (0..all.len()).filter(|k| of_link(&all[*k]));
+    let index = match &surface.kind {
+        ExprKind::Method(_, _, arguments) => arguments.first().and_then(Expr::literal_number),
+        _ => None,
+    };
+    Some(match index {
+        Some(index) => parts.skip(index as usize).take(1).collect(),
+        None => parts.collect(),
+    })
 }
 
 impl Contact {

@@ -3,11 +3,13 @@
 
 use super::{BinaryOp, Callee, Expr, ExprKind, Member, Name, guard};
 use crate::diag::{Place, syn_error};
+use crate::language::SurfaceId;
 use crate::language::callable::IF;
 use proc_macro2::{Span, TokenTree};
 use syn::ext::IdentExt;
+use syn::parse::discouraged::Speculative;
 use syn::parse::{ParseStream, Parser};
-use syn::{Ident, Lit, Token, braced, bracketed, parenthesized, token};
+use syn::{Ident, Lit, LitStr, Token, braced, bracketed, parenthesized, token};
 
 /// Maximum length of a chain of operators or members.
 const MAX_LENGTH: usize = 400;
@@ -153,7 +155,10 @@ fn parse_postfix(input: ParseStream<'_>) -> syn::Result<Parsed> {
         let member = parse_name(input)?;
         let size = inner.1.size_of_longer_chain();
         inner = if input.peek(token::Paren) {
-            let (arguments, arguments_size, close) = parse_arguments(input)?;
+            let (arguments, arguments_size, close) = match member.text == SurfaceId::Hull.name() {
+                true => parse_hull(input)?,
+                false => parse_arguments(input)?,
+            };
             let place = inner.0.place.extend_to(&close.into());
             check_expression_size(
                 ExprKind::Method(Box::new(inner.0), Member::new(member, arguments.len()), arguments),
@@ -403,6 +408,23 @@ fn parse_arguments(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, Span
     let close = parenthesized!(content in input).span.close();
     let (items, size, _) = parse_list(&content)?;
     Ok((items, size, close))
+}
+
+/// Parses the arguments of `hull(points)` or `hull("path")` with their size, and the closing parenthesis.
+fn parse_hull(input: ParseStream<'_>) -> syn::Result<(Vec<Expr>, Size, Span)> {
+    let ahead = input.fork();
+    let content;
+    let close = parenthesized!(content in ahead).span.close();
+    if !content.peek(LitStr) {
+        return parse_arguments(input);
+    }
+    let path: LitStr = content.parse()?;
+    if !content.is_empty() {
+        return Err(unexpected_token_error(&content));
+    }
+    input.advance_to(&ahead);
+    let path = Expr { kind: ExprKind::Text(path.value()), place: path.span().into() };
+    Ok((vec![path], Size::ONE, close))
 }
 
 /// Parses comma-separated expressions to the end; returns their common size, and whether the last one is

@@ -35,8 +35,8 @@ pub use attribute::parse_mechanism;
 pub use description::{
     Action, Base, BinaryOp, Body, Callee, Collision, Constraint, ConstraintKind, Contact, Definition,
     Description, Drive, DriveLaw, DriveOn, DriveQuantity, Endpoint, Equilibrium, Expr, ExprKind, Formulation,
-    Frame, FreeCoordinate, Inertias, Joint, Limit, Member, Mesh, Mimic, Name, Particle, Point, Rank,
-    ScalarType, Shape, Table, Target, Term, Visual, Wrench, WrittenArguments, restitution_coefficient,
+    Frame, FreeCoordinate, Inertias, Joint, Limit, Member, Mesh, MeshVertices, Mimic, Name, Particle, Point,
+    Rank, ScalarType, Shape, Table, Target, Term, Visual, Wrench, WrittenArguments, restitution_coefficient,
 };
 pub use duplicate::second_definition;
 pub use mechanism::{

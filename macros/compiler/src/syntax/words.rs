@@ -243,6 +243,7 @@ fn expression_text(e: &Expr) -> String {
         }
         ExprKind::Tuple(items) => format!("({})", spell_list(items)),
         ExprKind::Array(items) => format!("[{}]", spell_list(items)),
+        ExprKind::Text(text) => format!("{text:?}"),
     }
 }
 

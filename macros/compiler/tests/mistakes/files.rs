@@ -132,15 +132,31 @@ fn collision_geometry_is_read_when_it_is_named() {
     let cases = [
         ("<sphere radius=\"0.1\"/>", "foot", ""),
         ("<sphere radius=\"0.1\"/>", "", ""),
-        ("<mesh filename=\"foot.stl\"/>", "", "the collision geometry of `foot` is a mesh"),
+        ("<mesh filename=\"foot.stl\"/>", "", "cannot read the mesh `foot.stl`: "),
         ("<sphere radius=\"0\"/>", "foot", "this length must be positive, but it is 0"),
         ("<box size=\"1 2\"/>", "foot", "expected 3 numbers in `size`, found `1 2`"),
         ("<cylinder radius=\"1\"/>", "foot", "`<cylinder>` without `length`"),
         ("<cone radius=\"1\"/>", "foot", "collision geometry without a supported shape"),
-        ("<mesh filename=\"foot.stl\"/>", "foot", "the collision geometry of `foot` is a mesh"),
+        (
+            "<mesh filename=\"shapes/foot.dae\"/>",
+            "foot",
+            "mesh `shapes/foot.dae` has an unsupported format: expected `.stl`, ",
+        ),
+        (
+            "<mesh filename=\"shapes/flat.obj\"/>",
+            "foot",
+            "mesh `shapes/flat.obj` has no convex hull: its vertices ",
+        ),
+        ("<mesh filename=\"shapes/flat.obj\"/>", "hand", "`hand` has no collision geometry"),
+        ("<mesh filename=\"package://r/shapes/foot.obj\" scale=\"1 1 2\"/>", "foot", ""),
         ("<sphere radius=\"0.1\"/>", "hand", "`hand` has no collision geometry"),
         ("<sphere radius=\"0.1\"/>", "food", "unknown point `food`"),
     ];
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("shapes");
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join("foot.dae"), "<COLLADA/>").unwrap();
+    fs::write(folder.join("flat.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n").unwrap();
+    fs::write(folder.join("foot.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n").unwrap();
     for (k, (inside, link, message)) in cases.into_iter().enumerate() {
         let name = format!("shapes{k}.urdf");
         fs::write(Path::new(env!("CARGO_TARGET_TMPDIR")).join(&name), robot_with(inside)).unwrap();

@@ -16,6 +16,7 @@ fn surface_text(body: &str, surface: Option<SurfaceId>) -> String {
         (ArgumentKind::HalfAngle, _) => "0.6".to_string(),
         (ArgumentKind::Height, _) => "0.1 * sin(3 * u)".to_string(),
         (ArgumentKind::Coordinate, _) => argument.name.to_string(),
+        (ArgumentKind::Points, _) => "[x, y, z, 0 * x]".to_string(),
         (_, SurfaceId::Sheet) => "[u, w, u * w]".to_string(),
         _ => "0.1".to_string(),
     });

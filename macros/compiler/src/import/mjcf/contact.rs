@@ -28,21 +28,26 @@ impl<'a> Reader<'a> {
             }
             let Some((kind, pose)) = self.collision(shape, cx) else { continue };
             let at = element_position(shape.node, cx);
-            self.add_touching(link, shape, kind, cx);
-            let part =
-                FileCollision { origin: origin(&outer.compose_with(&pose), &at), shape: kind, place: at };
+            let mesh = match kind {
+                Shape::Mesh if is_mesh(shape) => self.meshes.vertices(shape, cx),
+                _ => None,
+            };
+            let is_known = kind != Shape::Mesh || mesh.is_some();
+            self.add_touching(link, shape, is_known, cx);
+            let origin = origin(&outer.compose_with(&pose), &at);
+            let part = FileCollision { origin, shape: kind, mesh, place: at };
             self.robot.collisions.push((link, part));
         }
     }
 
-    /// Records a shape for contacts with the planes of the world. Meshes have no known contact points and are
+    /// Records a shape for contacts with the planes of the world. Shapes without known contact points are
     /// only counted.
-    fn add_touching(&mut self, link: usize, shape: &Element<'a>, kind: Shape, cx: &mut Cx<'_>) {
+    fn add_touching(&mut self, link: usize, shape: &Element<'a>, is_known: bool, cx: &mut Cx<'_>) {
         if !self.options.contacts {
             return;
         }
-        if kind == Shape::Mesh {
-            self.count("meshes, for contact", 1);
+        if !is_known {
+            self.count("shapes fitted to meshes and generated meshes, for contact", 1);
             return;
         }
         let number = self.robot.collisions.iter().filter(|(known, _)| *known == link).count();
@@ -105,9 +110,9 @@ impl<'a> Reader<'a> {
                 "no body of the file has a shape that can touch a plane of its world",
                 |d| {
                     d.add_help(
-                        "meshes have no contacts, nor do shapes excluded by `contype` and `conaffinity`",
-                    )
-                    .add_help("to ignore the contacts of the file, remove `contacts = file`")
+                    "shapes excluded by `contype` and `conaffinity`, or fitted to meshes, have no contacts",
+                )
+                .add_help("to ignore the contacts of the file, remove `contacts = file`")
                 },
             );
         }
@@ -121,7 +126,11 @@ impl<'a> Reader<'a> {
     ) -> Option<(Shape, Pose)> {
         let kind = shape.text("type").unwrap_or("sphere");
         if kind == "mesh" || shape.node_with("mesh").is_some() {
-            return Some((Shape::Mesh, Pose::ZERO));
+            let pose = match is_mesh(shape) {
+                true => super::frame::read_pose(shape, &self.settings, cx),
+                false => Pose::ZERO,
+            };
+            return Some((Shape::Mesh, pose));
         }
         let (pose, [x, y, z]) = super::geometry::dimensions(kind, shape, &self.settings, cx)?;
         let shape = match kind {
@@ -133,4 +142,9 @@ impl<'a> Reader<'a> {
         };
         Some((shape, pose))
     }
+}
+
+/// Whether a shape is a mesh, and not another shape that is fitted to a mesh.
+fn is_mesh(shape: &Element<'_>) -> bool {
+    shape.text("type") == Some("mesh")
 }

@@ -10,22 +10,16 @@ use super::geometry::Mass;
 use super::settings::Settings;
 use crate::import::context::{Cx, quote_word};
 use crate::import::element::{Node, child_elements, element_position, read_name_attribute};
+use crate::import::mesh::{self, Triangle};
 use crate::import::pose::{
     Matrix, Vector, add, cross, dot, length, matrix_times_vector, of_quaternion, scale_vector, transpose,
 };
-use crate::syntax::{Mesh, Name};
+use crate::syntax::{Mesh, MeshVertices, Name};
 use std::collections::BTreeMap;
-use std::fs;
-use std::io::Read;
 use std::path::{Path, PathBuf};
-
-/// Largest size of a mesh file, bytes.
-const LARGEST: u64 = 64 << 20;
 
 /// Areas and volumes below this value are treated as zero.
 const NOTHING: f64 = 1e-15;
-
-type Triangle = [Vector; 3];
 
 /// Meshes of a file. A mesh is read only if its mass properties are needed.
 pub(super) struct Meshes<'a> {
@@ -69,6 +63,17 @@ impl<'a> Meshes<'a> {
 
     /// Returns the mass properties at density 1 of a mesh shape, in the axes of the mesh file.
     pub(super) fn of_shape(&mut self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<Mass> {
+        let (mesh, element) = self.element(shape, cx)?;
+        if let Some(known) = self.read.get(&mesh) {
+            return *known;
+        }
+        let found = self.mass(&element, cx);
+        self.read.insert(mesh, found);
+        found
+    }
+
+    /// Returns the name of a shape's mesh, and the mesh.
+    fn element(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<(String, Element<'a>)> {
         let Some(mesh) = shape.name("mesh", cx) else {
             cx.report_error(
                 &element_position(shape.node, cx),
@@ -77,19 +82,50 @@ impl<'a> Meshes<'a> {
             );
             return None;
         };
-        if let Some(known) = self.read.get(&mesh.text) {
-            return *known;
-        }
-        let Some(element) = self.known.get(&mesh.text).cloned() else {
+        let found = self.known.get(&mesh.text).cloned();
+        if found.is_none() {
             let known = self.known.keys().map(String::as_str);
             cx.report_error(&mesh.place, format!("unknown mesh {}", quote_word(&mesh.text)), |d| {
                 d.suggest_name(&mesh.text, known)
             });
+        }
+        found.map(|element| (mesh.text, element))
+    }
+
+    /// Returns the source of the vertices of a mesh shape, for its convex hull; `None` for a mesh that MuJoCo
+    /// generates.
+    pub(super) fn vertices(&self, shape: &Element<'a>, cx: &mut Cx<'_>) -> Option<MeshVertices> {
+        let (mesh, element) = self.element(shape, cx)?;
+        let (linear, offset) = placement(&element, cx);
+        let place = element_position(element.node, cx);
+        if element.node.has_attribute("file") {
+            let name = read_name_attribute(element.node, "file", cx)?;
+            return Some(MeshVertices {
+                paths: vec![self.path(&name)],
+                name,
+                written: Vec::new(),
+                linear,
+                offset,
+            });
+        }
+        let place = match element.node_with("vertex") {
+            Some(_) => element.place("vertex", cx),
+            None => place,
+        };
+        let numbers: Option<Vec<f64>> =
+            element.text("vertex")?.split_ascii_whitespace().map(|word| word.parse().ok()).collect();
+        let Some(numbers) = numbers.filter(|numbers| numbers.len() % 3 == 0) else {
+            cx.report_error(&place, "expected three numbers for each vertex", |d| d);
             return None;
         };
-        let found = self.mass(&element, cx);
-        self.read.insert(mesh.text, found);
-        found
+        let written = numbers.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
+        Some(MeshVertices { name: Name { text: mesh, place }, paths: Vec::new(), written, linear, offset })
+    }
+
+    /// Returns the path of a mesh file.
+    fn path(&self, file: &Name) -> PathBuf {
+        let stripped = Path::new(&file.text).file_name().filter(|_| self.strips);
+        self.folder.join(stripped.unwrap_or(file.text.as_ref()))
     }
 
     /// Returns the mesh to draw for a shape, in the axes of the mesh file; `None` for a mesh with reference
@@ -123,11 +159,10 @@ impl<'a> Meshes<'a> {
             return None;
         }
         let file = read_name_attribute(element.node, "file", cx)?;
-        let stripped = Path::new(&file.text).file_name().filter(|_| self.strips);
-        let path = self.folder.join(stripped.unwrap_or(file.text.as_ref()));
+        let path = self.path(&file);
         let mut triangles = read(&path, &file, cx)?;
         self.files.push(path);
-        self.transform(element, &mut triangles, cx);
+        transform(element, &mut triangles, cx);
         let found = solid(&triangles, exact);
         if found.is_none() {
             let message = format!("mesh {} has no volume", quote_word(&file.text));
@@ -135,22 +170,28 @@ impl<'a> Meshes<'a> {
         }
         found
     }
+}
 
-    /// Applies `refpos`, `refquat` and `scale`, in this order.
-    fn transform(&self, element: &Element<'a>, triangles: &mut [Triangle], cx: &mut Cx<'_>) {
-        let from = element.numbers("refpos", cx).map_or([0.0; 3], |found| found.value);
-        let factors = element.numbers("scale", cx).map_or([1.0; 3], |found| found.value);
-        let quat = element.numbers::<4>("refquat", cx).map_or([1.0, 0.0, 0.0, 0.0], |found| found.value);
-        let size = quat.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let axes: Matrix = transpose(&of_quaternion(quat.map(|x| x / size)));
-        for corner in triangles.iter_mut().flatten() {
-            let turned = matrix_times_vector(&axes, add(*corner, scale_vector(from, -1.0)));
-            *corner = std::array::from_fn(|k| turned[k] * factors[k]);
-        }
-        // A reflection reverses the orientation of the triangles.
-        if factors.iter().product::<f64>() < 0.0 {
-            triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
-        }
+/// Returns the map of vertices by `refpos`, `refquat` and `scale`, in this order: a matrix and an offset.
+fn placement(element: &Element<'_>, cx: &mut Cx<'_>) -> (Matrix, Vector) {
+    let from = element.numbers("refpos", cx).map_or([0.0; 3], |found| found.value);
+    let factors = element.numbers("scale", cx).map_or([1.0; 3], |found| found.value);
+    let quat = element.numbers::<4>("refquat", cx).map_or([1.0, 0.0, 0.0, 0.0], |found| found.value);
+    let size = quat.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let axes: Matrix = transpose(&of_quaternion(quat.map(|x| x / size)));
+    let linear: Matrix = std::array::from_fn(|k| scale_vector(axes[k], factors[k]));
+    (linear, scale_vector(matrix_times_vector(&linear, from), -1.0))
+}
+
+/// Applies `refpos`, `refquat` and `scale`.
+fn transform(element: &Element<'_>, triangles: &mut [Triangle], cx: &mut Cx<'_>) {
+    let (linear, offset) = placement(element, cx);
+    for corner in triangles.iter_mut().flatten() {
+        *corner = add(matrix_times_vector(&linear, *corner), offset);
+    }
+    // A reflection reverses the orientation of the triangles.
+    if dot(linear[0], cross(linear[1], linear[2])) < 0.0 {
+        triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
     }
 }
 
@@ -209,24 +250,7 @@ impl Mass {
 
 /// Reads a mesh. Errors are reported at the name of the mesh.
 fn read(path: &Path, name: &Name, cx: &mut Cx<'_>) -> Option<Vec<Triangle>> {
-    let shown = quote_word(&name.text);
-    let found =
-        read_bytes(path).map_err(|why| format!("cannot read the mesh {shown}: {why}")).and_then(|bytes| {
-            let end =
-                path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-            let triangles = match end.as_str() {
-                "stl" => stl(&bytes),
-                "obj" => obj(&bytes),
-                "msh" => msh(&bytes),
-                _ => {
-                    return Err(format!(
-                        "mesh {shown} has an unsupported format: expected `.stl`, `.obj` or `.msh`"
-                    ));
-                }
-            };
-            triangles.ok_or_else(|| format!("mesh {shown} is damaged, or has the wrong extension"))
-        });
-    match found {
+    match mesh::read(path, &name.text) {
         Ok(triangles) => Some(triangles),
         Err(message) => {
             cx.report_error(&name.place, message, |d| match path.is_file() {
@@ -238,110 +262,6 @@ fn read(path: &Path, name: &Name, cx: &mut Cx<'_>) -> Option<Vec<Triangle>> {
             None
         }
     }
-}
-
-fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
-    let about = fs::metadata(path).map_err(|error| error.to_string())?;
-    if !about.is_file() {
-        return Err("it is not a regular file".to_string());
-    }
-    let mut bytes = Vec::new();
-    let file = fs::File::open(path).map_err(|error| error.to_string())?;
-    file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
-    if bytes.len() as u64 > LARGEST {
-        return Err(format!("it has more than {} MiB", LARGEST >> 20));
-    }
-    Ok(bytes)
-}
-
-/// Returns three little-endian single-precision numbers.
-fn vector(bytes: &[u8], at: usize) -> Option<Vector> {
-    let number = |k: usize| {
-        let word = bytes.get(at + 4 * k..at + 4 * k + 4)?;
-        Some(f64::from(f32::from_le_bytes(word.try_into().ok()?)))
-    };
-    Some([number(0)?, number(1)?, number(2)?])
-}
-
-fn word(bytes: &[u8], at: usize) -> Option<usize> {
-    let word = bytes.get(at..at + 4)?;
-    usize::try_from(i32::from_le_bytes(word.try_into().ok()?)).ok()
-}
-
-/// Reads binary STL: a header of 80 bytes, the number of triangles, and for each triangle a normal, three
-/// corners and two more bytes.
-fn stl(bytes: &[u8]) -> Option<Vec<Triangle>> {
-    let count = word(bytes, 80)?;
-    if bytes.len() != 84 + 50 * count {
-        return None;
-    }
-    (0..count)
-        .map(|k| {
-            let at = 84 + 50 * k;
-            Some([vector(bytes, at + 12)?, vector(bytes, at + 24)?, vector(bytes, at + 36)?])
-        })
-        .collect()
-}
-
-/// Reads MuJoCo's own format: the numbers of vertices, normals, texture coordinates and triangles, followed
-/// by these data.
-fn msh(bytes: &[u8]) -> Option<Vec<Triangle>> {
-    let [vertices, normals, coordinates, faces] =
-        [word(bytes, 0)?, word(bytes, 4)?, word(bytes, 8)?, word(bytes, 12)?];
-    let start = 16 + 12 * vertices + 12 * normals + 8 * coordinates;
-    if faces == 0 || bytes.len() != start + 12 * faces {
-        return None;
-    }
-    let corner = |face: usize, k: usize| {
-        let number = word(bytes, start + 12 * face + 4 * k).filter(|number| *number < vertices)?;
-        vector(bytes, 16 + 12 * number)
-    };
-    (0..faces).map(|face| Some([corner(face, 0)?, corner(face, 1)?, corner(face, 2)?])).collect()
-}
-
-/// Reads Wavefront OBJ: lines `v x y z` and `f a/b/c …`. Indices count from one, or from the end if negative.
-fn obj(bytes: &[u8]) -> Option<Vec<Triangle>> {
-    let text = std::str::from_utf8(bytes).ok()?;
-    let (mut vertices, mut triangles): (Vec<Vector>, Vec<Triangle>) = (Vec::new(), Vec::new());
-    for line in text.lines() {
-        let mut words = line.split_ascii_whitespace();
-        match words.next() {
-            Some("v") => {
-                let mut number = || Some(f64::from(words.next()?.parse::<f32>().ok()?));
-                vertices.push([number()?, number()?, number()?]);
-            }
-            Some("f") => {
-                let corner = |word: &str| {
-                    let number: i64 = word.split('/').next()?.parse().ok()?;
-                    let index = if number < 0 { vertices.len() as i64 + number } else { number - 1 };
-                    vertices.get(usize::try_from(index).ok()?).copied()
-                };
-                let corners = words.map(corner).collect::<Option<Vec<Vector>>>()?;
-                add_face(&corners, &mut triangles)?;
-            }
-            _ => {}
-        }
-    }
-    (!triangles.is_empty()).then_some(triangles)
-}
-
-/// Triangulates a face: a quadrilateral along its shorter diagonal, any other face from its first corner.
-fn add_face(corners: &[Vector], triangles: &mut Vec<Triangle>) -> Option<()> {
-    match corners {
-        [a, b, c, d] => {
-            let across = |a: &Vector, b: &Vector| length(add(*a, scale_vector(*b, -1.0)));
-            if across(a, c) < across(b, d) {
-                triangles.extend([[*a, *b, *c], [*a, *c, *d]]);
-            } else {
-                triangles.extend([[*a, *b, *d], [*b, *c, *d]]);
-            }
-        }
-        [first, rest @ ..] if rest.len() > 1 => {
-            triangles.extend(rest.iter().zip(rest.iter().skip(1)).map(|(b, c)| [*first, *b, *c]));
-        }
-        _ => return None,
-    }
-    Some(())
 }
 
 #[cfg(test)]
@@ -367,36 +287,9 @@ mod tests {
 
     #[test]
     fn a_box_of_triangles_is_a_box() {
-        let triangles = obj(BOX.as_bytes()).expect("a mesh");
+        let triangles = mesh::obj(BOX.as_bytes()).expect("a mesh");
         assert_eq!(triangles.len(), 12);
         check(&solid(&triangles, true).expect("a solid"), 0.0);
         check(&solid(&triangles, false).expect("a solid"), 0.0);
-        let bytes: Vec<u8> = triangles
-            .iter()
-            .flat_map(|corners| {
-                let numbers = [0.0; 3].into_iter().chain(corners.iter().flatten().copied());
-                numbers.flat_map(|x| (x as f32).to_le_bytes()).chain([0; 2]).collect::<Vec<u8>>()
-            })
-            .collect();
-        let file = [vec![b'x'; 80], (12_u32).to_le_bytes().to_vec(), bytes].concat();
-        check(&solid(&stl(&file).expect("a mesh"), true).expect("a solid"), 0.0);
-        assert!((0..file.len()).all(|end| stl(&file[..end]).is_none() && msh(&file[..end]).is_none()));
-    }
-
-    #[test]
-    fn damaged_meshes_are_none() {
-        for text in [
-            "",
-            "v 1 2",
-            "f 1 2 3",
-            "v 1 1 1\nf 1 1",
-            "v 1 1 x",
-            "f a b c",
-            "v 0 0 0\nf 9999999999999999999 1 1",
-        ] {
-            assert!(obj(text.as_bytes()).is_none(), "{text}");
-        }
-        assert!(solid(&[[[0.0; 3]; 3]], false).is_none());
-        assert!(stl(&[0xff; 84]).is_none() && msh(&[0x7f; 40]).is_none());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::origin::Origin;
 use crate::diag::Place;
-use crate::syntax::{Collision, Endpoint, Name, Shape};
+use crate::syntax::{Collision, Endpoint, MeshVertices, Name, Shape};
 
 /// Collision shape of a link.
 pub(in crate::import) struct FileCollision {
@@ -10,6 +10,8 @@ pub(in crate::import) struct FileCollision {
     pub(in crate::import) origin: Origin,
     /// Shape of the geometry with its lengths, m.
     pub(in crate::import) shape: Shape,
+    /// Source of the vertices of a mesh; `None` for other shapes.
+    pub(in crate::import) mesh: Option<MeshVertices>,
     /// Source position of the geometry in the file.
     pub(in crate::import) place: Place,
 }
@@ -19,6 +21,7 @@ impl FileCollision {
     pub(in crate::import) fn attached_to(&self, link: &Name) -> Collision {
         let (at, rotated) = (self.origin.nonzero_position(), self.origin.nonzero_rotations());
         let on = Endpoint { body: link.clone(), at, rotated };
-        Collision { on, shape: self.shape, place: self.place.clone() }
+        let (shape, mesh) = (self.shape, self.mesh.clone());
+        Collision { on, shape, mesh, hull: Vec::new(), place: self.place.clone() }
     }
 }

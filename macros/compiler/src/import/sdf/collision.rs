@@ -5,41 +5,62 @@ use super::scope::Scope;
 use crate::import::context::Cx;
 use crate::import::element::{
     Node, check_attributes, child_elements, element_position, known_children, quoted_tag,
-    read_numbers_content, required_child,
+    read_numbers_content, read_word, required_child,
 };
+use crate::import::mesh;
 use crate::import::robot::FileCollision;
-use crate::syntax::{Name, Shape};
+use crate::syntax::{MeshVertices, Name, Shape};
+use std::path::Path;
 
 /// Shapes of collision geometry that are supported.
 pub(super) const SHAPES: [&str; 6] = ["sphere", "box", "cylinder", "capsule", "ellipsoid", "mesh"];
 
-/// Reads all collision geometry of a link.
+/// Reads all collision geometry of a link. Paths of meshes are relative to `folder`.
 pub(super) fn read_collisions(
     node: Node<'_>,
     link: (&Name, &Scope),
     frames: &Frames,
+    folder: &Path,
     cx: &mut Cx<'_>,
 ) -> Vec<FileCollision> {
     let parts = child_elements(node).filter(|node| node.tag_name().name() == "collision");
-    parts.filter_map(|part| read_part(part, link, frames, cx)).collect()
+    parts.filter_map(|part| read_part(part, link, frames, folder, cx)).collect()
 }
 
 fn read_part(
     node: Node<'_>,
     link: (&Name, &Scope),
     frames: &Frames,
+    folder: &Path,
     cx: &mut Cx<'_>,
 ) -> Option<FileCollision> {
     let geometry = child_elements(node).find(|child| child.tag_name().name() == "geometry");
     let geometry = required_child(geometry, node, "geometry", &[], cx)?;
     let mut shapes = child_elements(geometry).filter(|child| child.tag_name().name() != "empty");
-    let shape = shapes.next()?;
+    let form = shapes.next()?;
     if let Some(second) = shapes.next() {
         let help = "write a `<collision>` for each shape";
         cx.report_error(&element_position(second, cx), "second shape of one geometry", |d| d.add_help(help));
     }
     let origin = origin_in(node, link, frames, cx)?;
-    Some(FileCollision { origin, shape: read_shape(shape, cx)?, place: element_position(node, cx) })
+    let shape = read_shape(form, cx)?;
+    let mesh = match shape {
+        Shape::Mesh => read_mesh(form, folder, cx),
+        _ => None,
+    };
+    Some(FileCollision { origin, shape, mesh, place: element_position(node, cx) })
+}
+
+/// Returns the source of the vertices of a mesh; `None` for a part of a mesh.
+fn read_mesh(form: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<MeshVertices> {
+    let [uri, scale, submesh] = known_children(form, ["uri", "scale", "submesh"], cx);
+    let path = read_word(required_child(uri, form, "uri", &[], cx)?, cx)?;
+    let scale = match scale {
+        Some(scale) => read_numbers_content(scale, cx)?.value,
+        None => [1.0; 3],
+    };
+    let paths = mesh::candidates(folder, &path.text);
+    submesh.is_none().then(|| MeshVertices::scaled(path, paths, scale))
 }
 
 /// Reads a child element of `<geometry>` as a shape.

@@ -107,13 +107,19 @@ pub(super) fn import_sdf(
     cx: &mut Diagnostics,
 ) -> Option<Imported> {
     let whole = include::read_whole(text, path, &options.path, cx)?;
+    let folder = path.parent().unwrap_or(path);
     import_composed_text(whole, &options.path, FileFormat::Sdf, cx, |root, cx| {
-        read_root_element(root, options, cx)
+        read_root_element(root, folder, options, cx)
     })
 }
 
-/// Reads the root element of an SDF file.
-fn read_root_element<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
+/// Reads the root element of an SDF file in `folder`.
+fn read_root_element<'a>(
+    root_node: Node<'a>,
+    folder: &Path,
+    options: &FileOptions,
+    cx: &mut Cx<'_>,
+) -> Option<Imported> {
     let top = find_models(root_node, cx)?;
     let mut reader = Reader::default();
     reader.read_top(&top, cx)?;
@@ -126,7 +132,7 @@ fn read_root_element<'a>(root_node: Node<'a>, options: &FileOptions, cx: &mut Cx
             robot.visuals.extend(parts.into_iter().map(|part| (number, part)));
         }
         if options.collisions {
-            let parts = collision::read_collisions(*node, (name, scope), &reader.frames, cx);
+            let parts = collision::read_collisions(*node, (name, scope), &reader.frames, folder, cx);
             robot.collisions.extend(parts.into_iter().map(|part| (number, part)));
         }
     }

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 mod couplings;
 mod files;
 mod fuzz;
+mod hulls;
 mod joints;
 mod links;
 mod malformed;

@@ -4,28 +4,31 @@ use super::origin::read_origin;
 use crate::diag::Place;
 use crate::import::context::Cx;
 use crate::import::element::{
-    Node, check_attributes, child_elements, element_position, known_children, read_number_attribute,
-    read_numbers_attribute, required_child,
+    Node, check_attributes, child_elements, element_position, known_children, read_name_attribute,
+    read_number_attribute, read_numbers_attribute, required_child,
 };
 use crate::import::imported::Placed;
+use crate::import::mesh;
 use crate::import::robot::FileCollision;
-use crate::syntax::Shape;
+use crate::syntax::{MeshVertices, Shape};
+use std::path::Path;
 
 /// Shapes of collision geometry that are supported.
 const SHAPES: [&str; 5] = ["sphere", "box", "cylinder", "capsule", "mesh"];
 
-/// Reads all collision geometry of a link.
-pub(super) fn read_collisions(link: Node<'_>, cx: &mut Cx<'_>) -> Vec<FileCollision> {
+/// Reads all collision geometry of a link. Paths of meshes are relative to `folder`.
+pub(super) fn read_collisions(link: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Vec<FileCollision> {
     let parts = child_elements(link).filter(|node| node.tag_name().name() == "collision");
-    parts.filter_map(|part| read_part(part, cx)).collect()
+    parts.filter_map(|part| read_part(part, folder, cx)).collect()
 }
 
-fn read_part(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileCollision> {
+fn read_part(node: Node<'_>, folder: &Path, cx: &mut Cx<'_>) -> Option<FileCollision> {
     let [origin, geometry] = known_children(node, ["origin", "geometry"], cx);
     let origin = read_origin(origin, node, cx);
     let geometry = required_child(geometry, node, "geometry", &[], cx)?;
     let [sphere, cuboid, cylinder, capsule, mesh] = known_children(geometry, SHAPES, cx);
     report_several(&[sphere, cuboid, cylinder, capsule, mesh], cx);
+    let mut vertices = None;
     let shape = match (sphere, cuboid, cylinder, capsule, mesh) {
         (Some(sphere), ..) => {
             check_attributes(sphere, &["radius"], &[], cx);
@@ -48,7 +51,17 @@ fn read_part(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileCollision> {
                 Shape::Capsule(radius?, length?)
             }
         }
-        (.., Some(_)) => Shape::Mesh,
+        (.., Some(mesh)) => {
+            check_attributes(mesh, &["filename"], &["scale"], cx);
+            let path = read_name_attribute(mesh, "filename", cx)?;
+            let scale = match mesh.has_attribute("scale") {
+                true => read_numbers_attribute(mesh, "scale", cx)?.value,
+                false => [1.0; 3],
+            };
+            let paths = mesh::candidates(folder, &path.text);
+            vertices = Some(MeshVertices::scaled(path, paths, scale));
+            Shape::Mesh
+        }
         _ => {
             let message = "collision geometry without a supported shape";
             let help = "supported are `<sphere>`, `<box>`, `<cylinder>`, `<capsule>` and `<mesh>`";
@@ -56,7 +69,7 @@ fn read_part(node: Node<'_>, cx: &mut Cx<'_>) -> Option<FileCollision> {
             return None;
         }
     };
-    Some(FileCollision { origin, shape, place: element_position(node, cx) })
+    Some(FileCollision { origin, shape, mesh: vertices, place: element_position(node, cx) })
 }
 
 /// Reports the shapes of a geometry after the first one.

@@ -10,6 +10,7 @@ use super::misplaced;
 use crate::import::imported::Imported;
 use crate::import::robot::{self, MAX_ELEMENTS, Robot};
 use crate::syntax::FileOptions;
+use std::path::Path;
 
 mod collision;
 mod joint;
@@ -19,12 +20,17 @@ mod origin;
 mod standing;
 mod visual;
 
-/// Reads the root element of a URDF file.
-pub(super) fn read_root_element(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Imported> {
+/// Reads the root element of a URDF file in `folder`.
+pub(super) fn read_root_element(
+    node: Node<'_>,
+    folder: &Path,
+    options: &FileOptions,
+    cx: &mut Cx<'_>,
+) -> Option<Imported> {
     if !check_root(node, cx) {
         return None;
     }
-    let mut robot = read_robot(node, options, cx)?;
+    let mut robot = read_robot(node, folder, options, cx)?;
     robot::check_names(&robot, options.format, cx);
     robot::declare_world(&mut robot);
     robot::rename_ground(&mut robot, options.base);
@@ -67,7 +73,7 @@ fn check_root(node: Node<'_>, cx: &mut Cx<'_>) -> bool {
     false
 }
 
-fn read_robot(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Robot> {
+fn read_robot(node: Node<'_>, folder: &Path, options: &FileOptions, cx: &mut Cx<'_>) -> Option<Robot> {
     let mut counts = [0, 0];
     let standing = standing::links_fixed_to_ground(node, options);
     let mut robot = Robot::default();
@@ -105,9 +111,8 @@ fn read_robot(node: Node<'_>, options: &FileOptions, cx: &mut Cx<'_>) -> Option<
                         .extend(visual::read_visuals(child, cx).into_iter().map(|part| (number, part)));
                 }
                 if options.collisions {
-                    robot
-                        .collisions
-                        .extend(collision::read_collisions(child, cx).into_iter().map(|part| (number, part)));
+                    let parts = collision::read_collisions(child, folder, cx).into_iter();
+                    robot.collisions.extend(parts.map(|part| (number, part)));
                 }
             }
             _ => robot.joints.extend(joint::read_joint(child, options, &mut robot.left_out, cx)),

@@ -13,8 +13,9 @@
 //! difference of the separations. If two edges of a face share a point, it counts once; the gap of the
 //! duplicate is the size of the boxes.
 
+use super::cylinders::{Drum, pipe_on_box};
+use super::geometry::{clamp, is_positive, nearest, rim};
 use super::surface::SurfaceForm;
-use super::unilateral::{clamp, nearest};
 use super::{PointContact, SurfacePair, sphere_contact};
 use crate::expr::{Expr, Extreme, Function, Vec3};
 use crate::resolve::builder::Builder;
@@ -28,13 +29,13 @@ const PARALLEL: f64 = 1e-10;
 /// equal components along it.
 const TIE_BREAK: [f64; 3] = [0.2113, 0.3779, 0.9014];
 /// Smallest slope of an edge against a side that is not treated as parallel to it.
-const MIN_SLOPE: f64 = 1e-12;
+pub(super) const MIN_SLOPE: f64 = 1e-12;
 
 /// A box: its axes, half its lengths along them, and its centre.
 #[derive(Clone, Copy)]
-struct OrientedBox<'g> {
-    axes: [Vec3<'g>; 3],
-    half: [Expr<'g>; 3],
+pub(super) struct OrientedBox<'g> {
+    pub(super) axes: [Vec3<'g>; 3],
+    pub(super) half: [Expr<'g>; 3],
     center: Vec3<'g>,
 }
 
@@ -55,11 +56,6 @@ struct BoxPair<'g> {
     b: OrientedBox<'g>,
     cosines: [[Expr<'g>; 3]; 3],
     size: Expr<'g>,
-}
-
-/// Returns one if `x` is positive, zero if it is negative.
-fn is_positive(x: Expr<'_>) -> Expr<'_> {
-    (x.apply_function(Function::Signum) + x.num(1.0)) * 0.5
 }
 
 /// Returns `first` if `which` is one, `second` if it is zero.
@@ -104,7 +100,8 @@ fn scaled<'g>(which: [Expr<'g>; 3], factor: Expr<'g>) -> [Expr<'g>; 3] {
 }
 
 impl<'g> Builder<'_, 'g> {
-    /// Returns the contacts of a sphere, a capsule or a box with a box whose centre is `c` away from theirs.
+    /// Returns the contacts of a sphere, a capsule, a cylinder or a box with a box. `c` leads from the centre
+    /// of the latter to that of the former.
     pub(super) fn box_contacts(
         &self,
         pair: &SurfacePair<'g>,
@@ -139,6 +136,11 @@ impl<'g> Builder<'_, 'g> {
                 ends.chain(capsule_axis_contacts(*radius, (own, reach), &target, c)).collect()
             }
             SurfaceForm::Cuboid(own) => box_contact_candidates(&block(own, c, &rotate_a), &target),
+            SurfaceForm::Cylinder(radius, axis) => pipe_on_box(*radius, rotate_a(*axis), &target, c),
+            SurfaceForm::Drum(radius, length, axis) => {
+                let drum = Drum { radius: *radius, half: *length * 0.5, axis: rotate_a(*axis) };
+                drum.box_contacts(&target, c, &|normal| rim(*axis, normal, &rotate_a))
+            }
             _ => Vec::new(),
         }
     }
@@ -289,11 +291,11 @@ impl<'g> BoxPair<'g> {
 }
 
 /// A face of a box, with its normal and the directions of its sides.
-struct Face<'g> {
+pub(super) struct Face<'g> {
     /// Outward normal, and directions of the sides.
-    axes: [Vec3<'g>; 3],
+    pub(super) axes: [Vec3<'g>; 3],
     /// Distance of the face from the centre of the box, and of the sides from the centre of the face.
-    half: [Expr<'g>; 3],
+    pub(super) half: [Expr<'g>; 3],
     /// Size of the boxes.
     size: Expr<'g>,
 }
@@ -301,7 +303,12 @@ struct Face<'g> {
 impl<'g> Face<'g> {
     /// Returns the face of a box normal to the selected axis, on the side of `c`, a position relative to its
     /// centre.
-    fn facing(holder: &OrientedBox<'g>, which: &[Expr<'g>; 3], c: Vec3<'g>, size: Expr<'g>) -> Self {
+    pub(super) fn facing(
+        holder: &OrientedBox<'g>,
+        which: &[Expr<'g>; 3],
+        c: Vec3<'g>,
+        size: Expr<'g>,
+    ) -> Self {
         let [next, last] = [next_axis(which), next_axis(&next_axis(which))];
         let normal = select_axis(which, &holder.axes);
         let normal = normal * normal.dot(c).apply_function(Function::Signum);
@@ -311,13 +318,13 @@ impl<'g> Face<'g> {
     }
 
     /// Returns the components of a vector along the normal and the sides.
-    fn components(&self, v: Vec3<'g>) -> [Expr<'g>; 3] {
+    pub(super) fn components(&self, v: Vec3<'g>) -> [Expr<'g>; 3] {
         self.axes.map(|axis| v.dot(axis))
     }
 
     /// Returns the range of `t` within −1 and 1 for which `start + t direction` is within the sides. If the
     /// range is empty, its end is less than its beginning.
-    fn clip_range(&self, start: &[Expr<'g>; 3], direction: &[Expr<'g>; 3]) -> [Expr<'g>; 2] {
+    pub(super) fn clip_range(&self, start: &[Expr<'g>; 3], direction: &[Expr<'g>; 3]) -> [Expr<'g>; 2] {
         let one = self.size.num(1.0);
         let (mut from, mut to) = (-one, one);
         for k in [1, 2] {
@@ -336,7 +343,7 @@ impl<'g> Face<'g> {
     }
 
     /// Returns a contact at a position relative to the centre of the box.
-    fn contact(&self, gap: Expr<'g>, place: Vec3<'g>) -> PointContact<'g> {
+    pub(super) fn contact(&self, gap: Expr<'g>, place: Vec3<'g>) -> PointContact<'g> {
         let [normal, first, second] = self.axes;
         let axes = [("normal", normal), ("first", first), ("second", second)];
         PointContact { gap, point: place, axes, conditions: Vec::new() }
@@ -409,7 +416,7 @@ fn face_contacts<'g>(
 /// face, and where it crosses an edge. The axis extends from its centre by `reach` in both directions of
 /// `own`. `c` leads from the centre of the box to that of the capsule; positions are relative to the latter.
 /// The ends of the capsule are spheres and are not included.
-fn capsule_axis_contacts<'g>(
+pub(super) fn capsule_axis_contacts<'g>(
     radius: Expr<'g>,
     (own, reach): (Vec3<'g>, Expr<'g>),
     block: &OrientedBox<'g>,
@@ -457,9 +464,13 @@ fn capsule_axis_contacts<'g>(
     let normal = across * (c.dot(across).apply_function(Function::Signum) / length);
     let middle = edge_middle(block, &edge, normal);
     let (near, far) = nearest(c - middle, (own, reach), (axis, select_of_three(&edge, block.half)));
-    // If an end of the axis is nearest, it touches as a sphere.
-    let excess = (c - middle + own * near - axis * far).norm() - absolute(edge_distance);
-    let gap = edge_distance + excess - radius;
+    // If an end of the axis or of the edge is nearest, it touches as a sphere or as a corner.
+    let separation = c - middle + own * near - axis * far;
+    let length = separation.norm();
+    let gap = edge_distance + length - absolute(edge_distance) - radius;
+    let towards =
+        separation * (edge_distance.apply_function(Function::Signum) / maximum(length, size * TIE_TOLERANCE));
+    let normal = select_vector(is_positive(length - size * TIE_TOLERANCE), towards, normal);
     points.push(PointContact {
         gap: select(by_edges, gap, maximum(gap, face_distance - edge_distance)),
         point: own * near - normal * radius,

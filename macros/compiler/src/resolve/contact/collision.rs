@@ -1,19 +1,13 @@
 //! Collision geometry of the links of a file, as surfaces of contacts.
 
-use super::surface::{Surface, SurfaceForm};
+use super::surface::{ConvexHull, Surface, SurfaceForm};
 use crate::diag::{Diagnostics, Place};
 use crate::expr::Vec3;
+use crate::hull::{Hull, MAX_VERTICES};
 use crate::resolve::builder::Builder;
 use crate::resolve::scope::Placed;
+use crate::syntax::contact::select_collisions;
 use crate::syntax::{self, Collision, ExprKind, Name, Shape};
-
-/// Returns the index of the selected shape of a link, if one is selected.
-fn shape_index(e: &syntax::Expr) -> Option<usize> {
-    match &e.kind {
-        ExprKind::Method(_, _, arguments) => Some(arguments.first()?.literal_number()? as usize),
-        _ => None,
-    }
-}
 
 impl<'g> Builder<'_, 'g> {
     /// Resolves the collision geometry of a link, `link.collision()`, or of all links, `collision()`.
@@ -29,12 +23,8 @@ impl<'g> Builder<'_, 'g> {
             None => None,
         };
         let name = link.and_then(|link| link.as_name());
-        let parts: Vec<&Collision> =
-            known.iter().filter(|part| name.is_none_or(|name| part.on.body.text == name)).collect();
-        let parts = match shape_index(e) {
-            Some(part) => parts.into_iter().skip(part).take(1).collect(),
-            None => parts,
-        };
+        let selected = select_collisions(e, known).unwrap_or_default();
+        let parts: Vec<&Collision> = selected.into_iter().map(|k| &known[k]).collect();
         if parts.is_empty() {
             let whose = name.map_or_else(|| "this mechanism".to_string(), |name| format!("`{name}`"));
             cx.report_error(e.place.clone(), format!("{whose} has no collision geometry"))
@@ -42,11 +32,12 @@ impl<'g> Builder<'_, 'g> {
             return None;
         }
         let mut meshes: Vec<&Name> =
-            parts.iter().filter(|part| part.shape == Shape::Mesh).map(|part| &part.on.body).collect();
+            parts.iter().filter(|part| part.is_mesh_without_hull()).map(|part| &part.on.body).collect();
         meshes.dedup_by(|a, b| a.text == b.text);
         if !meshes.is_empty() {
             let names: Vec<String> = meshes.iter().map(|name| format!("`{}`", name.text)).collect();
-            let message = format!("the collision geometry of {} is a mesh", names.join(", "));
+            let message =
+                format!("the collision geometry of {} is a mesh without a convex hull", names.join(", "));
             cx.report_error(e.place.clone(), message)
                 .add_help("approximate it by surfaces, as in `foot.sphere(0.02)`, or list the other links");
             return None;
@@ -79,7 +70,10 @@ impl<'g> Builder<'_, 'g> {
             Shape::Cylinder(radius, along) => SurfaceForm::Drum(length(radius), length(along), z),
             Shape::Capsule(radius, along) => SurfaceForm::Capsule(length(radius), length(along), z),
             Shape::Ellipsoid(radii) => SurfaceForm::Ellipsoid(radii.map(length)),
-            Shape::Mesh => return None,
+            Shape::Mesh => {
+                let vertices: Vec<Vec3<'g>> = part.hull.iter().map(|p| Vec3::from_numbers(g, *p)).collect();
+                SurfaceForm::Hull(ConvexHull { shape: Hull::new(&part.hull, MAX_VERTICES).ok(), vertices })
+            }
         };
         Some(Surface { frame: Placed { pose, ..frame }, form })
     }

@@ -2,7 +2,7 @@
 
 use super::surface::{Surface, SurfaceForm};
 use crate::diag::Diagnostics;
-use crate::expr::Expr;
+use crate::expr::{Expr, Vec3};
 use crate::mechanism::drawing::{entries_by_row, entries_of_vectors};
 use crate::mechanism::{Piece, PieceKind, Role};
 use crate::resolve::builder::Builder;
@@ -33,15 +33,35 @@ impl<'g> Builder<'_, 'g> {
             }
         }
         for (name, surface) in found {
-            let Some(piece) = self.surface_piece(name, &surface, &mut heights) else { continue };
-            let is_same = |known: &Piece<'g>| {
-                known.kind == piece.kind && known.frames == piece.frames && known.numbers == piece.numbers
-            };
-            if !pieces[before..].iter().any(is_same) {
-                pieces.push(piece);
+            let edges = self.hull_pieces(name, &surface);
+            for piece in edges.into_iter().chain(self.surface_piece(name, &surface, &mut heights)) {
+                let is_same = |known: &Piece<'g>| {
+                    known.kind == piece.kind && known.frames == piece.frames && known.numbers == piece.numbers
+                };
+                if !pieces[before..].iter().any(is_same) {
+                    pieces.push(piece);
+                }
             }
         }
         heights
+    }
+
+    /// Returns the edges of a hull as bars; its points if they depend on parameters.
+    fn hull_pieces(&self, name: &str, Surface { frame, form }: &Surface<'g>) -> Vec<Piece<'g>> {
+        let SurfaceForm::Hull(hull) = form else { return Vec::new() };
+        let Some((index, pose)) = self.anchor_of_pose(frame.link, &frame.pose) else { return Vec::new() };
+        let position = |p: Vec3<'g>| pose.translation + pose.rotation.to_parent(p);
+        let piece = |kind, frames, ends: &[Vec3<'g>]| {
+            let numbers = entries_of_vectors(&ends.iter().map(|p| position(*p)).collect::<Vec<_>>());
+            Piece { name: name.to_string(), role: Role::Surface, kind, frames, numbers }
+        };
+        match &hull.shape {
+            Some(shape) => {
+                let ends = shape.edges.iter().map(|edge| edge.map(|k| hull.vertices[k]));
+                ends.map(|ends| piece(PieceKind::Bar, [index, index], &ends)).collect()
+            }
+            None => hull.vertices.iter().map(|p| piece(PieceKind::Point, [index, None], &[*p])).collect(),
+        }
     }
 
     fn surface_piece(
@@ -83,8 +103,8 @@ impl<'g> Builder<'_, 'g> {
                     [at.clone(), entries_by_row(&pose.rotation.rotation_matrix())].concat(),
                 )
             }
-            // The surface is unbounded and has no axis of symmetry.
-            SurfaceForm::Sheet(_) => return None,
+            // A sheet is unbounded and has no axis of symmetry; a hull is drawn by its edges.
+            SurfaceForm::Sheet(_) | SurfaceForm::Hull(_) => return None,
         };
         Some(Piece { name: name.to_string(), role: Role::Surface, kind, frames: [index, None], numbers })
     }

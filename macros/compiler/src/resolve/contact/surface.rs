@@ -3,6 +3,7 @@
 use super::terrain::Terrain;
 use crate::diag::{Diagnostics, all_of};
 use crate::expr::{Expr, Vec3};
+use crate::hull::Hull;
 use crate::language::{Argument, ArgumentKind, Method, SurfaceId};
 use crate::mechanism::Rule;
 use crate::resolve::builder::Builder;
@@ -45,6 +46,8 @@ pub enum SurfaceForm<'g> {
     Cuboid([Expr<'g>; 3]),
     /// Cylinder between two hemispheres: radius, distance of their centres, axis.
     Capsule(Expr<'g>, Expr<'g>, Vec3<'g>),
+    /// Convex hull of points.
+    Hull(ConvexHull<'g>),
 }
 
 /// Surface given by its points as expressions of two coordinates, in body axes relative to its position.
@@ -54,6 +57,15 @@ pub struct Sheet<'g> {
     pub point: Vec3<'g>,
     /// Derivatives of the point by the coordinates; their cross product points towards the body that rolls.
     pub tangents: [Vec3<'g>; 2],
+}
+
+/// Convex hull of points in body axes.
+#[derive(Clone)]
+pub struct ConvexHull<'g> {
+    /// The vertices; if they depend on parameters, all points.
+    pub vertices: Vec<Vec3<'g>>,
+    /// Faces and edges; `None` if the points depend on parameters.
+    pub shape: Option<Hull>,
 }
 
 /// A surface with its pose.
@@ -84,6 +96,7 @@ impl SurfaceForm<'_> {
             SurfaceForm::Terrain(_) => Some(SurfaceId::Terrain),
             SurfaceForm::Cuboid(_) => Some(SurfaceId::Cuboid),
             SurfaceForm::Capsule(..) => Some(SurfaceId::Capsule),
+            SurfaceForm::Hull(_) => Some(SurfaceId::Hull),
             SurfaceForm::Point => None,
         }
     }
@@ -135,6 +148,7 @@ impl<'g> Builder<'_, 'g> {
                 let terrain = self.terrain(height, cx);
                 return Some(Surface { frame: frame?, form: SurfaceForm::Terrain(Box::new(terrain?)) });
             }
+            (SurfaceId::Hull, [points]) => return self.hull(frame, points, cx),
             _ => {}
         }
         let (mut numbers, mut axis) = (Vec::new(), None);
@@ -179,7 +193,7 @@ fn form<'g>(id: SurfaceId, numbers: &[Expr<'g>], n: Vec3<'g>) -> Option<SurfaceF
         SurfaceId::Cuboid => SurfaceForm::Cuboid([number(0)?, number(1)?, number(2)?]),
         SurfaceId::Capsule => SurfaceForm::Capsule(number(0)?, number(1)?, n),
         // The arguments of these surfaces are not numbers and a direction.
-        SurfaceId::Sheet | SurfaceId::Terrain => return None,
+        SurfaceId::Sheet | SurfaceId::Terrain | SurfaceId::Hull => return None,
     })
 }
 

@@ -1,11 +1,14 @@
 //! Unilateral contacts: surfaces of bodies that separate and collide, and coordinates at their bounds.
 
+use super::cylinders::{Drum, capsule_on_pipe};
 use super::force::check_relative_rotation;
+use super::geometry::{FLAT_RIM, clamp, nearest, rim};
+use super::hull::sphere_on_hull;
 use super::surface::{Surface, SurfaceForm};
 use super::terrain::Terrain;
 use super::{PointContact, SurfacePair, perpendicular_directions, sphere_contact, support_point};
 use crate::diag::{Diagnostics, Place};
-use crate::expr::{Expr, Extreme, Vec3};
+use crate::expr::{Expr, Vec3};
 use crate::kinematics::{motion_rates, velocity_gradient};
 use crate::language::{Key, Method, OtherKind};
 use crate::mechanism::{Contact, LinkId, Quantity, Rule};
@@ -14,24 +17,16 @@ use crate::resolve::element_forces::Forces;
 use crate::resolve::motion::Moving;
 use crate::resolve::power::is_power_used;
 use crate::resolve::scope::{Allowed, ContactLoads, Context, Terms};
-use crate::syntax::contact::collision_link;
+use crate::syntax::contact::{MAX_CONTACT_POINTS, collision_link};
 use crate::syntax::{self, ExprKind, GROUND, WrittenArguments};
 
-/// Maximum number of contact points of a mechanism: the generated code grows with their number.
-const MAX_CONTACT_POINTS: usize = 128;
-
-/// Squared sine of the angle below which lines are treated as parallel.
-const PARALLEL: f64 = 1e-12;
-
-/// Squared sine of the angle below which a rim is treated as flat on a plane; its centre is then the contact.
-const FLAT_RIM: f64 = 1e-24;
-
-const SUPPORTED_PAIRS: &str = "supported are points, spheres, circles, tori, ellipsoids, capsules, cuboids \
-                               and cylinders with two ends on a plane; points and spheres also on a sphere, \
-                               a capsule, a cylinder or a cone, or inside of a bowl, a tube or a funnel; \
-                               capsules on each other; cuboids on each other; spheres and capsules on \
-                               cuboids; spheres on cylinders with two ends; points, spheres, capsules and \
-                               cuboids on a terrain";
+const SUPPORTED_PAIRS: &str = "supported are points, spheres, circles, tori, ellipsoids, capsules, cuboids, \
+                               hulls and cylinders with two ends on a plane; points and spheres also on a \
+                               sphere, a capsule, a cylinder or a cone, or inside of a bowl, a tube or a \
+                               funnel; capsules on each other; cuboids on each other; spheres and \
+                               capsules on cuboids; spheres, capsules and cuboids on cylinders; spheres on \
+                               hulls whose points are numbers; points, spheres, capsules, cuboids and \
+                               hulls on a terrain";
 
 /// Help for unsupported contacts of cylinders.
 const CYLINDER_HELP: &str = "a capsule of the same radius, or several spheres, can approximate a cylinder";
@@ -387,6 +382,11 @@ impl<'g> Builder<'_, 'g> {
         if let SurfaceForm::Cuboid(lengths) = &pair.b.form {
             return self.box_contacts(pair, lengths, c);
         }
+        if let (SurfaceForm::Sphere(radius), SurfaceForm::Hull(hull)) = (&pair.a.form, &pair.b.form) {
+            let axes = std::array::from_fn(|k| rotate_b(Vec3::coordinate_axis(g, k)));
+            let contact = hull.shape.as_ref().and_then(|hull| sphere_on_hull(*radius, hull, c, &axes));
+            return contact.into_iter().collect();
+        }
         let SurfaceForm::Plane(n) = &pair.b.form else {
             return self.curved_contacts(pair, c, &rotate_b);
         };
@@ -402,6 +402,7 @@ impl<'g> Builder<'_, 'g> {
         match &pair.a.form {
             SurfaceForm::Point => vec![touch(Vec3::zero(g))],
             SurfaceForm::Cuboid(lengths) => corners(lengths).map(|corner| touch(rotate_a(corner))).into(),
+            SurfaceForm::Hull(hull) => hull.vertices.iter().map(|p| touch(rotate_a(*p))).collect(),
             SurfaceForm::Drum(radius, length, axis) => {
                 let rim = rim(*axis, normal, &rotate_a);
                 let ends = [-half, half].map(|side| rotate_a(*axis * (*length * side)));
@@ -419,8 +420,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// Returns the contacts of a sphere, a point, the ends of a capsule or the corners of a box with a
-    /// terrain.
+    /// Returns the contacts of a sphere, a point, the ends of a capsule, or the corners of a box or a hull
+    /// with a terrain.
     fn terrain_contacts(
         &self,
         pair: &SurfacePair<'g>,
@@ -434,6 +435,7 @@ impl<'g> Builder<'_, 'g> {
             SurfaceForm::Point => (g.zero(), vec![Vec3::zero(g)]),
             SurfaceForm::Sphere(radius) => (*radius, vec![Vec3::zero(g)]),
             SurfaceForm::Cuboid(lengths) => (g.zero(), corners(lengths).map(rotate_a).into()),
+            SurfaceForm::Hull(hull) => (g.zero(), hull.vertices.iter().map(|p| rotate_a(*p)).collect()),
             SurfaceForm::Capsule(radius, length, axis) => {
                 (*radius, [-0.5, 0.5].map(|side| rotate_a(*axis * (*length * side))).into())
             }
@@ -484,12 +486,16 @@ impl<'g> Builder<'_, 'g> {
                 return touches.collect();
             }
             SurfaceForm::Drum(wide, length, axis) => {
+                let drum = Drum { radius: *wide, half: *length * half, axis: rotate_b(*axis) };
+                return match own {
+                    Some(own) => drum.capsule_contacts(radius, own, c),
+                    None => vec![drum.sphere_contact(radius, c)],
+                };
+            }
+            SurfaceForm::Cylinder(_, axis) if own.is_some() => {
                 let axis = rotate_b(*axis);
-                let height = axis.dot(c);
-                let outward = c - axis * height;
-                let size = outward.norm().minimum_or_maximum(Extreme::Max, *wide);
-                let inner = axis * clamp(height, *length * half) + outward * (*wide / size);
-                sphere_contact(radius, &SurfaceForm::Sphere(g.zero()), c - inner, rotate_b)
+                let contacts = own.map(|own| capsule_on_pipe(radius, own, &pair.b.form, axis, c, rotate_b));
+                return contacts.unwrap_or_default();
             }
             form => sphere_contact(radius, form, c, rotate_b),
         };
@@ -503,42 +509,6 @@ fn corners<'g>(lengths: &[Expr<'g>; 3]) -> [Vec3<'g>; 8] {
         let side = |axis: usize| if k >> axis & 1 == 0 { -0.5 } else { 0.5 };
         Vec3(std::array::from_fn(|axis| lengths[axis] * side(axis)))
     })
-}
-
-/// Returns the directions from the centre of a rim to its lowest point over a plane and to the points 90°,
-/// 180° and 270° further along the rim. If the rim lies flat, all its points are lowest; a fixed direction of
-/// the body is then used.
-fn rim<'g>(axis: Vec3<'g>, normal: Vec3<'g>, rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>) -> [Vec3<'g>; 4] {
-    let [(_, fixed), _] = perpendicular_directions(axis);
-    let (a, fixed) = (rotate(axis), rotate(fixed));
-    let cosine = a.dot(normal);
-    let down = a * cosine - normal + fixed * cosine.num(FLAT_RIM.sqrt());
-    let size = down.norm();
-    let lowest = down.map(|x| x / size);
-    let quarter = a.cross(lowest);
-    [lowest, quarter, -lowest, -quarter]
-}
-
-/// Clamps `x` to the interval from `-limit` to `limit`.
-pub(super) fn clamp<'g>(x: Expr<'g>, limit: Expr<'g>) -> Expr<'g> {
-    x.minimum_or_maximum(Extreme::Max, -limit).minimum_or_maximum(Extreme::Min, limit)
-}
-
-/// Returns the closest points of two line segments, as signed distances from their centres along their unit
-/// axes. Each segment has an axis and half its length; `c` leads from the second centre to the first
-/// (Ericson, *Real-Time Collision Detection*, 2005, § 5.1.9). For parallel segments, one of the many
-/// solutions is returned.
-pub(super) fn nearest<'g>(
-    c: Vec3<'g>,
-    (own, own_reach): (Vec3<'g>, Expr<'g>),
-    (axis, reach): (Vec3<'g>, Expr<'g>),
-) -> (Expr<'g>, Expr<'g>) {
-    let (cosine, first, second) = (own.dot(axis), own.dot(c), axis.dot(c));
-    let one = cosine.num(1.0);
-    let across = (one - cosine * cosine).minimum_or_maximum(Extreme::Max, cosine.num(PARALLEL));
-    let guess = clamp((cosine * second - first) / across, own_reach);
-    let far = clamp(second + cosine * guess, reach);
-    (clamp(cosine * far - first, own_reach), far)
 }
 
 impl<'g> SurfaceForm<'g> {

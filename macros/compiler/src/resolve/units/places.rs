@@ -346,6 +346,11 @@ impl<'a> DimensionedExpressions<'a> {
         };
         self.points.push(frame);
         for (e, argument) in arguments.iter().zip(id.row().arguments) {
+            if let (ArgumentKind::Points, ExprKind::Array(points) | ExprKind::Tuple(points)) =
+                (argument.kind, &e.kind)
+            {
+                self.add_all(points, &LENGTH, "m");
+            }
             let Some((dimension, unit)) = argument.kind.dimension_and_unit() else { continue };
             let locals = match argument.kind {
                 ArgumentKind::Height => TERRAIN_COORDINATES.map(|name| (name, LENGTH.clone())).into(),

@@ -66,7 +66,11 @@ fn is_number(e: &Expr) -> bool {
     e.subexpressions().into_iter().all(|part| match &part.kind {
         ExprKind::Name(name) => Builtin::of_name(name) == Some(Builtin::Pi),
         ExprKind::Number(_) | ExprKind::Neg(_) | ExprKind::Binary(..) | ExprKind::Call(..) => true,
-        ExprKind::Field(..) | ExprKind::Method(..) | ExprKind::Tuple(_) | ExprKind::Array(_) => false,
+        ExprKind::Field(..)
+        | ExprKind::Method(..)
+        | ExprKind::Tuple(_)
+        | ExprKind::Array(_)
+        | ExprKind::Text(_) => false,
     })
 }
 
@@ -108,7 +112,7 @@ fn names_of<'a>(origin: &Origin<'a>, inference: &Inference<'_>, found: &mut Vec<
 fn names_in<'a>(e: &'a Expr, inference: &Inference<'_>, found: &mut Vec<(Variable, &'a Expr)>) {
     let mut inner = |e: &'a Expr| names_in(e, inference, found);
     match &e.kind {
-        ExprKind::Number(_) => {}
+        ExprKind::Number(_) | ExprKind::Text(_) => {}
         ExprKind::Name(name) => {
             if let Some(Meaning::Named(v, _)) = inference.names.get(name)
                 && found.iter().all(|(known, _)| known != v)

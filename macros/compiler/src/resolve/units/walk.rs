@@ -21,7 +21,7 @@ impl<'a> Inference<'a> {
             ExprKind::Binary(..) => self.value_of_sum(e, None),
             ExprKind::Call(function, arguments) => self.value_of_call(function, arguments),
             ExprKind::Array(items) => self.common_value(items, Reason::Components),
-            ExprKind::Method(..) | ExprKind::Tuple(_) => Value::Unknown,
+            ExprKind::Method(..) | ExprKind::Tuple(_) | ExprKind::Text(_) => Value::Unknown,
         }
     }
 

@@ -75,6 +75,8 @@ pub enum ExprKind {
     Tuple(Vec<Expr>),
     /// Array: `[a, b, c]`.
     Array(Vec<Expr>),
+    /// Path of a mesh: `hull("foot.obj")`.
+    Text(String),
 }
 
 /// Binary operator of an expression.
@@ -98,7 +100,7 @@ impl Expr {
         while let Some(part) = parts.get(next) {
             next += 1;
             match &part.kind {
-                ExprKind::Number(_) | ExprKind::Name(_) => {}
+                ExprKind::Number(_) | ExprKind::Name(_) | ExprKind::Text(_) => {}
                 ExprKind::Field(base, _) | ExprKind::Neg(base) => parts.push(base),
                 ExprKind::Method(base, _, items) => parts.extend([&**base].into_iter().chain(items)),
                 ExprKind::Call(_, items) | ExprKind::Tuple(items) | ExprKind::Array(items) => {

@@ -1,7 +1,8 @@
 //! Collision and visual geometry of a file's links.
 
-use super::Endpoint;
+use super::{Endpoint, Name};
 use crate::diag::Place;
+use std::path::PathBuf;
 
 /// A shape of the collision geometry of a file's link.
 #[derive(Clone, Debug)]
@@ -10,8 +11,42 @@ pub struct Collision {
     pub on: Endpoint,
     /// Shape of the geometry.
     pub shape: Shape,
+    /// Source of the vertices, if the shape is a mesh that can be read.
+    pub mesh: Option<MeshVertices>,
+    /// Vertices of the convex hull of the mesh, m, if a contact uses it.
+    pub hull: Vec<[f64; 3]>,
     /// Position of the geometry in the file.
     pub place: Place,
+}
+
+impl Collision {
+    /// Whether the shape is a mesh that has no convex hull.
+    pub fn is_mesh_without_hull(&self) -> bool {
+        self.shape == Shape::Mesh && self.hull.is_empty()
+    }
+}
+
+/// Vertices of a mesh for its convex hull: those of a file, or as written.
+#[derive(Clone, Debug)]
+pub struct MeshVertices {
+    /// Path or name as written, for messages.
+    pub name: Name,
+    /// Paths at which the file may be; empty for written vertices.
+    pub paths: Vec<PathBuf>,
+    /// Written vertices.
+    pub written: Vec<[f64; 3]>,
+    /// Matrix by which vertices are multiplied, such as scale factors.
+    pub linear: [[f64; 3]; 3],
+    /// Position that is added to the product, m.
+    pub offset: [f64; 3],
+}
+
+impl MeshVertices {
+    /// Returns the vertices of a file, scaled along the axes.
+    pub fn scaled(name: Name, paths: Vec<PathBuf>, scale: [f64; 3]) -> MeshVertices {
+        let linear = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { scale[i] } else { 0.0 }));
+        MeshVertices { name, paths, written: Vec::new(), linear, offset: [0.0; 3] }
+    }
 }
 
 /// Shape of collision or visual geometry; lengths in m.

@@ -14,7 +14,7 @@ pub use constraint::{Constraint, ConstraintKind, Contact, Limit, restitution_coe
 pub use definition::{Definition, Equilibrium, Rank, Table};
 pub use expr::{BinaryOp, Callee, Expr, ExprKind, Member, Name, Term};
 pub use force::{Action, Drive, DriveLaw, DriveOn, DriveQuantity, Target, Wrench, WrittenArguments};
-pub use geometry::{Collision, Mesh, Shape, Visual};
+pub use geometry::{Collision, Mesh, MeshVertices, Shape, Visual};
 pub use structure::{Body, Endpoint, Frame, FreeCoordinate, Joint, Mimic, Particle, Point};
 
 /// Scalar type of the generated functions.

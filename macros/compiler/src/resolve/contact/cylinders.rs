@@ -1,0 +1,305 @@
+//! Contact points of spheres, capsules and boxes with cylinders.
+//!
+//! The distance of a point from a cylinder with two ends has a closed form. A capsule touches it at spheres
+//! around points of its axis: the nearest point, and the ends of the parts of the axis that are next to the
+//! side and above an end. The distance from a convex body along a line is a convex function, whose minimum is
+//! found by bisection and the method of false position, with a fixed number of steps.
+//!
+//! A box touches a cylinder with two ends at points of both bodies. Points of the cylinder on the nearest
+//! face of the box are the ends of its lowest line, where the sides of the face cut it off, and the rim of
+//! the lower end. Points of the box on the cylinder are those of the edges of a face that is opposite to an
+//! end, and the nearest points of the edges at the nearest corner. An unbounded cylinder is treated as a
+//! capsule longer than the box.
+
+use super::boxes::{Face, MIN_SLOPE, OrientedBox, capsule_axis_contacts};
+use super::geometry::{clamp, is_positive};
+use super::surface::SurfaceForm;
+use super::{PointContact, sphere_contact, tangents_of};
+use crate::expr::{Expr, Extreme, Function, Vec3};
+
+/// Distance below which a point is treated as part of the surface, relative to the radius.
+const ON_SURFACE: f64 = 1e-9;
+/// Number of bisections for the nearest point of a line.
+const BISECTIONS: usize = 24;
+/// Number of steps of false position after the bisections.
+const FALSE_POSITIONS: usize = 2;
+
+/// Smallest difference of slopes in false position, which excludes a division by zero.
+const LEAST_RISE: f64 = 1e-30;
+/// Number of alternating projections that determine the nearest corner of a box.
+const PROJECTIONS: usize = 6;
+
+/// Cylinder with two ends, in common axes.
+#[derive(Clone, Copy)]
+pub(super) struct Drum<'g> {
+    pub(super) radius: Expr<'g>,
+    /// Half of the length.
+    pub(super) half: Expr<'g>,
+    pub(super) axis: Vec3<'g>,
+}
+
+/// Position of a point relative to a cylinder.
+struct DrumPoint<'g> {
+    /// Signed distances from the side and from the nearer end.
+    side: Expr<'g>,
+    end: Expr<'g>,
+    /// Outward normals there.
+    radial: Vec3<'g>,
+    axial: Vec3<'g>,
+}
+
+impl<'g> DrumPoint<'g> {
+    /// Returns the position relative to the nearest point of the cylinder; zero inside.
+    fn offset(&self) -> Vec3<'g> {
+        let outside = |distance: Expr<'g>| distance.minimum_or_maximum(Extreme::Max, distance.zero());
+        self.radial * outside(self.side) + self.axial * outside(self.end)
+    }
+}
+
+impl<'g> Drum<'g> {
+    fn locate(&self, p: Vec3<'g>) -> DrumPoint<'g> {
+        let height = self.axis.dot(p);
+        let outward = p - self.axis * height;
+        let least = self.radius * ON_SURFACE;
+        let size = outward.dot(outward).minimum_or_maximum(Extreme::Max, least.square()).sqrt();
+        DrumPoint {
+            side: size - self.radius,
+            end: height.apply_function(Function::Abs) - self.half,
+            radial: outward.map(|x| x / size),
+            axial: self.axis * height.apply_function(Function::Signum),
+        }
+    }
+
+    /// Returns the signed distance of a point, relative to the centre, and the outward normal at the nearest
+    /// point of the surface.
+    fn distance(&self, p: Vec3<'g>) -> (Expr<'g>, Vec3<'g>) {
+        let DrumPoint { side, end, radial, axial } = self.locate(p);
+        let (zero, least) = (side.zero(), self.radius * ON_SURFACE);
+        let (over, beyond) =
+            (side.minimum_or_maximum(Extreme::Max, zero), end.minimum_or_maximum(Extreme::Max, zero));
+        let distance =
+            (over.square() + beyond.square()).minimum_or_maximum(Extreme::Max, least.square()).sqrt();
+        let outside = (radial * over + axial * beyond).map(|x| x / distance);
+        let inside = radial + (axial - radial) * is_positive(end - side);
+        let (depth, is_outside) =
+            (side.minimum_or_maximum(Extreme::Max, end), is_positive(distance - least * 1.5));
+        (depth + (distance - depth) * is_outside, inside + (outside - inside) * is_outside)
+    }
+
+    /// Returns the position of the nearest point of a segment, which extends from `c` by `reach` in both
+    /// directions of the unit vector `own`.
+    fn nearest_on(&self, c: Vec3<'g>, own: Vec3<'g>, reach: Expr<'g>) -> Expr<'g> {
+        // The derivative of the signed distance, which increases along the line.
+        let slope = |t: Expr<'g>| self.distance(c + own * t).1.dot(own);
+        let (mut low, mut high) = (-reach, reach);
+        let narrow = |low: &mut Expr<'g>, high: &mut Expr<'g>, t: Expr<'g>| {
+            let is_beyond = is_positive(slope(t));
+            *high += (t - *high) * is_beyond;
+            *low = t + (*low - t) * is_beyond;
+        };
+        for _ in 0..BISECTIONS {
+            let middle = (low + high) * 0.5;
+            narrow(&mut low, &mut high, middle);
+        }
+        let mut t = low;
+        for _ in 0..FALSE_POSITIONS {
+            let (first, last) = (slope(low), slope(high));
+            let rise = (last - first).minimum_or_maximum(Extreme::Max, reach.num(LEAST_RISE));
+            t = low - first * ((high - low) / rise);
+            t = t.minimum_or_maximum(Extreme::Max, low).minimum_or_maximum(Extreme::Min, high);
+            narrow(&mut low, &mut high, t);
+        }
+        t
+    }
+
+    /// Returns the positions on a segment where its line crosses the unbounded side; if it does not, twice
+    /// the position nearest to the axis. Positions beyond the segment are replaced by its ends.
+    fn side_crossings(&self, c: Vec3<'g>, own: Vec3<'g>, reach: Expr<'g>) -> [Expr<'g>; 2] {
+        let across = |v: Vec3<'g>| v - self.axis * self.axis.dot(v);
+        let (start, direction) = (across(c), across(own));
+        let a = direction.dot(direction).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
+        let b = start.dot(direction);
+        let discriminant = b.square() - a * (start.dot(start) - self.radius.square());
+        let least = a * (self.radius * ON_SURFACE).square();
+        let root = discriminant.minimum_or_maximum(Extreme::Max, least).sqrt();
+        [-root, root].map(|root| clamp((root - b) / a, reach))
+    }
+
+    /// Returns the positions on a segment where its line crosses the planes of both ends. Positions beyond
+    /// the segment are replaced by its ends.
+    fn end_crossings(&self, c: Vec3<'g>, own: Vec3<'g>, reach: Expr<'g>) -> [Expr<'g>; 2] {
+        let (height, rise) = (self.axis.dot(c), self.axis.dot(own));
+        let slope = rise.apply_function(Function::Abs).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
+        let inverse = rise.apply_function(Function::Signum) / slope;
+        [-self.half, self.half].map(|end| clamp((end - height) * inverse, reach))
+    }
+
+    /// Returns the contact of a sphere whose centre is at `c` relative to that of the cylinder.
+    pub(super) fn sphere_contact(&self, radius: Expr<'g>, c: Vec3<'g>) -> PointContact<'g> {
+        let (distance, normal) = self.distance(c);
+        contact(distance - radius, -(normal * radius), normal)
+    }
+
+    /// Returns the contacts of a capsule whose centre is at `c` relative to that of the cylinder.
+    pub(super) fn capsule_contacts(
+        &self,
+        radius: Expr<'g>,
+        (own, reach): (Vec3<'g>, Expr<'g>),
+        c: Vec3<'g>,
+    ) -> Vec<PointContact<'g>> {
+        let crossings =
+            self.end_crossings(c, own, reach).into_iter().chain(self.side_crossings(c, own, reach));
+        let places = crossings.chain([self.nearest_on(c, own, reach)]);
+        let touches = places.map(|t| {
+            let touch = self.sphere_contact(radius, c + own * t);
+            PointContact { point: touch.point + own * t, ..touch }
+        });
+        touches.collect()
+    }
+
+    /// Returns the contacts with a box. `c` leads from the centre of the box to that of the cylinder; points
+    /// are relative to the latter. `rim` returns the directions of four points of a rim, beginning with the
+    /// lowest along a normal.
+    pub(super) fn box_contacts(
+        &self,
+        block: &OrientedBox<'g>,
+        c: Vec3<'g>,
+        rim: &dyn Fn(Vec3<'g>) -> [Vec3<'g>; 4],
+    ) -> Vec<PointContact<'g>> {
+        let mut points = self.contacts_on_face(block, c, rim);
+        let place = |e: Vec3<'g>| {
+            let (distance, normal) = self.distance(e - c);
+            contact(distance, e - c, -normal)
+        };
+        // The edges of the face that is opposite to an end.
+        let cosines = block.axes.map(|axis| axis.dot(self.axis).apply_function(Function::Abs));
+        let facing = largest(cosines);
+        let face = Face::facing(block, &facing, c, self.half);
+        let [_, first, second] = face.axes;
+        let middle = face.axes[0] * face.half[0];
+        for (along, across, reach, offset) in
+            [(first, second, face.half[1], face.half[2]), (second, first, face.half[2], face.half[1])]
+        {
+            for side in [-1.0, 1.0] {
+                let middle = middle + across * (offset * side);
+                let crossings = self.side_crossings(middle - c, along, reach);
+                points.extend(crossings.map(|t| place(middle + along * t)));
+            }
+        }
+        // The edges at the corner that is nearest to the cylinder.
+        let sides = self.nearest_sides(block, c);
+        for k in 0..3 {
+            let middle = sides[(k + 1) % 3] + sides[(k + 2) % 3];
+            let (along, reach) = (block.axes[k], block.half[k]);
+            points.push(place(middle + along * self.nearest_on(middle - c, along, reach)));
+        }
+        points
+    }
+
+    /// Returns the contacts of points of the cylinder with the nearest face of a box.
+    fn contacts_on_face(
+        &self,
+        block: &OrientedBox<'g>,
+        c: Vec3<'g>,
+        rim: &dyn Fn(Vec3<'g>) -> [Vec3<'g>; 4],
+    ) -> Vec<PointContact<'g>> {
+        let (zero, one) = (self.half.zero(), self.half.num(1.0));
+        let separations = std::array::from_fn(|k| {
+            let axis = block.axes[k];
+            let cosine = axis.dot(self.axis);
+            let sine = (one - cosine.square()).minimum_or_maximum(Extreme::Max, zero.num(MIN_SLOPE)).sqrt();
+            let reach = self.half * cosine.apply_function(Function::Abs) + self.radius * sine;
+            axis.dot(c).apply_function(Function::Abs) - block.half[k] - reach
+        });
+        let face = Face::facing(block, &largest(separations), c, self.half);
+        let normal = face.axes[0];
+        let directions = rim(normal);
+        let (down, along) = (directions[0] * self.radius, self.axis * self.half);
+        let (start, direction) = (face.components(c + down), face.components(along));
+        let [from, to] = face.clip_range(&start, &direction);
+        let outside = ((from - to) * self.half).minimum_or_maximum(Extreme::Min, self.half);
+        let line = [from.minimum_or_maximum(Extreme::Min, one), to.minimum_or_maximum(Extreme::Max, -one)]
+            .map(|t| {
+                let height = start[0] + direction[0] * t - face.half[0];
+                face.contact(height.minimum_or_maximum(Extreme::Max, outside), down + along * t)
+            });
+        let lower = along * -(self.axis.dot(normal).apply_function(Function::Signum));
+        let rim = directions[1..].iter().map(|direction| {
+            let point = lower + *direction * self.radius;
+            let at = face.components(c + point);
+            let excess = |k: usize| at[k].apply_function(Function::Abs) - face.half[k];
+            let outside = excess(1).minimum_or_maximum(Extreme::Max, excess(2));
+            face.contact((at[0] - face.half[0]).minimum_or_maximum(Extreme::Max, outside), point)
+        });
+        line.into_iter().chain(rim).collect()
+    }
+
+    /// Returns vectors from the centre of a box to the three faces at the corner that is nearest to the
+    /// cylinder, by alternating projections on both.
+    fn nearest_sides(&self, block: &OrientedBox<'g>, c: Vec3<'g>) -> [Vec3<'g>; 3] {
+        let inner = |v: Vec3<'g>| {
+            let part = |k: usize| block.axes[k] * clamp(block.axes[k].dot(v), block.half[k]);
+            part(0) + part(1) + part(2)
+        };
+        let mut point = inner(c);
+        for _ in 0..PROJECTIONS {
+            point = inner(point - self.locate(point - c).offset());
+        }
+        std::array::from_fn(|k| {
+            let axis = block.axes[k];
+            axis * (block.half[k] * axis.dot(point).apply_function(Function::Signum))
+        })
+    }
+}
+
+/// Returns the contacts of an unbounded cylinder with a box, which touches it as a capsule that is longer
+/// than the box. `c` leads from the centre of the box to that of the cylinder; points are relative to the
+/// latter.
+pub(super) fn pipe_on_box<'g>(
+    radius: Expr<'g>,
+    axis: Vec3<'g>,
+    block: &OrientedBox<'g>,
+    c: Vec3<'g>,
+) -> Vec<PointContact<'g>> {
+    let shift = axis * -axis.dot(c);
+    let [a, b, d] = block.half;
+    let mut points = capsule_axis_contacts(radius, (axis, a + b + d), block, c + shift);
+    points.iter_mut().for_each(|touch| touch.point += shift);
+    points
+}
+
+/// Returns the contacts of a capsule with an unbounded cylinder: its ends, and the point of its axis that is
+/// nearest to that of the cylinder. `c` is the centre of the capsule relative to that of the cylinder.
+pub(super) fn capsule_on_pipe<'g>(
+    radius: Expr<'g>,
+    (own, reach): (Vec3<'g>, Expr<'g>),
+    pipe: &SurfaceForm<'g>,
+    axis: Vec3<'g>,
+    c: Vec3<'g>,
+    rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
+) -> Vec<PointContact<'g>> {
+    let across = own - axis * axis.dot(own);
+    let square = across.dot(across).minimum_or_maximum(Extreme::Max, reach.num(MIN_SLOPE));
+    let near = clamp(-(c.dot(across) / square), reach);
+    let touches = [-reach, near, reach].into_iter().filter_map(|t| {
+        let touch = sphere_contact(radius, pipe, c + own * t, rotate)?;
+        Some(PointContact { point: touch.point + own * t, ..touch })
+    });
+    touches.collect()
+}
+
+/// Returns a contact at a point with this normal.
+fn contact<'g>(gap: Expr<'g>, point: Vec3<'g>, normal: Vec3<'g>) -> PointContact<'g> {
+    let (first, second) = tangents_of(normal);
+    let axes = [("normal", normal), ("first", first), ("second", second)];
+    PointContact { gap, point, axes, conditions: Vec::new() }
+}
+
+/// Returns the selector of the largest of three values.
+fn largest(values: [Expr<'_>; 3]) -> [Expr<'_>; 3] {
+    let [x, y, z] = values;
+    let one = x.num(1.0);
+    let third = is_positive(z - x.minimum_or_maximum(Extreme::Max, y));
+    let second = is_positive(y - x) * (one - third);
+    [one - second - third, second, third]
+}

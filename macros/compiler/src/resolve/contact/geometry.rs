@@ -1,0 +1,55 @@
+//! Functions of expressions that contacts of several surfaces use.
+
+use crate::expr::{Expr, Extreme, Function, Vec3};
+use crate::kinematics::perpendicular_directions;
+
+/// Squared sine of the angle below which lines are treated as parallel.
+const PARALLEL: f64 = 1e-12;
+
+/// Squared sine of the angle below which a rim is treated as flat on a plane; its centre is then the contact.
+pub(super) const FLAT_RIM: f64 = 1e-24;
+
+/// Returns one if `x` is positive, zero if it is negative.
+pub(super) fn is_positive(x: Expr<'_>) -> Expr<'_> {
+    (x.apply_function(Function::Signum) + x.num(1.0)) * 0.5
+}
+
+/// Returns the directions from the centre of a rim to its lowest point over a plane and to the points 90°,
+/// 180° and 270° further along the rim. If the rim lies flat, all its points are lowest; a fixed direction of
+/// the body is then used.
+pub(super) fn rim<'g>(
+    axis: Vec3<'g>,
+    normal: Vec3<'g>,
+    rotate: &dyn Fn(Vec3<'g>) -> Vec3<'g>,
+) -> [Vec3<'g>; 4] {
+    let [(_, fixed), _] = perpendicular_directions(axis);
+    let (a, fixed) = (rotate(axis), rotate(fixed));
+    let cosine = a.dot(normal);
+    let down = a * cosine - normal + fixed * cosine.num(FLAT_RIM.sqrt());
+    let size = down.norm();
+    let lowest = down.map(|x| x / size);
+    let quarter = a.cross(lowest);
+    [lowest, quarter, -lowest, -quarter]
+}
+
+/// Clamps `x` to the interval from `-limit` to `limit`.
+pub(super) fn clamp<'g>(x: Expr<'g>, limit: Expr<'g>) -> Expr<'g> {
+    x.minimum_or_maximum(Extreme::Max, -limit).minimum_or_maximum(Extreme::Min, limit)
+}
+
+/// Returns the closest points of two line segments, as signed distances from their centres along their unit
+/// axes. Each segment has an axis and half its length; `c` leads from the second centre to the first
+/// (Ericson, *Real-Time Collision Detection*, 2005, § 5.1.9). For parallel segments, one of the many
+/// solutions is returned.
+pub(super) fn nearest<'g>(
+    c: Vec3<'g>,
+    (own, own_reach): (Vec3<'g>, Expr<'g>),
+    (axis, reach): (Vec3<'g>, Expr<'g>),
+) -> (Expr<'g>, Expr<'g>) {
+    let (cosine, first, second) = (own.dot(axis), own.dot(c), axis.dot(c));
+    let one = cosine.num(1.0);
+    let across = (one - cosine * cosine).minimum_or_maximum(Extreme::Max, cosine.num(PARALLEL));
+    let guess = clamp((cosine * second - first) / across, own_reach);
+    let far = clamp(second + cosine * guess, reach);
+    (clamp(cosine * far - first, own_reach), far)
+}
