@@ -428,8 +428,8 @@ impl<'a> Struct<'a> {
         let Some(on) = self.length(drive) else {
             return self.notes.push(format!("`{name}`, which acts on a constant length, is omitted"));
         };
-        // The friction law is regularised in the velocity of the weighted sum, and polynomials of higher degree
-        // are not proportional to a power of the weight, so that the weight cannot become a factor.
+        // The friction law is regularised in the velocity of the weighted sum, and polynomials have several
+        // powers of it, so that the weight cannot become a factor.
         let is_scaled = match drive.law {
             DriveLaw::Friction(_) | DriveLaw::PolynomialDamper(_) => true,
             DriveLaw::Slack { stiffness, .. } => stiffness[1..] != [0.0; 2],
