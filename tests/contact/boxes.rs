@@ -325,7 +325,8 @@ fn a_box_falls_on_an_edge() {
         }
     }
     assert!(least > -3e-3, "{least}");
-    assert!(apart < 1e-12, "{apart}");
+    // The search for the impulses of many contact points ends at a relative violation of 1e-8.
+    assert!(apart < 1e-8, "{apart}");
 }
 
 /// Checks that a log across a beam rests on both edges of the beam's face, which carry its weight.

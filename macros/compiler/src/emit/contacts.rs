@@ -3,8 +3,8 @@
 use super::interface::Interface;
 use super::signature::Signature;
 use crate::catalogue::{ContactSizes, Need, Shape};
-use crate::expr::replace::replace_all;
-use crate::kinematics::velocity_gradients;
+use crate::expr::Symbol;
+use crate::expr::replace::{replace_all, symbols_in};
 use crate::mechanism::{Contact, Model, Quantity};
 use std::fmt::Write;
 
@@ -34,19 +34,25 @@ pub struct UnilateralContact {
     drifts: bool,
 }
 
+/// Returns the index of the velocity that a symbol denotes, if it denotes one.
+fn velocity_index(symbol: Symbol) -> Option<usize> {
+    if let Quantity::Velocity(k) = Quantity::from_symbol(symbol) { Some(k) } else { None }
+}
+
 impl UnilateralContact {
     /// Returns the unilateral contacts of a model.
     pub fn from_model(model: &Model<'_>) -> Vec<UnilateralContact> {
         let rates = model.contact_rates();
-        let gradients = velocity_gradients(&rates);
         let at_rest = replace_all(&rates, &|symbol| {
             matches!(Quantity::from_symbol(symbol), Quantity::Velocity(_)).then(|| model.graph.zero())
         });
-        let mut rows = gradients.iter().zip(&at_rest);
+        let mut rows = rates.iter().zip(&at_rest);
         let contact_from_model = |c: &Contact<'_>| {
             let own: Vec<_> = rows.by_ref().take(c.rates.len()).collect();
-            let used = || own.iter().flat_map(|(gradient, _)| gradient.iter()).map(|(column, _)| *column);
-            let columns = used().min().zip(used().max()).map_or((0, 0), |(first, last)| (first, last + 1));
+            let own_rates: Vec<_> = own.iter().map(|(rate, _)| **rate).collect();
+            let used: Vec<usize> = symbols_in(&own_rates).into_iter().filter_map(velocity_index).collect();
+            let ends = used.iter().min().zip(used.iter().max());
+            let columns = ends.map_or((0, 0), |(first, last)| (*first, last + 1));
             UnilateralContact {
                 name: c.name.clone(),
                 rates: c.rates.len(),
@@ -56,7 +62,7 @@ impl UnilateralContact {
                 laws: [c.friction, c.restitution, c.stiction].map(|law| law.constant_value()),
                 has_stiction: c.stiction != c.friction,
                 columns,
-                drifts: own.iter().any(|(_, rate)| **rate != model.graph.zero()),
+                drifts: own.iter().any(|(_, at_rest)| **at_rest != model.graph.zero()),
             }
         };
         model.contacts.iter().map(contact_from_model).collect()

@@ -1,5 +1,6 @@
-//! Substitution of expressions for symbols.
+//! Substitution of expressions for symbols, and the symbols in expressions.
 
+use super::eval::nodes_in_order;
 use super::node::{Function, Id, Node, Symbol};
 use super::{Expr, Graph, Memo};
 
@@ -94,4 +95,17 @@ fn rebuild_node<'g>(
             graph.table_lookup(lookup, std::array::from_fn(|k| replaced_operand(x[k.min(last)])))
         }
     }
+}
+
+/// Returns the symbols of expressions, in ascending order.
+pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
+    let Some(first) = e.first() else { return Vec::new() };
+    let graph = first.graph();
+    let symbol_of_node = |id| match graph.node(id) {
+        Node::Symbol(s) => Some(s),
+        _ => None,
+    };
+    let mut symbols: Vec<Symbol> = nodes_in_order(graph, e).into_iter().filter_map(symbol_of_node).collect();
+    symbols.sort_unstable();
+    symbols
 }

@@ -2,9 +2,10 @@
 //! wrenches and mass properties across the joint. The motion subspace of a joint that is placed by
 //! expressions of coordinates and time depends on these, and its motion may be prescribed in time.
 
-use super::rates::{Partials, position_in, symbols_in};
+use super::rates::{Partials, position_in};
 use super::spatial::{Spatial, map_spatial};
 use crate::expr::replace::substitute_symbols;
+use crate::expr::replace::symbols_in;
 use crate::expr::{Expr, Graph, Rotation, Symbol, Vec3};
 use crate::mechanism::{Coordinate, InQ, Inertia, Link, LinkId, Model, Motion, Quantity, Space};
 

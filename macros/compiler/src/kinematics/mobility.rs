@@ -2,11 +2,11 @@
 //! mechanism's constants and samples of its parameters, and the independent rows are counted there. If none
 //! is found, Grübler's count is used, which assumes that all rows are independent.
 
-use super::rates::symbols_in;
 use super::redundancy::Basis;
 use super::rows::{Rows, random_configuration};
 use crate::diag::Diagnostics;
 use crate::expr::Expr;
+use crate::expr::replace::symbols_in;
 use crate::mechanism::{Chart, Freedom, InV, Model, Pivot, Quantity};
 
 /// Random starts of the search; a third of them if parameters are sampled, whose values may be incompatible.

@@ -1,8 +1,8 @@
 //! Time derivatives of expressions along the motion, and derivatives with respect to the velocities.
 
 use crate::expr::diff::Derivative;
-use crate::expr::eval::nodes_in_order;
-use crate::expr::{Expr, Graph, Node, Rotation, Symbol, Vec3};
+use crate::expr::replace::symbols_in;
+use crate::expr::{Expr, Graph, Rotation, Symbol, Vec3};
 use crate::mechanism::{Chart, Coordinate, Gradient, InQ, InV, Model, Quantity, Space};
 use std::collections::BTreeMap;
 
@@ -107,19 +107,6 @@ fn rate_by<'g>(space: Space<'_, 'g>, e: Expr<'g>, mut partial: impl FnMut(Symbol
         sum += partial(symbol) * rate;
     }
     sum
-}
-
-/// Returns the symbols of expressions, in ascending order.
-pub fn symbols_in(e: &[Expr<'_>]) -> Vec<Symbol> {
-    let Some(first) = e.first() else { return Vec::new() };
-    let graph = first.graph();
-    let symbol_of_node = |id| match graph.node(id) {
-        Node::Symbol(s) => Some(s),
-        _ => None,
-    };
-    let mut symbols: Vec<Symbol> = nodes_in_order(graph, e).into_iter().filter_map(symbol_of_node).collect();
-    symbols.sort_unstable();
-    symbols
 }
 
 /// Returns the time derivative of an entry of `q` as an expression of `q` and `v`: `q̇ = v` for plain
