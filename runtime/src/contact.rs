@@ -452,10 +452,10 @@ where
     }
 }
 
-/// The mean forces of the contacts over `h` seconds under inputs `u` that are held, N, and N·m of stops about
-/// an axis: of each contact the normal one, which presses where it is positive, then those along its
-/// tangents. With the step of a simulation by [`TimeStepping`](crate::integrate::TimeStepping) they are the
-/// ones that act there; an impact counts with its impulse.
+/// Returns the mean contact forces over `h` seconds under constant inputs `u`, N, or N·m for stops of
+/// revolute joints: for each contact the normal force, positive in compression, then the tangential forces.
+/// If `h` is the step of a simulation by [`TimeStepping`](crate::integrate::TimeStepping), these are the
+/// forces of that simulation. An impact contributes its impulse divided by `h`.
 ///
 /// # Errors
 ///

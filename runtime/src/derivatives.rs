@@ -177,8 +177,8 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         None
     }
 
-    /// Returns the acceleration under the inputs `u`, linearised about a state; for a mechanism whose
-    /// equations contain time at an instant ([`at`](crate::at)).
+    /// Returns the acceleration under the inputs `u`, linearised about a state. If the equations of the
+    /// mechanism contain time, call it on the mechanism at a fixed time, [`at`](crate::at).
     ///
     /// ```
     /// use linkwork::prelude::*;

@@ -119,7 +119,7 @@ fn with_meshes(mut figure: Figure, input: &Input, matches: &ArgMatches) -> Resul
     Ok(figure)
 }
 
-/// Reads the configurations of a log.
+/// Reads the states of a log: times, configurations, first-order states and inputs.
 fn from_log(path: &Path, start: &Start<'_, '_>) -> Result<Vec<State>, Stop> {
     let table = Table::read_table(path)?;
     let column = |name: &String| {

@@ -14,7 +14,7 @@ pub(crate) trait Visitor {
     fn visit<const N: usize>(self, robot: &Padded<N, N, N, &Robot>) -> Self::Output;
 }
 
-/// Generic code that is instantiated for robots with unilateral contacts.
+/// Visitor whose generic function is instantiated for the dimensions of a robot with unilateral contacts.
 pub(crate) trait ContactVisitor {
     /// Type of the visitor's result.
     type Output;

@@ -41,7 +41,7 @@ pub(crate) struct Requirement {
     pub count: usize,
 }
 
-/// Scalar constraints of a loaded mechanism.
+/// Names, numbers and groups of the scalar constraints of a loaded mechanism.
 #[derive(Default)]
 pub(crate) struct Constraints {
     pub names: Vec<String>,

@@ -188,7 +188,7 @@ pub trait Source<A, T, const E: usize, const F: usize> {
     /// Number of columns in the list.
     const COUNT: usize;
 
-    /// Returns a column; zeros if the index is out of range.
+    /// Returns column `k` of the list, in registers; zeros if `k` is out of range.
     fn column(&self, k: usize) -> Column<A, T, E, F>;
 }
 

@@ -168,7 +168,7 @@ impl Graph {
         self.tables.borrow_mut().push(table);
     }
 
-    /// Returns the expression with an index.
+    /// Returns the expression of the node with index `id`.
     pub fn expr(&self, id: Id) -> Expr<'_> {
         Expr { graph: self, id }
     }

@@ -56,7 +56,7 @@ pub const SCHEDULE: Pass = Pass {
 
 /// Passes over every candidate program of a function, before its operations are counted.
 pub const DRAFT: &[Pass] = &[FACTOR, NEGATIONS, CHAIN];
-/// Passes over the chosen program of a function.
+/// Passes that run, in this order, on the cheapest candidate program of a function.
 pub const FINISH: &[Pass] = &[SHARE_SUBSUMS, REASSOCIATE, FUSE, SCHEDULE];
 /// Passes over short programs: a transformation from link to link, or the values of a prepared mechanism.
 pub const PART: &[Pass] = &[FUSE];

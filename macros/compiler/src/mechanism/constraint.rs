@@ -17,7 +17,8 @@ pub struct Constraint<'g> {
     /// Expression that is linear in the velocities, with a velocity-free term if motion is prescribed in
     /// time.
     pub rate: Expr<'g>,
-    /// Time derivative of `rate` at zero accelerations.
+    /// Time derivative of `rate` at zero accelerations: the constraint at acceleration level without its
+    /// terms in `v̇`.
     pub bias: Expr<'g>,
     /// Quantity measured by `residual`; without a residual, the quantity whose time derivative is `rate`.
     pub measure: Measure,

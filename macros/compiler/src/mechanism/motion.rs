@@ -73,7 +73,7 @@ impl Motion<'_> {
         }
     }
 
-    /// Returns the entries of `q` that the motion depends on.
+    /// Returns the range of indices in `q` on which the motion of the link relative to its parent depends.
     pub fn configuration_range(&self) -> Range<usize> {
         match self {
             Motion::Turn { coordinate, .. }

@@ -17,7 +17,7 @@ pub const LENGTH: f64 = 80.0;
 const OFFSET: f64 = 3.0;
 /// Cost of a component of the first moment normal to the axis.
 const MOMENT: f64 = 20.0;
-/// Cost of a product of inertia.
+/// Cost of a nonzero off-diagonal entry (product of inertia) of an inertia tensor.
 pub const PRODUCT: f64 = 12.0;
 /// Fraction of these costs for a joint on the ground, where forces are not needed.
 const GROUND: f64 = 0.02;

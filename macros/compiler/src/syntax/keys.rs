@@ -55,7 +55,8 @@ impl<'a> Keys<'a> {
     }
 }
 
-/// Reports a coefficient of restitution by impulses without its value. Returns false then.
+/// Checks that `poisson(…)`, a coefficient of restitution as a ratio of impulses, has one argument. Otherwise
+/// reports an error and returns false.
 fn check_restitution(e: &Expr, cx: &mut Diagnostics) -> bool {
     match &e.kind {
         ExprKind::Call(word, list) if word.id == Some(Callable::Poisson) && list.len() != 1 => {

@@ -36,7 +36,7 @@ pub struct LaneGroup<T> {
     link_width: usize,
 }
 
-/// Degrees of freedom on their paths to the root.
+/// Paths from the links of the degrees of freedom to the root, with the groups that are propagated together.
 pub struct Paths<'a, 'g> {
     joints: &'a [Joint<'g>],
     /// Number of limbs in the expressions of each link.

@@ -66,7 +66,7 @@ struct Cone<T> {
     raised: T,
 }
 
-/// Projection onto a friction cone.
+/// Result of the projection of a contact impulse onto its friction cone.
 #[derive(Clone, Copy)]
 struct Projection<T> {
     normal: T,

@@ -41,7 +41,8 @@ impl Batch {
         Batch::new(&public_name(f), &f.arguments, f.shape, &function_documentation(f), o)
     }
 
-    /// Returns the signature of a function with these arguments and this result.
+    /// Returns the description of the signature of a C function with these arguments and a result of this
+    /// shape.
     pub fn new(name: &str, arguments: &[Argument], shape: Shape, docs: &[String], o: &Outline<'_>) -> Batch {
         let mut results: Vec<Array> = shape
             .result_arrays()

@@ -33,7 +33,7 @@ pub(super) struct ActuatorState {
     pub(super) ident: String,
     /// Documentation.
     pub(super) about: String,
-    /// Unit.
+    /// Unit of the state.
     pub(super) unit: &'static str,
     /// Rate.
     pub(super) rate: Formula,

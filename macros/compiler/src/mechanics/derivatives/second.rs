@@ -37,7 +37,8 @@ use crate::vectorise::{LaneGroup, Paths, Propagated, Visitor};
 /// Second derivatives of a function of configuration, velocity and acceleration. The function is linear in
 /// the acceleration, without mixed derivatives with respect to velocity and acceleration.
 pub struct Hessian<'g> {
-    /// Second derivatives with respect to the configuration, symmetric: along `q ⊕ ε (eᵢ + eⱼ)`.
+    /// Second derivatives with respect to displacements of the configuration, a symmetric matrix: entry
+    /// `(i, j)` is `∂²/∂x ∂y` at `x = y = 0` of the function at `q ⊕ (x eᵢ + y eⱼ)`.
     pub qq: Matrix<'g>,
     /// Mixed derivatives with respect to configuration (rows) and velocity (columns).
     pub qv: Matrix<'g>,

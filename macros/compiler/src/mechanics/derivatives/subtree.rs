@@ -15,7 +15,8 @@ use crate::mechanism::{Inertia, Model};
 pub struct Subtree<'g> {
     /// Mass properties of the link and its descendants, about the link's origin in its axes.
     pub inertia: Inertia<'g>,
-    /// Wrench that produces the accelerations of all these bodies.
+    /// Wrench that produces the accelerations of the link and its descendants, about the link's origin in its
+    /// axes.
     pub wrench: Spatial<'g>,
     /// Multiple of `p`; the factor is the argument `multiple` of `subtrees`.
     momentum: Vec3<'g>,

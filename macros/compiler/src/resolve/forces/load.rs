@@ -76,7 +76,8 @@ fn value_on<'g>(
     Some(all)
 }
 
-/// Returns a force on a rate with a value in the axes of the ground.
+/// Returns the load whose power is `value × rate`. Vectors in the scalar expression `value` are in ground
+/// axes.
 fn scalar_load<'g>(
     b: &Builder<'_, 'g>,
     rate: Value<'g>,

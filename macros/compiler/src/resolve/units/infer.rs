@@ -82,7 +82,8 @@ pub struct Inference<'a> {
     pub origins: BTreeMap<Variable, Origin<'a>>,
     /// Notation of each unknown's unit where its name is the whole expression.
     pub hints: BTreeMap<Variable, String>,
-    /// Numbers of the mechanism's gravity, which are accelerations even as factors of parameters.
+    /// Magnitudes of the numbers in the mechanism's gravity, such as 9.81. A factor of this magnitude may
+    /// have a dimension, even if it multiplies a parameter.
     pub gravity: Vec<f64>,
     /// Dimensions that are plain numbers unless constrained otherwise. If the first of a pair is plain, so is
     /// the second.

@@ -24,7 +24,7 @@ pub enum Value {
     Number(f64),
     /// Direction, with any unit by itself and none as a factor.
     Direction,
-    /// Quantity.
+    /// Quantity with a dimension, and the source of its unit.
     Quantity {
         /// Dimension of the quantity.
         dimension: Dimension,

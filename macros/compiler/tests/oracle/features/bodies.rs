@@ -214,7 +214,8 @@ fn option_numbers(expr: &Expr) -> Option<Vec<usize>> {
     Some(list.iter().map(parse_number).collect())
 }
 
-/// Compares a body with its program. Returns false for a body that calls other functions.
+/// Runs the emitted body of a function and compares its results with those of the function's program. Returns
+/// false if the body calls other functions or an argument has no test value.
 fn check_body(
     model: &Model<'_>,
     output: &Output,
