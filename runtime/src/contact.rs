@@ -2,7 +2,7 @@
 //!
 //! A [`Contact`](crate::elements::Contact) or a [`Limit`](crate::elements::Limit) with `restitution` declares
 //! one. The functions of the dynamics, such as `forward_dynamics`, ignore contacts.
-//! [`TimeStepping`](crate::integrate::TimeStepping) simulates them with the functions [`impact`] and
+//! [`TimeStepping`] simulates them with the functions [`impact`] and
 //! [`solve`], and [`EventDriven`](crate::integrate::EventDriven) locates every event. Other integration
 //! methods do not compile for a mechanism with contacts, so that none is ignored unnoticed; [`apart`] returns
 //! the mechanism without contacts.
@@ -60,7 +60,7 @@
 //! The first two stages are exact: one body on the ground neither creeps nor gains energy. In a step with
 //! more than 12 contact velocities, a violation below `1e-8` of the largest contact velocity ends the search
 //! where iterations hardly reduce it: velocities of redundant contacts contradict each other by rounding
-//! errors. If no stage succeeds, a step of [`TimeStepping`](crate::integrate::TimeStepping) takes the
+//! errors. If no stage succeeds, a step of [`TimeStepping`] takes the
 //! impulses that violate the conditions least, and reports the violation
 //! ([`Sample::violation`](crate::simulate::Sample::violation)). The impulses of each convex problem dissipate
 //! energy, so that such a step adds none either.
@@ -454,7 +454,7 @@ where
 
 /// Returns the mean contact forces over `h` seconds under constant inputs `u`, N, or N·m for stops of
 /// revolute joints: for each contact the normal force, positive in compression, then the tangential forces.
-/// If `h` is the step of a simulation by [`TimeStepping`](crate::integrate::TimeStepping), these are the
+/// If `h` is the step of a simulation by [`TimeStepping`], these are the
 /// forces of that simulation. An impact contributes its impulse divided by `h`.
 ///
 /// # Errors

@@ -33,7 +33,8 @@ static void lw_accelerations_under(@OWN_DECLARED@@T_DECLARED@const double *q, co
     }
     for (int stage = 0; stage < 3; ++stage) {
         const double s = parts[stage] * h;
-        double *sum_rate = stage < 2 ? inner_rate : outer_rate, *sum_a = stage < 2 ? inner_a : outer_a;
+        double *sum_rate = stage < 2 ? inner_rate : outer_rate;
+        double *sum_a = stage < 2 ? inner_a : outer_a;
         for (int k = 0; k < @N@; ++k) {
             dv[k] = s * rate[k];
             w[k] = v[k] + s * a[k];
