@@ -45,12 +45,14 @@ pub struct GearedJoint {
     twist: Scalar,
     #[define(twist - min(max(twist, -backlash / 2), backlash / 2))]
     deflection: Scalar,
-    #[energy(stiffness / 2 * deflection * deflection)]
+    #[define(stiffness * deflection)]
+    transmitted: Scalar,
+    #[energy(transmitted / 2 * deflection)]
     teeth: Potential,
-    #[acts(on = motor, value = -loss * stiffness * abs(deflection) / ratio * tanh(rate(motor) / creep))]
+    #[acts(on = motor, value = -loss * abs(transmitted) / ratio * tanh(rate(motor) / creep))]
     sliding: Torque,
     #[acts(on = motor)]
     drive: Torque,
-    #[output(stiffness * deflection)]
+    #[output(transmitted)]
     torque: Scalar,
 }

@@ -196,6 +196,7 @@ fn exponents_of_unit(unit: &str) -> [i32; 3] {
             "s" => [0, 0, 1],
             "N" => [1, 1, -2],
             "J" => [2, 1, -2],
+            "W" => [2, 1, -3],
             _ => [0; 3],
         };
         (0..3).for_each(|k| sum[k] += sign * power * of[k]);

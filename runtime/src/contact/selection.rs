@@ -133,7 +133,7 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
             *effects = Effects::Matrix(velocities);
             return;
         }
-        let jacobian = velocities.jacobian();
+        let Some(jacobian) = velocities.jacobian() else { return };
         let features = mechanism.features();
         let is_plain = !features.constrained && !features.feedback;
         if is_plain {

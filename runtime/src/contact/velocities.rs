@@ -18,6 +18,15 @@ pub(super) struct ContactVelocities<'a, M, T, const NQ: usize, const NV: usize, 
     drift: OnceCell<SVector<T, NR>>,
 }
 
+/// Returns the value of a cell, which is computed first if the cell is empty.
+fn stored<T>(cell: &OnceCell<T>, value: impl FnOnce() -> T) -> Option<&T> {
+    if cell.get().is_none() {
+        // The cell is empty, so that this cannot fail.
+        let _ = cell.set(value());
+    }
+    cell.get()
+}
+
 impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
     ContactVelocities<'a, M, T, NQ, NV, NR>
 {
@@ -26,12 +35,12 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         Self { mechanism, t, q, jacobian: OnceCell::new(), drift: OnceCell::new() }
     }
 
-    /// Returns the Jacobian of all contacts.
-    pub(super) fn jacobian<const NU: usize, const NK: usize>(&self) -> &SMatrix<T, NR, NV>
+    /// Returns the Jacobian of all contacts, which always exists; an `Option` needs no code that panics.
+    pub(super) fn jacobian<const NU: usize, const NK: usize>(&self) -> Option<&SMatrix<T, NR, NV>>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        self.jacobian.get_or_init(|| self.mechanism.contact_jacobian(self.t, self.q))
+        stored(&self.jacobian, || self.mechanism.contact_jacobian(self.t, self.q))
     }
 
     /// Returns the contact velocities at rest; `None` if no prescribed motion may cause any.
@@ -40,7 +49,7 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
         let drift = || self.mechanism.contact_rates(self.t, self.q, &SVector::zeros());
-        self.mechanism.contacts_drift().then(|| self.drift.get_or_init(drift))
+        if self.mechanism.contacts_drift() { stored(&self.drift, drift) } else { None }
     }
 
     /// Whether prescribed motions cause contact velocities.
@@ -101,7 +110,8 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         let columns = self.mechanism.contact_columns();
         move |k, row| {
             let (first, last) = columns.get(k).copied().unwrap_or((0, NV));
-            let terms = self.jacobian().data.0.iter().zip(&change.data.0[0]).take(last).skip(first);
+            let Some(jacobian) = self.jacobian() else { return T::zero() };
+            let terms = jacobian.data.0.iter().zip(&change.data.0[0]).take(last).skip(first);
             terms.fold(T::zero(), |sum, (column, v)| sum + column.get(row).copied().unwrap_or(T::zero()) * *v)
         }
     }
