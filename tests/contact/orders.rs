@@ -66,8 +66,10 @@ where
     most
 }
 
-/// The distribution of impulses between surfaces is independent of the order of declaration, also if the
-/// motion does not determine it.
+/// Checks that the distribution of impulses between surfaces is independent of the order of declaration, also
+/// if the motion does not determine it. The correction for slip directions that rotate within a step uses the
+/// impulses that were found; where several sliding contacts do not determine them, it differs by less than
+/// the error of the step.
 #[test]
 fn orders_of_declaration_make_no_difference() {
     let (mut random, run) = (Random(5), (2e-3, 60));
@@ -91,7 +93,7 @@ fn orders_of_declaration_make_no_difference() {
         (v[0], v[3], v[8]) = (-1.0, random.next(), -1.0);
         most[1] = most[1].max(difference((&m, &Backwards { friction, restitution }), (q, v), run));
     }
-    assert!(most[0].max(most[1]) < 1e-8, "{most:?}");
+    assert!(most[0] < 1e-4 && most[1] < 1e-8, "{most:?}");
 }
 
 /// Checks that a box which lands flat on another one stays level, whichever box is named first. Contradictory
