@@ -428,7 +428,7 @@ where
 ///
 /// # Errors
 ///
-/// Those of [`impact`].
+/// The errors of [`impact`].
 pub fn solve<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -515,8 +515,9 @@ where
 ///
 /// # Errors
 ///
-/// Those of [`impact`]; [`ConstraintError::Contact`] for a contact that slips where no finite forces satisfy
-/// the contact conditions (Painlevé's paradox); those of the accelerations of a mechanism with constraints.
+/// The errors of [`impact`], and those of the accelerations of a mechanism with constraints;
+/// [`ConstraintError::Contact`] for a contact that slips where no finite forces satisfy the contact
+/// conditions (Painlevé's paradox).
 pub fn acting<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,

@@ -20,7 +20,7 @@ struct Block {
     slope: Contact,
 }
 
-/// The same block as the hull of its corners; the last two points are inside and on an edge of the hull.
+/// Block whose surface is the hull of its corners; two more points are inside and on an edge of the hull.
 #[mechanism(gravity = -9.81 * z)]
 struct BlockHull {
     tilt: f64,

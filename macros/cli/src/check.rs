@@ -1,7 +1,7 @@
 //! The command `linkwork check`: lists every error with its location.
 
 use crate::Stop;
-use crate::input::{Input, Mistake};
+use crate::input::{Input, SourceError};
 use clap::ArgMatches;
 use linkwork_compiler::compile;
 use linkwork_compiler::diag::Diagnostics;
@@ -11,9 +11,9 @@ use serde_json::{Value, json};
 pub fn run_check(matches: &ArgMatches) -> Result<(), Stop> {
     let as_json = matches.get_flag("json");
     let inputs = match Input::select_mechanisms(matches) {
-        Err(Stop::Syntax(mistake)) if as_json => {
-            crate::say!("{:#}", json!({ "messages": [error_as_json(&mistake)] }));
-            return Err(Stop::Mistakes);
+        Err(Stop::Syntax(error)) if as_json => {
+            crate::say!("{:#}", json!({ "messages": [error_as_json(&error)] }));
+            return Err(Stop::Errors);
         }
         inputs => inputs?,
     };
@@ -35,18 +35,18 @@ pub fn run_check(matches: &ArgMatches) -> Result<(), Stop> {
     if as_json {
         crate::say!("{:#}", json!({ "messages": all }));
     }
-    if good { Ok(()) } else { Err(Stop::Mistakes) }
+    if good { Ok(()) } else { Err(Stop::Errors) }
 }
 
-fn error_as_json(mistake: &Mistake) -> Value {
+fn error_as_json(error: &SourceError) -> Value {
     json!({
         "level": "error",
-        "mechanism": mistake.mechanism,
-        "file": mistake.file,
-        "line": mistake.at.map(|at| at.0),
-        "column": mistake.at.map(|at| at.1),
-        "message": mistake.message,
-        "notes": mistake.notes,
-        "help": mistake.helps,
+        "mechanism": error.mechanism,
+        "file": error.file,
+        "line": error.at.map(|at| at.0),
+        "column": error.at.map(|at| at.1),
+        "message": error.message,
+        "notes": error.notes,
+        "help": error.helps,
     })
 }

@@ -108,7 +108,7 @@ impl Input {
         for one in cx.distinct_errors() {
             crate::note!("{}", self.error_with_location(one));
         }
-        Stop::Mistakes
+        Stop::Errors
     }
 
     /// Returns the result if there are no errors; otherwise prints them.
@@ -142,7 +142,7 @@ impl Input {
     }
 
     /// Converts a diagnostic to an error message with its location.
-    pub fn error_with_location(&self, one: &Diagnostic) -> Mistake {
+    pub fn error_with_location(&self, one: &Diagnostic) -> SourceError {
         let (file, at) = match &one.source_position().file {
             Some(at) => (at.file.to_string(), Some((at.line as usize, at.column as usize))),
             None => (
@@ -151,7 +151,7 @@ impl Input {
             ),
         };
         let reword_for_command = |text: &String| if self.is_robot { for_command(text) } else { text.clone() };
-        Mistake {
+        SourceError {
             mechanism: Some(self.declaration.name.clone()),
             file,
             at,
@@ -197,7 +197,7 @@ fn start_of_span(span: Span) -> (usize, usize) {
 
 /// Error in a mechanism's source file.
 #[derive(Default)]
-pub struct Mistake {
+pub struct SourceError {
     /// Name of the struct, if the error is in one.
     pub mechanism: Option<String>,
     /// Path of the file with the error.
@@ -213,7 +213,7 @@ pub struct Mistake {
 }
 
 /// Formats the error as compilers do.
-impl std::fmt::Display for Mistake {
+impl std::fmt::Display for SourceError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.at {
             Some((line, column)) => write!(f, "{}:{line}:{column}: error: {}", self.file, self.message)?,
@@ -254,7 +254,7 @@ fn text_of(path: &Path) -> Result<String, Stop> {
 fn from_rust(path: &Path) -> Result<Vec<Input>, Stop> {
     let text = text_of(path)?;
     let found = mechanism_declarations(&text).map_err(|error| {
-        Stop::Syntax(Box::new(Mistake {
+        Stop::Syntax(Box::new(SourceError {
             file: path.display().to_string(),
             ..syntax::syntax_error_of_text(&text, &error)
         }))

@@ -28,9 +28,9 @@ use std::process::ExitCode;
 /// Reason why a subcommand stops early.
 enum Stop {
     /// The mechanism has errors, which have been printed.
-    Mistakes,
+    Errors,
     /// A syntax error of a file, with its location.
-    Syntax(Box<input::Mistake>),
+    Syntax(Box<input::SourceError>),
     /// The command cannot be carried out, for the reason in the text.
     Failure(String),
 }
@@ -93,9 +93,9 @@ fn main() -> ExitCode {
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(Stop::Mistakes) => ExitCode::from(1),
-        Err(Stop::Syntax(mistake)) => {
-            note!("{mistake}");
+        Err(Stop::Errors) => ExitCode::from(1),
+        Err(Stop::Syntax(error)) => {
+            note!("{error}");
             ExitCode::from(1)
         }
         Err(Stop::Failure(why)) => {

@@ -1,12 +1,12 @@
 //! Syntax errors of Rust files, located as the Rust compiler locates them: unclosed brackets and missing
 //! commas.
 
-use crate::input::Mistake;
+use crate::input::SourceError;
 use proc_macro2::{Delimiter, LineColumn, TokenStream, TokenTree};
 use std::str::FromStr;
 
 /// Returns the error of a text that is not a Rust file; `error` is the error of the parser.
-pub fn syntax_error_of_text(text: &str, error: &syn::Error) -> Mistake {
+pub fn syntax_error_of_text(text: &str, error: &syn::Error) -> SourceError {
     let (at, message, notes) = match TokenStream::from_str(text) {
         Ok(tokens) if error.to_string().starts_with("expected `,`") => {
             let (before, after) = tokens_around_position(&tokens, error.span().start());
@@ -15,7 +15,7 @@ pub fn syntax_error_of_text(text: &str, error: &syn::Error) -> Mistake {
         Ok(_) => (error.span().start(), error.to_string(), Vec::new()),
         Err(lexed) => describe_unbalanced_text(text, lexed.span().start()),
     };
-    Mistake { at: Some((at.line, at.column + 1)), message, notes, ..Mistake::default() }
+    SourceError { at: Some((at.line, at.column + 1)), message, notes, ..SourceError::default() }
 }
 
 /// Returns the position, message and notes for a text that cannot be split into tokens beyond `at`: its

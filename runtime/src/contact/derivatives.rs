@@ -164,7 +164,7 @@ impl<T: Real, const NV: usize, const NR: usize> HeldDerivatives<T, NV, NR> {
 ///
 /// # Errors
 ///
-/// Those of [`forward_dynamics`](super::forward_dynamics).
+/// The errors of [`forward_dynamics`](super::forward_dynamics).
 pub fn forward_dynamics_derivatives<
     M,
     T,
@@ -398,7 +398,7 @@ fn turn<T: Real, const NV: usize, const NR: usize>(
 ///
 /// # Errors
 ///
-/// Those of [`forward_dynamics`](super::forward_dynamics).
+/// The errors of [`forward_dynamics`](super::forward_dynamics).
 pub fn linear_motion<
     M,
     T,

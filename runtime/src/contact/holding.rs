@@ -107,7 +107,7 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
     ///
     /// # Errors
     ///
-    /// Those of [`forward_dynamics`](super::forward_dynamics).
+    /// The errors of [`forward_dynamics`](super::forward_dynamics).
     pub fn held<const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         t: T,
@@ -128,7 +128,7 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
     ///
     /// # Errors
     ///
-    /// Those of [`forward_dynamics`](super::forward_dynamics).
+    /// The errors of [`forward_dynamics`](super::forward_dynamics).
     pub fn held_derivatives<const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         t: T,
@@ -142,12 +142,12 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
         derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains)
     }
 
-    /// [`held_derivatives`](Self::held_derivatives) into what is there, whatever is in it: the matrices are
-    /// long to copy.
+    /// Writes the results of [`held_derivatives`](Self::held_derivatives) into matrices of any content, since
+    /// large matrices take time to copy.
     ///
     /// # Errors
     ///
-    /// Those of [`forward_dynamics`](super::forward_dynamics); what is there then means nothing.
+    /// The errors of [`forward_dynamics`](super::forward_dynamics). The results are undefined then.
     pub fn held_derivatives_into<const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         t: T,

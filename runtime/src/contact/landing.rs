@@ -132,7 +132,7 @@ impl<T: Real, const NV: usize, const NR: usize> LandedDerivatives<T, NV, NR> {
 ///
 /// # Errors
 ///
-/// Those of [`land`].
+/// The errors of [`land`].
 pub fn land_derivatives<
     M,
     T,

@@ -142,7 +142,7 @@ where
 ///
 /// # Errors
 ///
-/// Those of [`project`] and [`check`].
+/// The errors of [`project`] and [`check`].
 #[doc(hidden)]
 pub fn start<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,

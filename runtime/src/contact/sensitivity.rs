@@ -22,12 +22,12 @@ use crate::private::{constant, to_f64};
 use crate::{Derivatives, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// Writes a step of time stepping with its derivatives, for mechanisms with derivatives of their contacts. As
-/// generated code calls it.
+/// Writes a step of time stepping with its derivatives, for mechanisms with derivatives of their contacts.
+/// Generated code calls this function.
 ///
 /// # Errors
 ///
-/// Those of [`discrete::transition`](crate::discrete::transition).
+/// The errors of [`discrete::transition`](crate::discrete::transition).
 pub fn differentiate_step<
     M,
     T,

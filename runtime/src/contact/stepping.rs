@@ -23,9 +23,10 @@ const LARGE: usize = 144;
 
 /// Start of a step.
 pub(super) struct Came<'a, T, const NQ: usize, const NV: usize> {
-    /// The configuration and the velocity.
+    /// Configuration and velocity at the start of the step.
     start: (&'a SVector<T, NQ>, &'a SVector<T, NV>),
-    /// Its velocity at the end of the step ([`velocity_at_end`](Self::velocity_at_end)), evaluated on demand.
+    /// Velocity of the start in the axes at the end of the step
+    /// ([`velocity_at_end`](Self::velocity_at_end)), evaluated on demand.
     carried: Cell<Option<SVector<T, NV>>>,
     /// Duration of the step.
     h: T,
@@ -127,13 +128,13 @@ where
     Ok(closed.contains(&true).then_some(closed))
 }
 
-/// [`solve`] for a step of `h` seconds from `start`, which has led to a configuration and, without contacts,
-/// a velocity; on the way they have been taken to add `given` to the velocity. As methods of integration call
-/// it; with `h = 0` nothing moves.
+/// Applies the contact impulses of a step of `h` seconds, for methods of integration. The motion without
+/// contact impulses from `start` has led to a configuration and a velocity, to which contact forces that were
+/// assumed have added `given`. With `h = 0` no body moves.
 ///
 /// # Errors
 ///
-/// Those of [`impact`].
+/// The errors of [`impact`].
 #[doc(hidden)]
 pub fn step<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
@@ -154,7 +155,7 @@ where
 ///
 /// # Errors
 ///
-/// Those of [`impact`](super::impact).
+/// The errors of [`impact`](super::impact).
 pub(super) fn observed_step<
     M,
     T,

@@ -246,22 +246,22 @@ fn limit_functions(model: &Model<'_>) -> Vec<Function> {
     vec![
         limit_function(
             "lower_limits",
-            "Lower bounds of the coordinates, in the order of `v`; infinite where there are none.",
+            "Lower bounds of the coordinates, in the order of `v`; infinite for coordinates without a limit.",
             None,
         ),
         limit_function(
             "upper_limits",
-            "Upper bounds of the coordinates, in the order of `v`; infinite where there are none.",
+            "Upper bounds of the coordinates, in the order of `v`; infinite for coordinates without a limit.",
             None,
         ),
         limit_function(
             "velocity_limits",
-            "Largest rates, in both directions; infinite where there are none.",
+            "Maximum velocities, in both directions; infinite for coordinates without a limit.",
             None,
         ),
         limit_function(
             "effort_limits",
-            "Largest forces and torques, in both directions; infinite where there are none.",
+            "Maximum forces and torques, in both directions; infinite for coordinates without a limit.",
             None,
         ),
         limit_function("clamp_configuration", "The configuration within its bounds.", Some(("q", nq))),

@@ -40,9 +40,9 @@ pub fn factor_sum_and_items(order: &Order, mut items: Vec<Item>, scope: FactorSc
     kinds.dedup();
     let mut out = Vec::new();
     for n in kinds {
-        let (alike, rest) = items.into_iter().partition(|item| degree_of_rates(item) == n);
+        let (of_degree, rest) = items.into_iter().partition(|item| degree_of_rates(item) == n);
         items = rest;
-        out.extend(if n == 0 { alike } else { factor_sum(&rules, alike) });
+        out.extend(if n == 0 { of_degree } else { factor_sum(&rules, of_degree) });
     }
     out
 }

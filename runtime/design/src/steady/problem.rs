@@ -128,7 +128,7 @@ pub struct Accelerated<const NV: usize, const NU: usize> {
     pub by_force: SMatrix<f64, NV, NV>,
     pub by_u: SMatrix<f64, NV, NU>,
     /// Scale above which the derivative of an acceleration is significant; smaller ones are rounding errors.
-    /// It is computed from the accelerations that the constraints remove and from the largest derivative.
+    /// The scale follows from the accelerations that the constraints remove and from the largest derivative.
     scale: f64,
 }
 
