@@ -86,16 +86,14 @@ use crate::blocks::zeros;
 use crate::constraint::ConstraintError;
 use crate::derivatives::ByMotion;
 use crate::discrete::Transition;
-use crate::integrate::{
-    ContinuousInputs, Dynamics, Error, State, System, TimeStepping, check_positive, enforce_closed_contacts,
-    project_end_of_step, rk4_step_with_contacts,
-};
-use crate::private::{constant, epsilon, positive_part, to_f64};
+use crate::integrate::{Error, TimeStepping};
+use crate::private::{constant, epsilon};
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
 mod apart;
 mod derivatives;
+mod force;
 mod held;
 mod holding;
 mod impulses;
@@ -121,6 +119,7 @@ pub use derivatives::{Columns, held_derivatives};
 pub use derivatives::{
     ContactDerivatives, FirstOrder, HeldDerivatives, forward_dynamics_derivatives, linear_motion,
 };
+pub use force::{acting, forces};
 pub use held::{Held, forward_dynamics};
 pub use holding::{Holding, hold};
 #[doc(hidden)]
@@ -133,16 +132,15 @@ use layout::Layout;
 pub use overlap::start;
 pub use overlap::{check, project};
 pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
-use problem::{Problem, entry};
 #[doc(hidden)]
 pub use response::responses;
 use selection::Selection;
 #[doc(hidden)]
 pub use sensitivity::differentiate_step;
 use solution::{Acted, act};
+use stepping::closed;
 #[doc(hidden)]
 pub use stepping::step;
-use stepping::{Came, closed};
 use velocities::ContactVelocities;
 
 /// Indices of the contact velocities of one contact: the gap velocity first, then the slip velocities. Those
@@ -449,144 +447,6 @@ where
             act(mechanism, (t, &velocities), (q, free), &closed, (before, None), &mut acted)
         }
         None => Ok(Solved { v: *free, impulses: SVector::zeros() }),
-    }
-}
-
-/// Returns the mean contact forces over `h` seconds under constant inputs `u`, N, or N·m for stops of
-/// revolute joints: for each contact the normal force, positive in compression, then the tangential forces.
-/// If `h` is the step of a simulation by [`TimeStepping`], these are the
-/// forces of that simulation. An impact contributes its impulse divided by `h`.
-///
-/// # Errors
-///
-/// [`Error::InvalidStep`] for a time that is zero, negative or not finite; [`Error::Constraint`] with those
-/// of [`impact`].
-pub fn forces<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
-    mechanism: &M,
-    t: T,
-    q: &SVector<T, NQ>,
-    v: &SVector<T, NV>,
-    u: &SVector<T, NU>,
-    h: T,
-) -> Result<SVector<T, NR>, Error>
-where
-    T: Real,
-    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
-{
-    check_positive("the time", h)?;
-    let constraint_error = |reason| Error::Constraint { t: to_f64(t), reason };
-    let held = ContinuousInputs(|_: T, _: &SVector<T, NQ>, _: &SVector<T, NV>| *u);
-    let mut system = System::new(mechanism, held);
-    let start = State { t, q: *q, v: *v };
-    let at_start = system.acceleration(t, q, v);
-    let (rate, impulses) = enforce_closed_contacts(&mut system, &start, &at_start, &Impulses::none(), h)
-        .map_err(constraint_error)?;
-    let (free, given) = rk4_step_with_contacts(&mut system, &start, (&at_start, &rate), h, t + h);
-    let free = project_end_of_step(&system, free, t)?;
-    let came = Came::from((q, v), h, given * (h * constant(0.5)));
-    let end = free.v - given;
-    let velocities = ContactVelocities::at(mechanism, t + h, &free.q);
-    let closed =
-        closed(mechanism, t + h, (&free.q, &end), Some((&came, &velocities))).map_err(constraint_error)?;
-    let Some(closed) = closed else { return Ok(SVector::zeros()) };
-    let selection = Selection::<NK, NR>::select(Layout::of(mechanism), &closed);
-    let mut acted = Acted::nothing(selection, true);
-    let carried = came.velocity_at_end(mechanism, t + h, &free.q);
-    let before = || ContactVelocities::<M, T, NQ, NV, NR>::select(&selection, velocities.of(&carried));
-    let solved = act(
-        mechanism,
-        (t + h, &velocities),
-        (&free.q, &end),
-        &closed,
-        (before, Some(((&given, &impulses), true))),
-        &mut acted,
-    );
-    Ok(solved.map_err(constraint_error)?.impulses / h)
-}
-
-/// The forces of the contacts in a state under inputs `u`, N, and N·m of stops about an axis: of each contact
-/// the normal one, which presses where it is positive, then those along its tangents. Where surfaces slip
-/// they are those of friction against the slip, where none do they are what keeps it so, or what is there
-/// when motion begins. Surfaces that are about to strike each other are taken to rest: an impact has no force
-/// but an [`impact`]'s impulse.
-///
-/// Outputs read them as `contact_force(name)`. They are mean forces of a short time: friction that stops slip
-/// within `1.5e-8` s (`3.5e-4` s with `f32`) acts as in a contact that sticks.
-///
-/// # Errors
-///
-/// The errors of [`impact`], and those of the accelerations of a mechanism with constraints;
-/// [`ConstraintError::Contact`] for a contact that slips where no finite forces satisfy the contact
-/// conditions (Painlevé's paradox).
-pub fn acting<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
-    mechanism: &M,
-    t: T,
-    q: &SVector<T, NQ>,
-    v: &SVector<T, NV>,
-    u: &SVector<T, NU>,
-) -> Result<SVector<T, NR>, ConstraintError>
-where
-    T: Real,
-    M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
-{
-    let gaps = mechanism.contact_gaps(t, q);
-    let closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= touching_distance());
-    if closed.iter().all(|is_closed| !is_closed) {
-        return Ok(SVector::zeros());
-    }
-    let tau = mechanism.generalized_forces(t, q, v, u);
-    let a = mechanism.try_forward_dynamics(t, q, v, &tau)?;
-    let moved = mechanism.contact_rates(t, q, &a) - mechanism.contact_rates(t, q, &SVector::zeros());
-    let h = epsilon::<T>().sqrt();
-    let mut free = mechanism.contact_rates(t, q, v);
-    let layout = Layout::of(mechanism);
-    for (_, first) in layout.gaps() {
-        if let Some(rate) = free.get_mut(first) {
-            *rate = positive_part(*rate);
-        }
-    }
-    free += (moved + mechanism.contact_bias(t, q, v)) * h;
-    if free.iter().any(|rate| !rate.is_finite()) {
-        return Err(ConstraintError::NotFinite);
-    }
-    let laws = lawful(mechanism)?;
-    let responses = mechanism.contact_responses(t, q, &closed);
-    let slip = mechanism.contact_rates(t, q, v);
-    let solve_contacts = |free: &SVector<T, NR>| {
-        let mut problem = Problem::new(layout, &laws, &closed, free);
-        problem.stick(&laws, |k| phase::length(&slip, layout.tangents(k)) <= touching_distance());
-        problem.weigh(&responses.rates);
-        let found = problem.solve_sticking().map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?;
-        Ok((problem.spread(&found), problem.touches(&found).0))
-    };
-    // Rates change in the short time as the accelerations of contacts that stick do, if their forces press
-    // and friction holds them.
-    let sticking = closed.map(|is_closed| if is_closed { Touch::Sticks } else { Touch::Open });
-    if phase::stopped_contact(&slip, &sticking, &laws, layout).is_none()
-        && let Some((_, impulses)) = light::sticking_change(mechanism, t, q, (&sticking, &laws), &-free)
-    {
-        let presses = (0..NK).filter(|k| closed.get(*k) == Some(&true)).all(|k| {
-            let (_, first) = layout.pressing(k);
-            let largest = laws.get(k).map_or(T::zero(), |law| law.stiction) * entry(&impulses, first);
-            entry(&impulses, first) >= T::zero() && phase::length(&impulses, layout.tangents(k)) <= largest
-        });
-        if presses {
-            return Ok(impulses / h);
-        }
-    }
-    let (impulses, touches) = solve_contacts(&free)?;
-    let forces = impulses / h;
-    if phase::stopped_contact(&slip, &touches, &laws, layout).is_none() {
-        return Ok(forces);
-    }
-    // Friction stops slip within this short time: it may be strong, or there is no finite force.
-    let mut accelerations = mechanism.contact_bias(t, q, v) + moved;
-    phase::sustain_slip(&mut accelerations, &slip, layout);
-    let (lasting, touches) = solve_contacts(&accelerations)?;
-    match phase::stopped_contact(&slip, &touches, &laws, layout) {
-        Some(contact) => Err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>(contact)),
-        None if forces.amax() <= lasting.amax() * constant(2.0) => Ok(forces),
-        None => Ok(lasting),
     }
 }
 

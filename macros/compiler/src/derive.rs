@@ -64,22 +64,7 @@ pub fn derive_with<'g>(
         return None;
     }
     if model.kinematic {
-        if !matches!(requests.equations, Printed::Readable | Printed::Structure) {
-            cx.report_error(model.place.clone(), "without inertia there are no equations of motion to print")
-                .add_help("remove `equations` or `inertia = none`");
-            return None;
-        }
-        // The configuration space, frames, constraints, the forces of inputs, and outputs.
-        let asked = Requests { drawing: requests.drawing, ..Requests::default() };
-        let own = (model, speeds.as_ref());
-        let functions =
-            derive_functions(own, asked, passes, &joints, &Extras::default(), Specialisation::None);
-        let constants = drawing_constants(model, requests);
-        return check_derived_output(
-            model,
-            Output { constants, ..output_with_steps(model, &joints, functions) },
-            cx,
-        );
+        return derive_kinematic((model, speeds.as_ref()), requests, passes, &joints, cx);
     }
     let mass = crba::mass_matrix(model, &joints);
     if !singular::check_mass_matrix(model, &joints, &mass, cx)
@@ -87,19 +72,7 @@ pub fn derive_with<'g>(
     {
         return None;
     }
-    if let ([force, ..], Some(what)) = (model.acceleration_forces.as_slice(), without_momentum(requests)) {
-        cx.report_error(
-            force.place.clone(),
-            format!("a force that depends on accelerations excludes {what}"),
-        )
-        .add_help("remove the option that requests them, or these terms of the force");
-        return None;
-    }
-    if let Some(what) = too_long(model, requests) {
-        cx.report_error(model.place.clone(), format!("{what} would be too long")).add_help(
-            "the generated code has no loops, and a line for each of them: request it for a smaller \
-             mechanism",
-        );
+    if !check_requests(model, requests, cx) {
         return None;
     }
     let cyclic = requested_cyclic_coordinates(model, requests, &joints, cx)?;
@@ -157,6 +130,48 @@ pub fn derive_with<'g>(
         ..output_with_steps(model, &joints, functions)
     };
     check_derived_output(model, output, cx)
+}
+
+/// Derives the functions of a mechanism without dynamics: the configuration space, frames, constraints, the
+/// forces of inputs, and outputs.
+fn derive_kinematic<'g>(
+    (model, speeds): (&Model<'g>, Option<&Rc<InSpeeds<'g>>>),
+    requests: Requests,
+    passes: Passes,
+    joints: &[Joint<'g>],
+    cx: &mut Diagnostics,
+) -> Option<Output> {
+    if !matches!(requests.equations, Printed::Readable | Printed::Structure) {
+        cx.report_error(model.place.clone(), "without inertia there are no equations of motion to print")
+            .add_help("remove `equations` or `inertia = none`");
+        return None;
+    }
+    let asked = Requests { drawing: requests.drawing, ..Requests::default() };
+    let own = (model, speeds);
+    let functions = derive_functions(own, asked, passes, joints, &Extras::default(), Specialisation::None);
+    let constants = drawing_constants(model, requests);
+    check_derived_output(model, Output { constants, ..output_with_steps(model, joints, functions) }, cx)
+}
+
+/// Checks that the requested functions exist for a mechanism and are not too long; reports an error and
+/// returns false otherwise.
+fn check_requests(model: &Model<'_>, requests: Requests, cx: &mut Diagnostics) -> bool {
+    if let ([force, ..], Some(what)) = (model.acceleration_forces.as_slice(), without_momentum(requests)) {
+        cx.report_error(
+            force.place.clone(),
+            format!("a force that depends on accelerations excludes {what}"),
+        )
+        .add_help("remove the option that requests them, or these terms of the force");
+        return false;
+    }
+    if let Some(what) = too_long(model, requests) {
+        cx.report_error(model.place.clone(), format!("{what} would be too long")).add_help(
+            "the generated code has no loops, and a line for each of them: request it for a smaller \
+             mechanism",
+        );
+        return false;
+    }
+    true
 }
 
 /// Writes the values of conserved quantities in generalized speeds, if the mechanism defines any.

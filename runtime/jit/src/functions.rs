@@ -278,23 +278,29 @@ impl Maker<'_, '_> {
         }
     }
 
+    /// Returns the name under which a function is called; `None` for a function that is not called by itself.
+    fn name_of_function<'f>(&self, f: &'f derive::Function) -> Option<&'f str> {
+        match f.id {
+            Id::InputDerivatives => Some("generalized_forces_derivatives"),
+            // Variants that write to several matrices: here all functions do.
+            Id::InverseDynamicsDerivativesInto | Id::ForwardDynamicsDerivativesInto => None,
+            Id::Neutral => Some("neutral"),
+            Id::Limits | Id::Figures => Some(f.name.trim_start_matches('_')),
+            _ if is_internal(f.id) => Some(&f.name),
+            _ if f.is_hidden() && f.name.ends_with(RATE_OF_STATE) => Some(&f.name),
+            _ if f.is_hidden() || f.name.starts_with("__") => None,
+            _ => Some(&f.name),
+        }
+    }
+
+    /// Returns the entry of a derived function; `None` for a function that is not called by itself.
     fn entry_of_function(&self, f: &derive::Function) -> Option<Entry> {
         let hidden = is_internal(f.id);
         let has_dynamics = self.find_function(Id::ForwardDynamics).is_some();
-        let name = match f.id {
-            Id::InputDerivatives => "generalized_forces_derivatives",
-            Id::Reaction if has_dynamics && !f.arguments.iter().any(is_contact_forces) => {
-                return self.reaction_entry(f);
-            }
-            // Variants that write to several matrices: here all functions do.
-            Id::InverseDynamicsDerivativesInto | Id::ForwardDynamicsDerivativesInto => return None,
-            Id::Neutral => "neutral",
-            Id::Limits | Id::Figures => f.name.trim_start_matches('_'),
-            _ if hidden => &f.name,
-            _ if f.is_hidden() && f.name.ends_with(RATE_OF_STATE) => &f.name,
-            _ if f.is_hidden() || f.name.starts_with("__") => return None,
-            _ => &f.name,
-        };
+        if f.id == Id::Reaction && has_dynamics && !f.arguments.iter().any(is_contact_forces) {
+            return self.reaction_entry(f);
+        }
+        let name = self.name_of_function(f)?;
         let arguments: Vec<Argument> = f.arguments.iter().copied().filter(is_passed).collect();
         let (n, m) = (self.model.nv(), self.model.nu());
         let program = self.whole(&f.program);

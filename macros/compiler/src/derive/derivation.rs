@@ -188,77 +188,78 @@ impl<'a, 'g> Derivation<'a, 'g> {
     }
 
     /// Returns the outputs of a function of the passive forces, if they have functions of their own.
-    fn passive_force_outputs(&self, outputs: fn(&PassiveForces<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
+    fn passive_outputs(&self, outputs: fn(&PassiveForces<'g>) -> Vec<Expr<'g>>) -> Vec<Expr<'g>> {
         self.model.passive.as_deref().map_or_else(Vec::new, outputs)
     }
 
+    /// Lowers the outputs of a function whose matrices have no structure to exploit.
+    fn lower(&self, outputs: &[Expr<'g>]) -> (Program, Structure) {
+        unstructured(self.specialisation.lower_to_program(outputs))
+    }
+
+    /// Returns the program of a declared function, with the structure of its matrices. Functions that are
+    /// `done` may be used.
     fn program_of_function(&self, declared: &Declared, done: &[Function]) -> (Program, Structure) {
-        let program_without_structure = |program: Program| (program, Structure::default());
-        let program_of_outputs =
-            |outputs: &[Expr<'g>]| program_without_structure(self.specialisation.lower_to_program(outputs));
-        let (model, joints) = (self.model, self.joints);
-        let find_function_by_id = |id: Id| done.iter().find(|f| f.id == id);
-        if let Some(outputs) = self.speeds.and_then(|speeds| self.in_speeds(speeds, declared)) {
-            return program_of_outputs(&outputs);
+        match self.speeds.and_then(|speeds| self.in_speeds(speeds, declared)) {
+            Some(outputs) => self.lower(&outputs),
+            None => self.program_in_velocities(declared, done),
         }
+    }
+
+    /// Returns the program of a function whose velocities are those of the joints, or that contains none.
+    fn program_in_velocities(&self, declared: &Declared, done: &[Function]) -> (Program, Structure) {
+        let (model, joints) = (self.model, self.joints);
+        let find_done = |id: Id| done.iter().find(|f| f.id == id);
         match declared.id {
-            Id::Neutral => program_of_outputs(&neutral(model)),
-            Id::Limits => program_of_outputs(&model.limit_values()),
-            Id::Drawing => program_of_outputs(&model.drawing_numbers()),
-            Id::Heights => program_of_outputs(&model.heights),
-            Id::Figures => program_of_outputs(&model.requirement_values()),
-            Id::GeneralizedForces => program_of_outputs(&forces::generalized_forces(model, joints)),
-            Id::DissipatedPower => program_of_outputs(&[power::dissipated_power(model)]),
-            Id::ControlPower => program_of_outputs(&[power::control_power(model, joints)]),
-            Id::DisturbancePower => program_of_outputs(&[power::disturbance_power(model)]),
-            Id::TotalMass => program_of_outputs(&[energy::mass_and_moment(model, joints).0]),
-            Id::MassMatrix => program_without_structure(self.dynamics().mass_matrix()),
-            Id::InverseDynamics => program_without_structure(self.dynamics().inverse_dynamics()),
-            Id::BiasForces => program_without_structure(self.dynamics().bias_forces()),
-            Id::ForwardDynamics => program_without_structure(self.dynamics().forward_dynamics()),
-            Id::KineticEnergy => program_without_structure(self.dynamics().kinetic_energy()),
-            Id::PotentialEnergy => program_without_structure(self.dynamics().potential_energy()),
-            Id::GeneralizedMomentum => program_without_structure(self.dynamics().generalized_momentum()),
-            Id::MomentumRate => program_without_structure(self.dynamics().momentum_rate()),
-            Id::CenterOfMass => program_without_structure(self.dynamics().center_of_mass()),
-            Id::Momentum => program_without_structure(self.dynamics().momentum()),
-            Id::CentroidalMomentumMatrix => {
-                program_without_structure(self.dynamics().centroidal_momentum_matrix())
-            }
-            Id::CentroidalMomentumBias => {
-                program_without_structure(self.dynamics().centroidal_momentum_bias())
-            }
-            Id::Hamiltonian => program_of_outputs(&self.hamilton_outputs(|h| vec![h.hamiltonian])),
-            Id::CanonicalVelocity => program_of_outputs(&self.hamilton_outputs(|h| h.velocity.clone())),
-            Id::CanonicalMomentumRate => {
-                program_of_outputs(&self.hamilton_outputs(|h| h.momentum_rate.clone()))
-            }
-            Id::Routhian => program_of_outputs(&self.routh_outputs(|r| vec![r.routhian])),
-            Id::CyclicVelocities => program_of_outputs(&self.routh_outputs(|r| r.velocity.clone())),
-            Id::ReducedAccelerations => program_of_outputs(&self.routh_outputs(|r| r.acceleration.clone())),
-            Id::Conserved => program_of_outputs(&self.conserved_quantities()),
-            Id::ConstraintResiduals => program_of_outputs(&constraints::residuals(model)),
-            Id::ConstraintRates => program_of_outputs(&constraints::constraint_velocities(model)),
-            Id::ConstraintJacobian => program_of_outputs(&constraints::jacobian(model)),
-            Id::ConstraintBias => program_of_outputs(&constraints::constraint_biases(model)),
-            Id::ContactGaps => program_of_outputs(&constraints::contact_gaps(model)),
-            Id::ContactRates => program_without_structure(self.of_contacts(&model.contact_rates())),
-            Id::ContactJacobian => program_without_structure(self.contact_jacobian()),
-            Id::ContactBias => {
-                program_without_structure(self.of_contacts(&constraints::contact_biases(model)))
-            }
-            Id::ContactLaws => program_of_outputs(&constraints::contact_laws(model)),
-            Id::ContactResponses => program_without_structure(self.contact_responses()),
-            Id::ContactDerivatives => program_without_structure(self.contact_derivatives()),
-            Id::ConstrainedDynamics => program_without_structure(self.dynamics().constrained_dynamics()),
-            Id::ConstraintResponse => program_without_structure(self.dynamics().constraint_response()),
-            Id::SlippingResponse => program_without_structure(self.dynamics().slipping_response()),
+            Id::Neutral => self.lower(&neutral(model)),
+            Id::Limits => self.lower(&model.limit_values()),
+            Id::Drawing => self.lower(&model.drawing_numbers()),
+            Id::Heights => self.lower(&model.heights),
+            Id::Figures => self.lower(&model.requirement_values()),
+            Id::GeneralizedForces => self.lower(&forces::generalized_forces(model, joints)),
+            Id::DissipatedPower => self.lower(&[power::dissipated_power(model)]),
+            Id::ControlPower => self.lower(&[power::control_power(model, joints)]),
+            Id::DisturbancePower => self.lower(&[power::disturbance_power(model)]),
+            Id::TotalMass => self.lower(&[energy::mass_and_moment(model, joints).0]),
+            Id::MassMatrix => unstructured(self.dynamics().mass_matrix()),
+            Id::InverseDynamics => unstructured(self.dynamics().inverse_dynamics()),
+            Id::BiasForces => unstructured(self.dynamics().bias_forces()),
+            Id::ForwardDynamics => unstructured(self.dynamics().forward_dynamics()),
+            Id::KineticEnergy => unstructured(self.dynamics().kinetic_energy()),
+            Id::PotentialEnergy => unstructured(self.dynamics().potential_energy()),
+            Id::GeneralizedMomentum => unstructured(self.dynamics().generalized_momentum()),
+            Id::MomentumRate => unstructured(self.dynamics().momentum_rate()),
+            Id::CenterOfMass => unstructured(self.dynamics().center_of_mass()),
+            Id::Momentum => unstructured(self.dynamics().momentum()),
+            Id::CentroidalMomentumMatrix => unstructured(self.dynamics().centroidal_momentum_matrix()),
+            Id::CentroidalMomentumBias => unstructured(self.dynamics().centroidal_momentum_bias()),
+            Id::Hamiltonian => self.lower(&self.hamilton_outputs(|h| vec![h.hamiltonian])),
+            Id::CanonicalVelocity => self.lower(&self.hamilton_outputs(|h| h.velocity.clone())),
+            Id::CanonicalMomentumRate => self.lower(&self.hamilton_outputs(|h| h.momentum_rate.clone())),
+            Id::Routhian => self.lower(&self.routh_outputs(|r| vec![r.routhian])),
+            Id::CyclicVelocities => self.lower(&self.routh_outputs(|r| r.velocity.clone())),
+            Id::ReducedAccelerations => self.lower(&self.routh_outputs(|r| r.acceleration.clone())),
+            Id::Conserved => self.lower(&self.conserved_quantities()),
+            Id::ConstraintResiduals => self.lower(&constraints::residuals(model)),
+            Id::ConstraintRates => self.lower(&constraints::constraint_velocities(model)),
+            Id::ConstraintJacobian => self.lower(&constraints::jacobian(model)),
+            Id::ConstraintBias => self.lower(&constraints::constraint_biases(model)),
+            Id::ContactGaps => self.lower(&constraints::contact_gaps(model)),
+            Id::ContactRates => unstructured(self.of_contacts(&model.contact_rates())),
+            Id::ContactJacobian => unstructured(self.contact_jacobian()),
+            Id::ContactBias => unstructured(self.of_contacts(&constraints::contact_biases(model))),
+            Id::ContactLaws => self.lower(&constraints::contact_laws(model)),
+            Id::ContactResponses => unstructured(self.contact_responses()),
+            Id::ContactDerivatives => unstructured(self.contact_derivatives()),
+            Id::ConstrainedDynamics => unstructured(self.dynamics().constrained_dynamics()),
+            Id::ConstraintResponse => unstructured(self.dynamics().constraint_response()),
+            Id::SlippingResponse => unstructured(self.dynamics().slipping_response()),
             Id::Output
             | Id::OutputJacobian
             | Id::OutputDerivatives
             | Id::OutputByParameters
             | Id::Reaction
-            | Id::Touched => program_of_outputs(&outputs::output_function_values(model, declared)),
+            | Id::Touched => self.lower(&outputs::output_function_values(model, declared)),
             Id::MassMatrixInverse => self.structured_derivative(Derivatives::mass_matrix_inverse),
             Id::CoriolisMatrix => self.derivative_program(Derivatives::coriolis_matrix),
             Id::InverseDynamicsDerivatives => {
@@ -267,14 +268,14 @@ impl<'a, 'g> Derivation<'a, 'g> {
             Id::GeneralizedMomentumDerivatives => self.derivative_program(Derivatives::momentum_derivatives),
             Id::MomentumRateDerivatives => self.derivative_program(Derivatives::momentum_rate_derivatives),
             Id::ForwardDynamicsDerivatives => self.structured_derivative(|d| {
-                d.forward_dynamics_derivatives(find_function_by_id(Id::InverseDynamicsDerivatives))
+                d.forward_dynamics_derivatives(find_done(Id::InverseDynamicsDerivatives))
             }),
             Id::Linearize => self.derivative_program(Derivatives::linearize),
             Id::AccelerationsAndInverse => self.structured_derivative(Derivatives::accelerations_and_inverse),
             Id::MotionDerivatives => self.derivative_program(Derivatives::motion_derivatives),
             Id::InputDerivatives => self.derivative_program(Derivatives::input_derivatives),
-            Id::InverseDynamicsDerivativesInto => as_of(find_function_by_id(Id::InverseDynamicsDerivatives)),
-            Id::ForwardDynamicsDerivativesInto => as_of(find_function_by_id(Id::ForwardDynamicsDerivatives)),
+            Id::InverseDynamicsDerivativesInto => as_of(find_done(Id::InverseDynamicsDerivatives)),
+            Id::ForwardDynamicsDerivativesInto => as_of(find_done(Id::ForwardDynamicsDerivatives)),
             Id::InverseDynamicsSecondDerivatives => {
                 self.derivative_program(Derivatives::inverse_dynamics_second_derivatives)
             }
@@ -283,31 +284,21 @@ impl<'a, 'g> Derivation<'a, 'g> {
             }
             Id::ConstraintCurvature => self.derivative_program(Derivatives::constraint_curvature),
             Id::JointTorqueRegressor => {
-                program_of_outputs(&self.regressor_outputs(|i| i.joint_torque_regressor(joints)))
+                self.lower(&self.regressor_outputs(|i| i.joint_torque_regressor(joints)))
             }
             Id::StandardParameters => {
-                program_of_outputs(&self.regressor_outputs(Identification::standard_parameters))
+                self.lower(&self.regressor_outputs(Identification::standard_parameters))
             }
-            Id::BaseRegressor => program_of_outputs(&self.regressor_outputs(Identification::base_regressor)),
-            Id::BaseParameters => {
-                program_of_outputs(&self.regressor_outputs(Identification::base_parameters))
-            }
-            Id::InverseDynamicsByParameters => {
-                program_without_structure(self.sensitivities().inverse_dynamics())
-            }
-            Id::ForwardDynamicsByParameters => {
-                program_without_structure(self.sensitivities().forward_dynamics())
-            }
+            Id::BaseRegressor => self.lower(&self.regressor_outputs(Identification::base_regressor)),
+            Id::BaseParameters => self.lower(&self.regressor_outputs(Identification::base_parameters)),
+            Id::InverseDynamicsByParameters => unstructured(self.sensitivities().inverse_dynamics()),
+            Id::ForwardDynamicsByParameters => unstructured(self.sensitivities().forward_dynamics()),
             Id::GeneralizedForcesByParameters => {
-                program_of_outputs(&parameters::generalized_forces(model, joints).concat())
+                self.lower(&parameters::generalized_forces(model, joints).concat())
             }
             Id::MassMatrixPacked | Id::MassMatrixInto => self.packed_mass_matrix(declared.id),
-            Id::PassiveForces => {
-                program_of_outputs(&self.passive_force_outputs(|passive| passive.forces.clone()))
-            }
-            Id::PassiveDerivatives => {
-                program_of_outputs(&self.passive_force_outputs(|passive| passive.derivatives.clone()))
-            }
+            Id::PassiveForces => self.lower(&self.passive_outputs(|p| p.forces.clone())),
+            Id::PassiveDerivatives => self.lower(&self.passive_outputs(|p| p.derivatives.clone())),
             // Functions that exist only for mechanisms with speeds, which `in_speeds` has already handled.
             Id::RatesOfSpeeds
             | Id::SpeedsOfRates
@@ -316,7 +307,7 @@ impl<'a, 'g> Derivation<'a, 'g> {
             | Id::RateChanges
             | Id::RateAccelerations
             | Id::Turning
-            | Id::Part => program_without_structure(Program::default()),
+            | Id::Part => unstructured(Program::default()),
         }
     }
 
@@ -327,6 +318,11 @@ impl<'a, 'g> Derivation<'a, 'g> {
         let entries = if id == Id::MassMatrixInto { entries.clone() } else { Vec::new() };
         (self.dynamics().mass_matrix().with_outputs(&at), Structure { entries, ..Structure::default() })
     }
+}
+
+/// Returns a program whose matrices have no structure to exploit.
+fn unstructured(program: Program) -> (Program, Structure) {
+    (program, Structure::default())
 }
 
 /// Returns a copy of the program of another function; an empty program if that function does not exist.

@@ -10,6 +10,7 @@ mod composed;
 mod docs;
 mod frames;
 mod function;
+mod header;
 mod in_speeds;
 mod manifold;
 mod names;

@@ -2,9 +2,9 @@
 
 use super::batch::Batch;
 use super::function::Outline;
+use super::header::{frame_names, list_state_entries, parameter_types, reaction_docs, size_macros};
 use super::source::{
-    LIMITS, Named, Options, Selection, Unfit, frame_names, function_definitions, list_state_entries,
-    parameter_types, reaction_arguments, reaction_docs, reject_vector_lanes, size_macros,
+    LIMITS, Named, Options, Selection, Unfit, function_definitions, reaction_arguments, reject_vector_lanes,
 };
 use super::support::Support;
 use super::{frames, manifold, names, steps};

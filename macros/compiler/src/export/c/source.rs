@@ -1,16 +1,16 @@
-//! Text of the C source file and of the header of a mechanism.
+//! Text of the C source file of a mechanism, and selection of the functions that C has.
 
 use super::batch::Batch;
 use super::casadi::Shapes;
 use super::docs;
 use super::function::{
-    Outline, element_of_output, function_declaration, function_definition, public_identifier, public_name,
-    result_arrays,
+    Outline, element_of_output, function_definition, public_identifier, public_name, result_arrays,
 };
+use super::header::{header_text, list_state_entries};
 use super::own_functions;
 use super::scalar::in_single_precision;
 use super::support::Support;
-use super::{frames, manifold, names, steps, tables};
+use super::{frames, manifold, names, steps};
 use crate::catalogue::{Argument, Called, Id, InverseForm, REACTION, Shape, TOUCHED};
 use crate::derive::{Function, Output};
 use crate::lower::{Op, Program};
@@ -500,151 +500,4 @@ fn write_limits(f: &Function, model: &Model<'_>, o: &Outline<'_>, support: &mut 
         o.signature_with_results("void", "limits", &[], &LIMITS),
         o.silence_unused_arguments(&body, &[], &[])
     )
-}
-
-/// Writes one line per entry of a list: index, name and unit.
-fn write_entry_lines(text: &mut String, title: &str, names: &[String], units: &[String]) {
-    if names.is_empty() {
-        return;
-    }
-    let _ = writeln!(text, " *\n * {title}:");
-    for (k, name) in names.iter().enumerate() {
-        let unit = units.get(k).map_or("", String::as_str);
-        let _ = writeln!(
-            text,
-            " *   {k:3}  {:30} {}",
-            docs::comment_safe_text(name),
-            docs::comment_safe_text(unit)
-        );
-    }
-}
-
-/// Returns the lines of a comment that list the entries of configuration, velocity and inputs.
-pub fn list_state_entries(model: &Model<'_>) -> String {
-    let mut text = String::new();
-    write_entry_lines(&mut text, "Configuration q", &model.configuration, &model.units.configuration);
-    let velocities: Vec<String> = model.velocities.iter().map(|(name, _)| name.clone()).collect();
-    write_entry_lines(
-        &mut text,
-        "Velocity v; accelerations a and generalized forces tau in the same order",
-        &velocities,
-        &model.units.velocities,
-    );
-    let inputs: Vec<String> = model.inputs.iter().map(|(name, _)| name.clone()).collect();
-    write_entry_lines(&mut text, "Inputs u", &inputs, &model.units.inputs);
-    text
-}
-
-/// Returns the macros for the sizes of the mechanism.
-pub fn size_macros(model: &Model<'_>, output: &Output, o: &Outline<'_>) -> String {
-    let upper = o.prefix.to_ascii_uppercase();
-    let mut text = "/* Numbers of a configuration, of a velocity, and of the inputs. */\n".to_string();
-    for (name, n) in [("NQ", model.nq()), ("NV", model.nv()), ("NU", model.nu())] {
-        let _ = writeln!(text, "#define {upper}_{name} {n}");
-    }
-    if !output.frames.is_empty() {
-        let _ = writeln!(
-            text,
-            "#define {upper}_FRAMES {}\n#define {upper}_LINKS {}",
-            output.frames.len(),
-            output.links.len()
-        );
-    }
-    text
-}
-
-/// Returns the C types of tables and of the parameter struct.
-pub fn parameter_types(model: &Model<'_>, o: &Outline<'_>) -> String {
-    let mut text = tables::table_type_definition(o);
-    if o.has_own() {
-        text.push_str("/* The parameters, which every function takes first. */\n");
-        let _ = writeln!(text, "typedef struct {} {{", o.prefix);
-        for (k, member) in o.parameters.iter().enumerate() {
-            let unit = model.units.parameters.get(k).map_or("", String::as_str);
-            let _ = writeln!(text, "    double {member}; /* {} */", docs::comment_safe_text(unit));
-        }
-        text.push_str(&tables::table_member_declarations(o, &model.units.tables));
-        let _ = writeln!(text, "}} {};\n", o.prefix);
-    }
-    text
-}
-
-/// Returns the names of the frames, as parts of constants and as in the mechanism.
-pub fn frame_names(model: &Model<'_>) -> Vec<(String, String)> {
-    let names: Vec<String> = model.frames.iter().map(|frame| frame.name.clone()).collect();
-    names::preprocessor_names(&names).into_iter().zip(names).collect()
-}
-
-/// Returns the documentation of the output that a reaction provides.
-pub fn reaction_docs(name: &str) -> String {
-    format!(
-        "The output `{name}` in the motion that state and inputs determine. A reaction is the force or \
-         torque that the parent of a joint exerts on its child, at the origin of the joint's frame."
-    )
-}
-
-/// Comment of the header about options of the compiler.
-const FLAGS: &str = "
- * Compile with -O2 or -O3, and for the local processor (-march=native): products and sums are then fused to
- * one instruction. -fno-math-errno saves checks after square roots; do not use -ffast-math.
- */
-";
-/// Comment of the header about options of the compiler, if results are reproducible.
-const REPRODUCIBLE_FLAGS: &str = "
- * Results have the same bits on every machine, with every compiler and all of its options but -ffast-math.
- * -fno-math-errno saves checks after square roots.
- */
-";
-
-fn header_text(
-    model: &Model<'_>,
-    output: &Output,
-    chosen: &Selection<'_>,
-    o: &Outline<'_>,
-    reproducible: bool,
-) -> String {
-    let upper = o.prefix.to_ascii_uppercase();
-    let mut text = format!(
-        "/* The mechanism `{}`, generated by Linkwork.\n *\n * SI units, angles in radians. Vectors are \
-         plain arrays, matrices are stored column by column. Functions have no\n * state, allocate no memory \
-         and call only the mathematical library: any number of\n * threads may call them. Quaternions are \
-         stored x y z w.\n{}",
-        docs::comment_safe_text(&model.name),
-        list_state_entries(model)
-    );
-    if !chosen.left_out.is_empty() {
-        text.push_str(" *\n * Not in C:\n");
-        chosen.left_out.iter().for_each(|line| text.push_str(&docs::wrap_paragraph(line, " *   ", " *   ")));
-    }
-    text.push_str(" *");
-    text.push_str(if reproducible { REPRODUCIBLE_FLAGS } else { FLAGS });
-    let guard = format!("{upper}_H");
-    let _ = writeln!(text, "#ifndef {guard}\n#define {guard}\n");
-    text.push_str(&size_macros(model, output, o));
-    text.push_str("\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n");
-    text.push_str(&parameter_types(model, o));
-    for f in &chosen.public {
-        let _ = writeln!(text, "{}", function_declaration(f, o));
-    }
-    for f in &chosen.reactions {
-        let name = names::replace_invalid_characters(f.name.strip_prefix(REACTION).unwrap_or_default());
-        let arguments = reaction_arguments(model);
-        text.push_str(&docs::function_comment(
-            &[reaction_docs(&name)],
-            &arguments,
-            &result_arrays(f.shape),
-            o,
-        ));
-        let _ = writeln!(text, "{};\n", o.signature_for_shape(&name, &arguments, f.shape));
-    }
-    if chosen.limits.is_some() {
-        text.push_str(
-            "/* Limits of the coordinates, and maximum magnitudes of velocities and forces, NV numbers each \
-             in the order of v;\n * infinite for a missing limit. */\n",
-        );
-        let _ = writeln!(text, "{};\n", o.signature_with_results("void", "limits", &[], &LIMITS));
-    }
-    text.push_str(&manifold::manifold_declarations(o));
-    text.push_str(&frames::frame_declarations(o, &frame_names(model)));
-    text
 }
