@@ -162,16 +162,16 @@ pub enum Touch {
     /// Sticking contact: surfaces stay together without slip if there is friction. For a friction moment, the
     /// surfaces do not rotate relative to each other.
     Sticks,
-    /// Surfaces stay together, and friction acts against the slip that there is; where there is none it has
-    /// no direction, and does not act.
+    /// Sliding contact: surfaces stay together, and kinetic friction acts against the slip. At zero slip,
+    /// friction has no direction and does not act.
     Slips,
 }
 
-/// What mechanisms with contacts offer, for generic code: `NK` contacts with `NR` rates.
+/// Mechanism with `NK` unilateral contacts and `NR` contact velocities, for generic code.
 ///
-/// `#[mechanism]` implements the trait where a [`Contact`](crate::elements::Contact) or a
-/// [`Limit`](crate::elements::Limit) with `restitution` is declared. Time `t` is in seconds; mechanisms that
-/// do not contain it take any.
+/// `#[mechanism]` implements the trait if a [`Contact`](crate::elements::Contact) or a
+/// [`Limit`](crate::elements::Limit) with `restitution` is declared. Time `t` is in seconds; it has no effect
+/// on mechanisms whose equations do not contain time.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no contacts that open and close",
     label = "expected a mechanism with contacts",
@@ -370,8 +370,10 @@ fn touching_distance<T: Real>() -> T {
     epsilon::<T>().sqrt() * constant(0.67)
 }
 
-/// What contacts do to a velocity at once: an impact where surfaces approach each other. Where none do,
-/// nothing happens.
+/// Returns the velocity after an impact in the configuration `q` at the velocity `v`, with the impulses of
+/// all contacts, N·s, or N·m·s for stops of revolute joints, in the order of
+/// [`contact_rates`](Contacts::contact_rates). If no surfaces approach each other, the velocity is unchanged
+/// and the impulses are zero.
 ///
 /// ```
 /// use linkwork::contact;
@@ -401,9 +403,9 @@ fn touching_distance<T: Real>() -> T {
 ///
 /// # Errors
 ///
-/// [`ConstraintError::Contact`] where no impulses are found: where constraints, or what is driven in time,
-/// hold surfaces that approach each other; [`ConstraintError::Coefficient`] where parameters make a
-/// coefficient what it cannot be.
+/// [`ConstraintError::Contact`] if no impulses satisfy the contact conditions, because constraints or
+/// prescribed motions move surfaces towards each other; [`ConstraintError::Coefficient`] if a coefficient of
+/// friction or restitution that depends on parameters has an invalid value.
 pub fn impact<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
@@ -417,12 +419,12 @@ where
     solve(mechanism, t, q, v, &mechanism.contact_rates(t, q, v))
 }
 
-/// What contacts make of the velocity `free`, m/s and rad/s, that a motion would have without them after a
-/// short time, in the configuration `q` where it would be then. `before` are the
-/// [`contact_rates`](Contacts::contact_rates) when that time began, which restitution answers to. The
-/// impulses are those of the whole time: divided by it they are the mean forces.
+/// Returns the velocity at the end of a short time, with the impulses of all contacts in this time, N·s, or
+/// N·m·s for stops of revolute joints. The impulses divided by the time are the mean contact forces.
 ///
-/// All contacts take part whose gap is zero or less.
+/// `free` is the velocity at the end without contacts (m/s and rad/s), `q` is the configuration at the end,
+/// and `before` are the [`contact_rates`](Contacts::contact_rates) at the beginning, with which restitution
+/// is computed. Contacts with a gap of zero or less are closed.
 ///
 /// # Errors
 ///

@@ -125,8 +125,8 @@ where
         let found = problem.solve_sticking().map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?;
         Ok((problem.spread(&found), problem.touches(&found).0))
     };
-    // In this short time the contact velocities change by the accelerations of sticking contacts, if the normal
-    // forces press and friction can hold the contacts.
+    // In this short time the contact velocities change by the accelerations of sticking contacts, if the
+    // normal forces press and friction can hold the contacts.
     let sticking = closed.map(|is_closed| if is_closed { Touch::Sticks } else { Touch::Open });
     if phase::stopped_contact(&slip, &sticking, &laws, layout).is_none()
         && let Some((_, impulses)) = light::sticking_change(mechanism, t, q, (&sticking, &laws), &-free)
