@@ -132,7 +132,8 @@ where
     Ok(((step.end.q, step.end.v), step.displacement.at(T::one()) / h))
 }
 
-/// Returns one step of a method under constant inputs, and its Jacobians ([`Transition`]), exact to rounding.
+/// Returns one step of a method under constant inputs, and its Jacobians ([`Transition`]). The Jacobians are
+/// exact to rounding, except in the states with contacts that are named below.
 ///
 /// Under constraints the Jacobians are those of the whole step, including the final projection onto the
 /// constraints. Columns are along all displacements, including those that violate the constraints, which the
