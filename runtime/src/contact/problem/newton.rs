@@ -17,7 +17,7 @@ use crate::Real;
 use crate::private::{constant, epsilon};
 
 /// Maximum number of iterations.
-const STEPS: usize = 16;
+pub(super) const STEPS: usize = 16;
 /// Maximum number of iterations that increase the residual.
 const RISES: usize = 3;
 /// Part of the residual that a step leaves if it hardly makes progress.
@@ -29,9 +29,19 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// Returns the best impulses that Newton's method finds. A step is halved until the residual falls; if it
     /// does not, the whole step is taken, a limited number of times; `matrix` is workspace.
     pub(super) fn newton(&self, start: Trial<T, NK, NR>, matrix: &mut Square<T, NR>) -> Trial<T, NK, NR> {
+        self.newton_within(STEPS, start, matrix)
+    }
+
+    /// Returns the result of [`newton`](Self::newton) after a given number of iterations at most.
+    pub(super) fn newton_within(
+        &self,
+        steps: usize,
+        start: Trial<T, NK, NR>,
+        matrix: &mut Square<T, NR>,
+    ) -> Trial<T, NK, NR> {
         let (mut best, mut rises) = ((start.left, start.impulses), 0);
         let mut trial = start;
-        for _ in 0..STEPS {
+        for _ in 0..steps {
             if self.solves(&trial) {
                 // Sums of changes accumulate rounding errors.
                 trial = self.tried(trial.impulses);

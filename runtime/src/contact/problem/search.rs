@@ -2,8 +2,9 @@
 
 use super::super::total::Total;
 use super::linear::{Equations, square};
+use super::newton::STEPS;
 use super::trial::Trial;
-use super::{List, Problem};
+use super::{List, Problem, Square};
 use crate::Real;
 use crate::private::{constant, epsilon, positive_part};
 use core::ops::Range;
@@ -16,6 +17,9 @@ const ROUNDS_OF_STEP: usize = 3;
 const SWEEPS: usize = 21;
 /// Factor of the steps of the natural map in each round.
 const SCALES: [f64; 5] = [1.0, 8.0, 0.125, 64.0, 1.0 / 64.0];
+/// Maximum number of iterations of Newton's method with each of these factors, before convex problems are
+/// solved.
+const STEPS_OF_SCALE: usize = 10;
 /// Increments in which friction grows if all else fails.
 const DEGREES: u32 = 24;
 /// The friction up to which it grows by its angle, in the first half; what is stronger grows by equal factors
@@ -135,7 +139,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         }
         self.prepare_basis();
         let matrix = equations.workspace();
-        let found = self.newton(start, matrix);
+        let found = self.newton_with_all_scales(start, matrix);
         if self.solves(&found) || self.is_enough(&found) {
             // Compared with fast slip, residuals of slow normal velocities are small.
             return self.refined(found, matrix);
@@ -144,11 +148,33 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         if self.solves(&convex) || self.is_enough(&convex) {
             return convex;
         }
-        let found = self.newton(convex, matrix);
-        match found.worst.0 < convex.worst.0 {
+        let best = if found.worst.0 < convex.worst.0 { found } else { convex };
+        let found = self.newton(best, matrix);
+        match found.worst.0 < best.worst.0 {
             true => self.refined(found, matrix),
-            false => convex,
+            false => best,
         }
+    }
+
+    /// Returns the best impulses that Newton's method finds with one factor of the steps of the natural map
+    /// after the other, each time from the best impulses so far: where the method alternates between two
+    /// sets of contact modes with one factor, it often converges with another.
+    fn newton_with_all_scales(
+        &mut self,
+        start: Trial<T, NK, NR>,
+        matrix: &mut Square<T, NR>,
+    ) -> Trial<T, NK, NR> {
+        let mut best = self.newton_within(STEPS_OF_SCALE, start, matrix);
+        for scale in SCALES.into_iter().skip(1) {
+            if self.solves(&best) || self.is_enough(&best) {
+                break;
+            }
+            let next = self.newton_scaled(STEPS_OF_SCALE, best.impulses, scale, matrix);
+            if next.worst.0 < best.worst.0 {
+                best = next;
+            }
+        }
+        best
     }
 
     /// Returns the impulses with which all approaching contacts stick, for which the equations are linear, or
@@ -211,7 +237,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 return impulses;
             }
             // The step of the map that leads to the solution differs between problems.
-            let found = self.newton_scaled(impulses, SCALES[round % SCALES.len()]);
+            let scale = SCALES[round % SCALES.len()];
+            let found = self.newton_scaled(STEPS, impulses, scale, &mut square());
             if self.solves(&found) {
                 return found.impulses;
             }
@@ -294,10 +321,17 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.solves(&self.tried(*impulses))
     }
 
-    /// Newton's method with steps of the map by this factor.
-    fn newton_scaled(&mut self, impulses: List<T, NR>, scale: f64) -> Trial<T, NK, NR> {
+    /// Returns the result of Newton's method after a given number of iterations at most, with a factor of the
+    /// steps of the natural map; `matrix` is workspace.
+    fn newton_scaled(
+        &mut self,
+        steps: usize,
+        impulses: List<T, NR>,
+        scale: f64,
+        matrix: &mut Square<T, NR>,
+    ) -> Trial<T, NK, NR> {
         self.scale = constant(scale);
-        let found = self.newton(self.tried(impulses), &mut square()).impulses;
+        let found = self.newton_within(steps, self.tried(impulses), matrix).impulses;
         self.scale = T::one();
         self.tried(found)
     }
@@ -320,7 +354,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             self.relax(&mut impulses, SWEEPS);
             let mut best = self.tried(impulses);
             for scale in SCALES {
-                let found = self.newton_scaled(best.impulses, scale);
+                let found = self.newton_scaled(STEPS, best.impulses, scale, &mut square());
                 if found.worst.0 < best.worst.0 {
                     best = found;
                 }
