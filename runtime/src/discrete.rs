@@ -59,7 +59,7 @@ pub(crate) use explicit::{Sensitive, Start};
 pub(crate) use implicit::eliminated;
 pub use parameters::{StepByParameters, by_parameters};
 pub use second::{TwiceDifferentiableStep, second_order};
-pub(crate) use time_stepping::{Manifold, smooth_motion};
+pub(crate) use time_stepping::{Manifold, acceleration_at_start, smooth_motion};
 
 /// Returns configuration and velocity after one step of a method under constant inputs `u`.
 ///

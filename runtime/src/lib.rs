@@ -221,8 +221,8 @@ pub mod __private {
         free_tangent_rate_derivatives,
     };
     pub use crate::lie::{
-        ball_carry, ball_difference, ball_integrate, ball_tangent_rate, free_carry, free_difference,
-        free_integrate, free_tangent_rate,
+        ball_carry, ball_carry_rate, ball_difference, ball_integrate, ball_tangent_rate, free_carry,
+        free_carry_rate, free_difference, free_integrate, free_tangent_rate,
     };
     pub use crate::limits::{at_least, at_most};
     pub use crate::multiplication::{

@@ -315,6 +315,22 @@ pub fn free_carry<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
     [x, y, z, wx, wy, wz]
 }
 
+/// Returns the rate of [`ball_carry`] for a displacement that begins at zero and grows at the rate `dv`:
+/// `v × dv`.
+pub fn ball_carry_rate<T: Real>(dv: [T; 3], v: [T; 3]) -> [T; 3] {
+    cross(v, dv)
+}
+
+/// Returns the rate of [`free_carry`] for a displacement that begins at zero and grows at the rate `dv`: the
+/// cross products of both parts of `v` with the angular part of `dv`.
+pub fn free_carry_rate<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
+    let [_, _, _, rx, ry, rz] = dv;
+    let [x, y, z, wx, wy, wz] = v;
+    let rotation = [rx, ry, rz];
+    let ([x, y, z], [wx, wy, wz]) = (cross([x, y, z], rotation), cross([wx, wy, wz], rotation));
+    [x, y, z, wx, wy, wz]
+}
+
 #[cfg(test)]
 #[path = "lie_tests.rs"]
 mod tests;

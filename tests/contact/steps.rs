@@ -237,7 +237,7 @@ fn balls_with_friction_moments_and_on_terrain() {
         q[2] = 0.05;
         let check = |restitution: f64, q: &SVector<f64, 7>, v: [f64; 6], skipped: &[usize]| {
             let m = Bowl { restitution };
-            check_columns(&m, &method, (q, &v.into(), &SVector::zeros()), (1e-6, skipped));
+            check_columns(&m, &method, (q, &v.into(), &SVector::zeros()), (1e-5, skipped));
         };
         check(0.0, &q, [1.0, 0.0, 0.0, 0.0, 20.0, 0.3], &[2, 8]);
         check(0.0, &q, [1.0, 0.0, 0.0, 0.0, 2.0, 0.3], &[2, 8]);
@@ -278,9 +278,7 @@ fn a_stack_of_two_bodies() {
     (q[2], q[7], q[9]) = (0.05, 0.03, 0.2);
     // Displacements and velocities that open or close a contact.
     let closed = [2, 3, 4, 8, 14, 15, 16, 20];
-    // With four stages, the creep of bodies at rest is corrected, which is not differentiated.
-    let method = methods(0.01)[1];
-    for push in [2.0, 20.0] {
+    for (method, push) in methods(0.01).into_iter().flat_map(|method| [(method, 2.0), (method, 20.0)]) {
         check_columns(&m, &method, (&q, &v, &[push].into()), (1e-6, &closed));
     }
 }

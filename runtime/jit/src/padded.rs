@@ -295,6 +295,28 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Hooks<
         let at = State { q: self.configuration_entries(&there), ..State::default() };
         self.fill_vector(Internal::SpeedsOfRates, State { v: self.velocity_entries(&out), ..at }, n, out)
     }
+
+    fn carry_rate(&self, _t: f64, dv: &SVector<f64, NV>, v: &SVector<f64, NV>) -> Option<SVector<f64, NV>> {
+        if self.robot().shared.has_speeds {
+            return None;
+        }
+        let mut out = SVector::<f64, NV>::zeros();
+        crate::space::transport_rate(
+            &self.robot().shared.charts,
+            dv.as_slice(),
+            v.as_slice(),
+            out.as_mut_slice(),
+        );
+        Some(out)
+    }
+
+    fn translation(&self, _t: f64, dv: &SVector<f64, NV>) -> SVector<f64, NV> {
+        let mut out = SVector::<f64, NV>::zeros();
+        if !self.robot().shared.has_speeds {
+            crate::space::translation(&self.robot().shared.charts, dv.as_slice(), out.as_mut_slice());
+        }
+        out
+    }
 }
 
 impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Mechanism<NQ, NV, NU>

@@ -4,8 +4,8 @@ use crate::functions::{Entry, Maker, Matrix, Plan};
 use crate::routine::Values;
 use crate::shared::Shared;
 use linkwork::__private::{
-    ball_carry, ball_difference, ball_integrate, ball_tangent_rate, free_carry, free_difference,
-    free_integrate, free_tangent_rate,
+    ball_carry, ball_carry_rate, ball_difference, ball_integrate, ball_tangent_rate, free_carry,
+    free_carry_rate, free_difference, free_integrate, free_tangent_rate,
 };
 use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::mechanism::{Chart, InQ, InV, Supplied};
@@ -91,6 +91,33 @@ pub(crate) fn transport_velocity(charts: &[Chart], dv: &[f64], v: &[f64], out: &
             }
             Chart::Free(_, InV(v0)) => {
                 out[v0..v0 + 6].copy_from_slice(&free_carry(array_from_list(dv, v0), array_from_list(v, v0)));
+            }
+        }
+    }
+}
+
+/// Copies the linear velocities of free joints.
+pub(crate) fn translation(charts: &[Chart], dv: &[f64], out: &mut [f64]) {
+    for chart in charts {
+        if let Chart::Free(_, InV(v0)) = *chart {
+            out[v0..v0 + 3].copy_from_slice(&dv[v0..v0 + 3]);
+        }
+    }
+}
+
+/// Writes the rate of [`transport_velocity`] for a displacement that begins at zero and grows at the rate
+/// `dv`.
+pub(crate) fn transport_rate(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut [f64]) {
+    for chart in charts {
+        match *chart {
+            Chart::Plain(_, InV(v0)) => out[v0] = 0.0,
+            Chart::Ball(_, InV(v0)) => {
+                out[v0..v0 + 3]
+                    .copy_from_slice(&ball_carry_rate(array_from_list(dv, v0), array_from_list(v, v0)));
+            }
+            Chart::Free(_, InV(v0)) => {
+                out[v0..v0 + 6]
+                    .copy_from_slice(&free_carry_rate(array_from_list(dv, v0), array_from_list(v, v0)));
             }
         }
     }

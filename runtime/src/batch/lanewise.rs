@@ -164,6 +164,22 @@ where
         lane_by_lane(|k| self.mechanism.carry(t.0[k], &lane(q, k), &lane(dv, k), &lane(v, k)))
     }
 
+    /// Computes the rate of the transported velocity for each lane separately.
+    fn carry_rate(
+        &self,
+        t: Lanes<M::Scalar, L>,
+        dv: &Column<M::Scalar, L, NV>,
+        v: &Column<M::Scalar, L, NV>,
+    ) -> Option<Column<M::Scalar, L, NV>> {
+        let rate = |k: usize| self.mechanism.carry_rate(t.0[k], &lane(dv, k), &lane(v, k));
+        let is_known = L > 0 && rate(0).is_some();
+        is_known.then(|| lane_by_lane(|k| rate(k).unwrap_or_else(SVector::zeros)))
+    }
+
+    fn translation(&self, t: Lanes<M::Scalar, L>, dv: &Column<M::Scalar, L, NV>) -> Column<M::Scalar, L, NV> {
+        lane_by_lane(|k| self.mechanism.translation(t.0[k], &lane(dv, k)))
+    }
+
     /// Computes the initial configuration of motion with contacts for each lane separately. An error in one
     /// lane, such as overlapping surfaces, is an error of all lanes.
     fn contact_start(

@@ -246,6 +246,19 @@ where
         self.mechanism.carry(t, q, dv, v)
     }
 
+    fn carry_rate(
+        &self,
+        t: M::Scalar,
+        dv: &SVector<M::Scalar, NV>,
+        v: &SVector<M::Scalar, NV>,
+    ) -> Option<SVector<M::Scalar, NV>> {
+        self.mechanism.carry_rate(t, dv, v)
+    }
+
+    fn translation(&self, t: M::Scalar, dv: &SVector<M::Scalar, NV>) -> SVector<M::Scalar, NV> {
+        self.mechanism.translation(t, dv)
+    }
+
     fn contact_start(
         &self,
         t: M::Scalar,

@@ -262,6 +262,14 @@ where
         self.mechanism.carry(t, q, dv, v)
     }
 
+    fn carry_rate(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> Option<SVector<T, NV>> {
+        self.mechanism.carry_rate(t, dv, v)
+    }
+
+    fn translation(&self, t: T, dv: &SVector<T, NV>) -> SVector<T, NV> {
+        self.mechanism.translation(t, dv)
+    }
+
     /// Returns the configuration unchanged: enforced contacts may overlap.
     fn contact_start(
         &self,

@@ -16,7 +16,7 @@ use super::stepping::observed_step;
 use super::{Touched, touching_distance};
 use crate::blocks::{add_multiple, add_product, zeros};
 use crate::constraint::ConstraintError;
-use crate::discrete::{Manifold, Sensitive, Start, Transition, smooth_motion};
+use crate::discrete::{Manifold, Sensitive, Start, Transition, acceleration_at_start, smooth_motion};
 use crate::integrate::{Error, TimeStepping};
 use crate::private::{constant, to_f64};
 use crate::{Derivatives, Real};
@@ -54,7 +54,7 @@ where
     };
     let h = method.length();
     let (start, velocity) = (Start { mechanism, t, q, u }, Sensitive::start_velocity(v));
-    let before = start.acceleration_in_state(T::zero(), (q, v));
+    let before = acceleration_at_start(method, &start, v);
     let contacts = Touching { mechanism, manifold: Manifold::new(mechanism), start: (q, v) };
     let free = velocity.plus_scaled(h, &before);
     let at_start = Instant { t, h: T::zero(), q, motion: None, free: &free, given: None };

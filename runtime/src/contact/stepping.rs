@@ -291,7 +291,7 @@ where
     touched.impulses = Impulses::record(&selection, &problem.spread(impulses));
     if !is_moving && !moves(touching_distance::<T>() * constant(1e-3)) {
         let states = ((start, v), &touched, &after);
-        let creep = creep_reversal(mechanism, velocities, states, h, (problem, &selection));
+        let creep = creep_reversal(mechanism, (t, velocities), states, h, (problem, &selection));
         if let Some(creep) = creep {
             touched.q = mechanism.integrate(&touched.q, &acted.velocity(&creep));
         }
@@ -327,7 +327,7 @@ fn creep_reversal<
     const CR: usize,
 >(
     mechanism: &M,
-    velocities: &ContactVelocities<'_, M, T, NQ, NV, NR>,
+    (t, velocities): (T, &ContactVelocities<'_, M, T, NQ, NV, NR>),
     ((start, v), touched, after): ((&SVector<T, NQ>, &SVector<T, NV>), &Touched<T, NQ, NV>, &SVector<T, NV>),
     h: T,
     (problem, selection): (&Problem<T, CK, CR>, &Selection<CK, CR>),
@@ -336,8 +336,12 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    let mean = (v + after) * (h * constant(0.5));
-    let excess = mechanism.difference(start, &touched.q) - mean;
+    let half = h * constant(0.5);
+    // At rest, the axes of the middle of the step are those of its start.
+    let mean = (v + mechanism.carry(t, &touched.q, &(after * -half), after)) * half;
+    let translation = mechanism.translation(t, &mean);
+    let expected = mechanism.integrate(&mechanism.integrate(start, &translation), &(mean - translation));
+    let excess = mechanism.difference(&expected, &touched.q);
     let largest = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
     if largest(&excess) <= largest(&touched.held) * h * epsilon::<T>().sqrt() {
         return None;

@@ -51,6 +51,14 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
         multiple
     }
 
+    /// Sets the derivatives of all entries to zero that do not satisfy a condition.
+    pub(crate) fn keep_rows(&mut self, is_kept: impl Fn(usize) -> bool) {
+        let columns = self.by_q.data.0.iter_mut().chain(&mut self.by_v.data.0).chain(&mut self.by_u.data.0);
+        for column in columns {
+            column.iter_mut().enumerate().filter(|(k, _)| !is_kept(*k)).for_each(|(_, x)| *x = T::zero());
+        }
+    }
+
     /// Returns a function of two vectors with derivatives, by the chain rule; `by_a` and `by_b` are the
     /// Jacobians of the function.
     pub(crate) fn compose_derivatives(

@@ -4,7 +4,7 @@
 use super::explicit::{Sensitive, Start};
 use super::{DifferentiableStep, Transition, projected};
 use crate::Real;
-use crate::blocks::{NearlyIdentity, add_multiple, add_product, add_product_of_some, is_zero, scale, zeros};
+use crate::blocks::{NearlyIdentity, add_product, add_product_of_some, is_zero, scale};
 use crate::constraint::{ConstrainedDerivatives, ConstraintError};
 use crate::contact::{Contacts, Visitor};
 use crate::derivatives::Derivatives;
@@ -67,22 +67,6 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
         by.lead(&mut of.by_u);
     }
 
-    /// Returns the derivatives of the motion of a configuration after a displacement, with respect to the
-    /// configuration before it and to the displacement.
-    fn derivatives<T: Real, const NQ: usize, const NU: usize>(
-        &self,
-        q: &SVector<T, NQ>,
-        dv: &SVector<T, NV>,
-    ) -> (SMatrix<T, NV, NV>, SMatrix<T, NV, NV>)
-    where
-        M: Derivatives<NQ, NV, NU, Scalar = T>,
-    {
-        match self.is_plain() {
-            true => (SMatrix::identity(), SMatrix::identity()),
-            false => self.mechanism.integrate_derivatives_at(q, dv),
-        }
-    }
-
     /// Returns a configuration after a displacement, with the derivatives of its motion. Those of the
     /// configuration before are `motion`.
     pub(crate) fn displaced<T: Real, const NQ: usize, const NU: usize>(
@@ -104,6 +88,28 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
         (to, turned.plus_scaled(T::one(), &way))
     }
 
+    /// Returns [`displaced`](Self::displaced) for a displacement during which the origins of free bodies move
+    /// along straight lines.
+    fn displaced_in_space<T: Real, const NQ: usize, const NU: usize>(
+        &self,
+        t: T,
+        from: (&SVector<T, NQ>, &Sensitive<T, NV, NU>),
+        by: &Sensitive<T, NV, NU>,
+    ) -> (SVector<T, NQ>, Sensitive<T, NV, NU>)
+    where
+        M: Derivatives<NQ, NV, NU, Scalar = T>,
+    {
+        let is_linear = self.mechanism.translation(t, &SVector::repeat(T::one()));
+        if is_linear.iter().all(|x| *x == T::zero()) {
+            return self.displaced(from, by);
+        }
+        let mut translation = Sensitive { value: self.mechanism.translation(t, &by.value), ..*by };
+        translation.keep_rows(|k| is_linear.get(k) == Some(&T::one()));
+        let remainder = by.plus_scaled(-T::one(), &translation);
+        let (q, motion) = self.displaced(from, &translation);
+        self.displaced((&q, &motion), &remainder)
+    }
+
     /// Returns a velocity in the axes after a displacement `by` from the configuration `q`, with its
     /// derivatives ([`carry`](crate::integrate::Hooks::carry)). The motion of `q` does not affect it.
     pub(crate) fn carried<T: Real, const NQ: usize, const NU: usize>(
@@ -123,6 +129,50 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
         let mut end = *by;
         self.lead(&by_dv, &mut end);
         self.carried_to(t, q, (&by.value, &end), v)
+    }
+
+    /// Returns [`carried`](Self::carried), or with declared generalized speeds the same speeds.
+    fn transported<T: Real, const NQ: usize, const NU: usize>(
+        &self,
+        t: T,
+        q: &SVector<T, NQ>,
+        by: &Sensitive<T, NV, NU>,
+        v: &Sensitive<T, NV, NU>,
+    ) -> Sensitive<T, NV, NU>
+    where
+        M: Derivatives<NQ, NV, NU, Scalar = T>,
+    {
+        match self.mechanism.carry_rate(t, &v.value, &v.value) {
+            Some(_) => self.carried(t, q, by, v),
+            None => *v,
+        }
+    }
+
+    /// Returns an acceleration at the velocity `v` without the rotation of the axes of ball and free joints.
+    /// Its derivatives are those with respect to the state.
+    fn in_space<T: Real, const NQ: usize, const NU: usize>(
+        &self,
+        mut acceleration: Sensitive<T, NV, NU>,
+        (t, v): (T, &SVector<T, NV>),
+    ) -> Sensitive<T, NV, NU>
+    where
+        M: Derivatives<NQ, NV, NU, Scalar = T>,
+    {
+        let m = self.mechanism;
+        let Some(rate) = m.carry_rate(t, v, v) else { return acceleration };
+        acceleration.value -= rate;
+        for k in self.rotating_indices() {
+            let unit = SVector::<T, NV>::from_fn(|i, _| if i == *k { T::one() } else { T::zero() });
+            let (Some(by_axis), Some(by_vector)) = (m.carry_rate(t, &unit, v), m.carry_rate(t, v, &unit))
+            else {
+                continue;
+            };
+            if let Some(column) = acceleration.by_v.data.0.get_mut(*k) {
+                let terms = by_axis.iter().zip(&by_vector);
+                column.iter_mut().zip(terms).for_each(|(entry, (one, other))| *entry -= *one + *other);
+            }
+        }
+        acceleration
     }
 
     /// Returns a velocity in the axes after a displacement `dv` from `q`, given the derivatives of the motion
@@ -193,6 +243,24 @@ pub(crate) struct SmoothMotion<T, const NQ: usize, const NV: usize, const NU: us
     pub(crate) given: Option<Sensitive<T, NV, NU>>,
 }
 
+/// Returns the acceleration without contacts at the start of a step, with the velocity `v`, as
+/// [`smooth_motion`] takes it.
+pub(crate) fn acceleration_at_start<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    method: &TimeStepping<T>,
+    start: &Start<'_, M, T, NQ, NV, NU>,
+    v: &SVector<T, NV>,
+) -> Sensitive<T, NV, NU>
+where
+    T: Real,
+    M: Derivatives<NQ, NV, NU, Scalar = T>,
+{
+    let acceleration = start.acceleration_in_state(T::zero(), (start.q, v));
+    match method.has_four_stages() {
+        true => acceleration,
+        false => Manifold::new(start.mechanism).in_space(acceleration, (start.t, v)),
+    }
+}
+
 /// Returns the motion in a step with the accelerations `before` at its start, under contact forces that add
 /// `rate` to the velocity per second.
 pub(crate) fn smooth_motion<M, T, const NQ: usize, const NV: usize, const NU: usize>(
@@ -224,34 +292,36 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     let (half, manifold) = (h * constant(0.5), Manifold::new(start.mechanism));
-    let way = v.value * half;
-    let q = start.mechanism.integrate(start.q, &way);
-    let mean = rate.map_or(*before, |rate| before.plus_scaled(T::one(), rate));
-    let mut change = start.acceleration_in_state(half, (&q, &(v.value + mean.value * half)));
-    let (by_place, mut by_velocity) = (change.by_q, change.by_v);
-    scale(&mut by_velocity, half);
+    let to_middle = v.scaled_derivatives(half);
     // Only the configuration and the velocity at the start move the middle.
-    let (mut by_q, mut by_way) = (by_place, by_place);
-    let mut motion = Sensitive { value: way, by_q: zeros(), by_v: zeros(), by_u: zeros() };
-    (motion.by_q, motion.by_v) = manifold.derivatives(start.q, &way);
+    let (middle, motion) =
+        manifold.displaced_in_space(start.t, (start.q, &Sensitive::zero_displacement()), &to_middle);
+    let in_middle = |x: &Sensitive<T, NV, NU>| manifold.transported(start.t, start.q, &to_middle, x);
+    let rate = rate.map(|rate| manifold.carried(start.t, start.q, &to_middle, rate));
+    let under_contacts = |v: Sensitive<T, NV, NU>, h: T| match &rate {
+        Some(rate) => v.plus_scaled(h, rate),
+        None => v,
+    };
+    let velocity = under_contacts(in_middle(&v.plus_scaled(half, before)), half);
+    let own = start.acceleration_in_state(half, (&middle, &velocity.value));
+    let own = manifold.in_space(own, (start.t + half, &velocity.value));
+    let mut acceleration = Sensitive { value: own.value, by_q: own.by_q, by_v: own.by_q, by_u: own.by_u };
     if !manifold.is_plain() {
-        NearlyIdentity::with_range(&motion.by_q, manifold.rotating).follow(&mut by_q);
-        NearlyIdentity::with_range(&motion.by_v, manifold.rotating).follow(&mut by_way);
+        NearlyIdentity::with_range(&motion.by_q, manifold.rotating).follow(&mut acceleration.by_q);
+        let by_displacement = motion.by_v * (T::one() / half);
+        NearlyIdentity::with_range(&by_displacement, manifold.rotating).follow(&mut acceleration.by_v);
     }
-    scale(&mut motion.by_v, half);
-    change.by_q = by_q;
-    add_multiple(&mut change.by_v, half, &by_way);
-    add_product(&mut change.by_q, &by_velocity, &mean.by_q);
-    add_product(&mut change.by_v, &by_velocity, &mean.by_v);
-    add_product(&mut change.by_u, &by_velocity, &mean.by_u);
-    let carried_rate =
-        |h: T| rate.map(|rate| manifold.carried(start.t, start.q, &v.scaled_derivatives(h), rate));
-    if let Some(rate) = carried_rate(half) {
-        change = change.plus_scaled(T::one(), &rate);
-    }
-    let end = v.plus_scaled(h, &change);
-    let q = manifold.displaced((&q, &motion), &end.scaled_derivatives(half));
-    SmoothMotion { q, v: end, given: carried_rate(h).map(|rate| rate.scaled_derivatives(h)) }
+    scale(&mut acceleration.by_v, half);
+    add_product(&mut acceleration.by_q, &own.by_v, &velocity.by_q);
+    add_product(&mut acceleration.by_v, &own.by_v, &velocity.by_v);
+    add_product(&mut acceleration.by_u, &own.by_v, &velocity.by_u);
+    let in_axes_of_middle = under_contacts(in_middle(v).plus_scaled(h, &acceleration), h);
+    let to_end = in_axes_of_middle.scaled_derivatives(half);
+    let end = manifold.transported(start.t + half, &middle, &to_end, &in_axes_of_middle);
+    let given =
+        rate.map(|rate| manifold.carried(start.t + half, &middle, &to_end, &rate).scaled_derivatives(h));
+    let q = manifold.displaced_in_space(start.t + half, (&middle, &motion), &to_end);
+    SmoothMotion { q, v: end, given }
 }
 
 fn four_stages<M, T, const NQ: usize, const NV: usize, const NU: usize>(
@@ -366,7 +436,7 @@ impl<T: Real> DifferentiableStep<T> for TimeStepping<T> {
             return done;
         }
         let (start, v) = (Start { mechanism, t, q, u }, Sensitive::start_velocity(v));
-        let before = start.acceleration_in_state(T::zero(), (q, &v.value));
+        let before = acceleration_at_start(self, &start, &v.value);
         let motion = smooth_motion(self, &start, &v, &before, None);
         *into = Transition::from_sensitive(&motion.q, &motion.v);
         Ok(())

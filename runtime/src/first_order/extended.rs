@@ -306,6 +306,21 @@ where
         join(&self.mechanism.carry(t, q, &dv, &v), &x)
     }
 
+    fn carry_rate(
+        &self,
+        t: M::Scalar,
+        dv: &SVector<M::Scalar, NE>,
+        v: &SVector<M::Scalar, NE>,
+    ) -> Option<SVector<M::Scalar, NE>> {
+        let (dv, v) = (split::<_, NV, NX, NE>(dv).0, split::<_, NV, NX, NE>(v).0);
+        self.mechanism.carry_rate(t, &dv, &v).map(|rate| join(&rate, &SVector::<_, NX>::zeros()))
+    }
+
+    fn translation(&self, t: M::Scalar, dv: &SVector<M::Scalar, NE>) -> SVector<M::Scalar, NE> {
+        let v = split::<_, NV, NX, NE>(dv).0;
+        join(&self.mechanism.translation(t, &v), &SVector::<_, NX>::zeros())
+    }
+
     fn contact_start(
         &self,
         t: M::Scalar,

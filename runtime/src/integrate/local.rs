@@ -67,6 +67,14 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
         self.system.carry(self.origin + t, q, dv, v)
     }
 
+    fn carry_rate(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> Option<SVector<T, NV>> {
+        self.system.carry_rate(self.origin + t, dv, v)
+    }
+
+    fn translation(&self, t: T, dv: &SVector<T, NV>) -> SVector<T, NV> {
+        self.system.translation(self.origin + t, dv)
+    }
+
     fn contact_step(
         &self,
         t: T,

@@ -183,6 +183,14 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     /// for mechanisms with contacts.
     fn carry(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
+    /// Returns the rate of [`carry`](Self::carry) for a displacement that grows at the rate `dv`
+    /// ([`Hooks::carry_rate`](super::Hooks::carry_rate)).
+    fn carry_rate(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> Option<SVector<T, NV>>;
+
+    /// Returns the part of a displacement that is linear velocities of free joints
+    /// ([`Hooks::translation`](super::Hooks::translation)).
+    fn translation(&self, t: T, dv: &SVector<T, NV>) -> SVector<T, NV>;
+
     /// Applies the contact impulses of a step of `h` seconds. The step starts at the configuration and
     /// velocity `start`; without contacts it ends at the configuration and velocity `end`, and during it
     /// contacts were assumed to add the first entry of `given` to the velocity.
@@ -423,6 +431,14 @@ where
 
     fn carry(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> SVector<T, NV> {
         self.mechanism.carry(t, q, dv, v)
+    }
+
+    fn carry_rate(&self, t: T, dv: &SVector<T, NV>, v: &SVector<T, NV>) -> Option<SVector<T, NV>> {
+        self.mechanism.carry_rate(t, dv, v)
+    }
+
+    fn translation(&self, t: T, dv: &SVector<T, NV>) -> SVector<T, NV> {
+        self.mechanism.translation(t, dv)
     }
 
     fn contact_step(

@@ -90,6 +90,10 @@ impl<T: Real> TimeStepping<T> {
     /// q_m = q ⊕ (h/2) v,   v_m = v + (h/2) a(q, v),   v_f = v + h a(q_m, v_m),   q_f = q_m ⊕ (h/2) v_f
     /// ```
     ///
+    /// Velocities of ball and free joints keep their directions in space while the axes of their bodies
+    /// rotate, and `a` is the acceleration without that rotation: a ball that spins in flight keeps its
+    /// velocity, however fast it spins. With declared generalized speeds their rates are added instead.
+    ///
     /// `Λ₀` is added to the velocities as in any step of [`TimeStepping`], in its direction at the midpoint,
     /// and `v₁` and `q₁` follow in the same way. The order is 2 between impacts, and 1 with declared
     /// generalized speeds. If forces and inertia do not depend on velocities, the method is the leapfrog
@@ -171,7 +175,8 @@ pub struct TouchMemory<T, const NV: usize> {
     steady: bool,
     /// Largest violation of the contact conditions that is not reported yet.
     violation: T,
-    /// Acceleration without contacts at the middle of the last step, for [`TimeStepping::leapfrog`].
+    /// Acceleration in space, without contacts, at the middle of the last step, in the axes at its end, for
+    /// [`TimeStepping::leapfrog`].
     acceleration: Option<SVector<T, NV>>,
 }
 
@@ -238,7 +243,15 @@ impl<T: Real> Method<T> for TimeStepping<T> {
             reason => Error::Constraint { t: to_f64(start.t), reason },
         };
         let earlier = memory.acceleration.take().filter(|_| memory.steady);
-        let before = earlier.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
+        let before = earlier.unwrap_or_else(|| {
+            let acceleration = system.acceleration(start.t, &start.q, &start.v);
+            match self.stages {
+                Stages::RungeKutta => acceleration,
+                Stages::Midpoint | Stages::Leapfrog => {
+                    acceleration_in_space(system, (start.t, &start.v), acceleration)
+                }
+            }
+        });
         let (rate, impulses) = match memory.steady {
             true => (memory.rate, memory.impulses),
             false => enforce_closed_contacts(system, start, &before, &memory.impulses, h)
@@ -300,7 +313,8 @@ pub(crate) fn rk4_step_with_contacts<T: Real, D: Dynamics<T, NQ, NV>, const NQ: 
 
 /// Returns the end of a step through the [midpoint](TimeStepping::midpoint) with the accelerations `before`
 /// at its start, under impulses that add `rate` to the velocity per second, their total contribution to the
-/// velocity, and the acceleration without them at the midpoint.
+/// velocity, and the acceleration without them at the midpoint, in the axes at the end of the step. Both
+/// accelerations are [in space](acceleration_in_space).
 fn through_middle<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
@@ -308,16 +322,57 @@ fn through_middle<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: us
     h: T,
     t: T,
 ) -> (State<T, NQ, NV>, SVector<T, NV>, SVector<T, NV>) {
-    let half = h * constant(0.5);
-    let middle = system.integrate(&start.q, &(start.v * half));
-    let at_middle = system.acceleration(start.t + half, &middle, &(start.v + (before + rate) * half));
-    let still = SVector::zeros();
-    if *rate == still {
-        let v = start.v + at_middle * h;
-        return (State { t, q: system.integrate(&middle, &(v * half)), v }, still, at_middle);
-    }
+    let (half, still) = (h * constant(0.5), SVector::zeros());
+    let to_middle = start.v * half;
+    let middle = displaced_in_space(system, (start.t, &start.q), &to_middle);
+    let in_middle = |system: &D, x: &SVector<T, NV>| transported(system, (start.t, &start.q), &to_middle, x);
+    let is_free = *rate == still;
     // Impulses keep their directions in space, like forces that act in the middle.
-    let transported_rate = |h: T| system.carry(start.t, &start.q, &(start.v * h), rate);
-    let v = start.v + (at_middle + transported_rate(half)) * h;
-    (State { t, q: system.integrate(&middle, &(v * half)), v }, transported_rate(h) * h, at_middle)
+    let rate = if is_free { still } else { system.carry(start.t, &start.q, &to_middle, rate) };
+    let v = in_middle(system, &(start.v + before * half)) + rate * half;
+    let acceleration = system.acceleration(start.t + half, &middle, &v);
+    let acceleration = acceleration_in_space(system, (start.t + half, &v), acceleration);
+    let v = in_middle(system, &start.v) + (acceleration + rate) * h;
+    let to_end = v * half;
+    let at_end = |system: &D, x: &SVector<T, NV>| transported(system, (start.t + half, &middle), &to_end, x);
+    let given = if is_free { still } else { system.carry(start.t + half, &middle, &to_end, &rate) * h };
+    let end =
+        State { t, q: displaced_in_space(system, (start.t + half, &middle), &to_end), v: at_end(system, &v) };
+    (end, given, at_end(system, &acceleration))
+}
+
+/// Returns the configuration after a displacement during which the origins of free bodies move along straight
+/// lines.
+fn displaced_in_space<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &D,
+    (t, q): (T, &SVector<T, NQ>),
+    by: &SVector<T, NV>,
+) -> SVector<T, NQ> {
+    let translation = system.translation(t, by);
+    match translation.iter().all(|x| *x == T::zero()) {
+        true => system.integrate(q, by),
+        false => system.integrate(&system.integrate(q, &translation), &(by - translation)),
+    }
+}
+
+/// Returns a velocity in the axes after a displacement; with declared generalized speeds, the same speeds.
+fn transported<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &D,
+    (t, q): (T, &SVector<T, NQ>),
+    displacement: &SVector<T, NV>,
+    v: &SVector<T, NV>,
+) -> SVector<T, NV> {
+    match system.carry_rate(t, v, v) {
+        Some(_) => system.carry(t, q, displacement, v),
+        None => *v,
+    }
+}
+
+/// Returns the rate of a velocity without the rotation of the axes of ball and free joints.
+fn acceleration_in_space<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+    system: &D,
+    (t, v): (T, &SVector<T, NV>),
+    acceleration: SVector<T, NV>,
+) -> SVector<T, NV> {
+    system.carry_rate(t, v, v).map_or(acceleration, |rate| acceleration - rate)
 }

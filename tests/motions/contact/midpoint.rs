@@ -94,3 +94,41 @@ fn a_block_slides_and_rests() {
     let later = later.method(method).duration(60.0).finish().unwrap();
     assert!((later.q - rests.q).amax() < 1e-10, "{}", (later.q - rests.q).amax());
 }
+
+/// Ball above a floor that it does not reach.
+#[mechanism(gravity = -9.81 * z)]
+struct Thrown {
+    #[body(mass = 0.1, inertia = sphere(0.1, 0.03))]
+    ball: Body,
+    #[joint(ground -> ball)]
+    pose: Free,
+    #[contact(ball.sphere(0.03), ground.plane(z), friction = 0.4)]
+    floor: Contact,
+}
+
+/// A ball that spins by almost a radian in each step flies along the parabola of a point, keeps its spin, and
+/// rotates at the rate of the spin: midpoint and leapfrog steps are exact for it.
+#[test]
+fn a_ball_that_spins_fast_flies_along_a_parabola() {
+    let (h, duration) = (4.6e-3, 0.46);
+    let (velocity, spin) = ([1.0, -2.0, 3.0], [120.0, -90.0, 130.0]);
+    let mut q = Thrown {}.neutral();
+    q[2] = 5.0;
+    let v = SVector::from([velocity[0], velocity[1], velocity[2], spin[0], spin[1], spin[2]]);
+    for method in [TimeStepping::step(h).midpoint(), TimeStepping::step(h).leapfrog()] {
+        let end = simulate(&Thrown {}).from(q, v).method(method).duration(duration).finish().unwrap();
+        let fall = 0.5 * 9.81 * duration * duration;
+        let place = [velocity[0] * duration, velocity[1] * duration, 5.0 + velocity[2] * duration - fall];
+        for k in 0..3 {
+            assert!((end.q[k] - place[k]).abs() < 1e-12, "{k}: {} {}", end.q[k], place[k]);
+            assert!((end.v[3 + k] - spin[k]).abs() < 1e-11);
+        }
+        let energy = |q: &SVector<f64, 7>, v: &SVector<f64, 6>| {
+            Thrown {}.kinetic_energy(q, v) + Thrown {}.potential_energy(q)
+        };
+        assert!((energy(&end.q, &end.v) / energy(&q, &v) - 1.0).abs() < 1e-12);
+        let speed = spin.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let half = 0.5 * speed * duration;
+        assert!((end.q[6].abs() - half.cos().abs()).abs() < 1e-11);
+    }
+}

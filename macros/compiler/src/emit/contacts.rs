@@ -228,24 +228,37 @@ pub fn write_steps(out: &mut String, i: &Interface<'_>, s: &Signature<'_>) {
             V) -> ::core::option::Option<V::Output> {{
             ::core::option::Option::Some(::linkwork::contact::Visitor::visit(visitor, self))
         }}",
-        velocity_transport_hook(i, s), s.nv, s.nq, s.nv, s.nq, s.nv, s.nu
+        velocity_transport_hooks(i, s), s.nv, s.nq, s.nv, s.nq, s.nv, s.nu
     );
 }
 
-/// Returns the hook that expresses a velocity in the axes, and in the generalized speeds, of another
-/// configuration.
-fn velocity_transport_hook(i: &Interface<'_>, s: &Signature<'_>) -> String {
+/// Returns the hooks that express a velocity in the axes, and in the generalized speeds, of another
+/// configuration, its rate of change, and the linear velocities of free joints.
+fn velocity_transport_hooks(i: &Interface<'_>, s: &Signature<'_>) -> String {
     let (scalar, q, v) = (s.scalar.scalar_name(), s.vector_type(s.nq), s.vector_type(s.nv));
-    let (name, body) = match i.facts.speeds {
-        false => ("_q", "self.__carry(dv, v)"),
-        true => (
-            "q",
-            "let way = self.rates_of_speeds(q, dv);
-            let there = self.__integrate(q, &way);
-            self.speeds_of_rates(&there, &self.__carry(&way, &self.rates_of_speeds(q, v)))",
-        ),
-    };
-    format!("#[inline]\nfn carry(&self, t: {scalar}, {name}: &{q}, dv: &{v}, v: &{v}) -> {v} {{ {body} }}")
+    if i.facts.speeds {
+        return format!(
+            "#[inline]
+            fn carry(&self, t: {scalar}, q: &{q}, dv: &{v}, v: &{v}) -> {v} {{
+                let way = self.rates_of_speeds(q, dv);
+                let there = self.__integrate(q, &way);
+                self.speeds_of_rates(&there, &self.__carry(&way, &self.rates_of_speeds(q, v)))
+            }}
+            fn carry_rate(&self, t: {scalar}, _dv: &{v}, _v: &{v}) -> ::core::option::Option<{v}> {{
+                ::core::option::Option::None
+            }}"
+        );
+    }
+    format!(
+        "#[inline]
+        fn carry(&self, t: {scalar}, _q: &{q}, dv: &{v}, v: &{v}) -> {v} {{ self.__carry(dv, v) }}
+        #[inline]
+        fn carry_rate(&self, t: {scalar}, dv: &{v}, v: &{v}) -> ::core::option::Option<{v}> {{
+            ::core::option::Option::Some(self.__carry_rate(dv, v))
+        }}
+        #[inline]
+        fn translation(&self, t: {scalar}, dv: &{v}) -> {v} {{ self.__translation(dv) }}"
+    )
 }
 
 /// Adds a table of the contacts to the documentation of the struct.

@@ -48,17 +48,58 @@ pub fn write_manifold(out: &mut String, charts: Option<&[Chart]>, speeds: bool, 
     }
 }
 
-/// Writes the hidden function that transports velocities, which contacts need.
+/// Writes the hidden functions that transport velocities, which contacts need.
 pub fn write_carry(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
     let v = s.vector_type(s.nv);
-    let carry = ManifoldFunction {
-        name: "carry",
-        about: "The velocity `v` in the axes that ball and free joints have after the displacement `dv`.",
-        signature: format!("dv: &{v}, v: &{v}) -> {v}"),
-        arguments: [("dv", s.nv), ("v", s.nv)],
-        result: s.nv,
-    };
-    carry.write_manifold_function(out, "__", charts, s);
+    let functions = [
+        ("carry", "The velocity `v` in the axes that ball and free joints have after the displacement `dv`."),
+        (
+            "carry_rate",
+            "The rate of the components of a velocity that is `v`, and constant in space, during a motion \
+             with velocity `dv`.",
+        ),
+    ];
+    for (name, about) in functions {
+        let function = ManifoldFunction {
+            name,
+            about,
+            signature: format!("dv: &{v}, v: &{v}) -> {v}"),
+            arguments: [("dv", s.nv), ("v", s.nv)],
+            result: s.nv,
+        };
+        function.write_manifold_function(out, "__", charts, s);
+    }
+    write_translation(out, charts, s);
+}
+
+/// Writes the hidden function that selects the linear velocities of free joints.
+fn write_translation(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'_>) {
+    let v = s.vector_type(s.nv);
+    let _ = writeln!(
+        out,
+        "#[doc(hidden)]\n/// The part of the displacement `dv` that is linear velocities of free joints.\n#[inline]\n\
+         #[must_use]\npub fn __translation{}(&self, dv: &{v}) -> {v} {{",
+        s.generics_text()
+    );
+    match charts {
+        Some(charts) => {
+            let is_linear = |k: usize| {
+                charts.iter().any(|chart| matches!(chart, Chart::Free(_, v) if (v.0..v.0 + 3).contains(&k)))
+            };
+            let entry = |k: usize| if is_linear(k) { format!("r{k}") } else { "0.0".to_owned() };
+            let name = |k: usize| if is_linear(k) { format!("r{k}") } else { "_".to_owned() };
+            let list = |of: &dyn Fn(usize) -> String| (0..s.nv).map(of).collect::<Vec<_>>().join(", ");
+            let _ = writeln!(
+                out,
+                "let [[{}]] = dv.data.0;\n::linkwork::nalgebra::SVector::from_array_storage(\
+                 ::linkwork::nalgebra::ArrayStorage([[{}]]))",
+                list(&name),
+                list(&entry)
+            );
+        }
+        None => out.push_str("loop {}\n"),
+    }
+    out.push_str("}\n");
 }
 
 /// Function on the configuration manifold, for the emitter.
@@ -114,6 +155,7 @@ impl ManifoldFunction {
                     let _ = match self.name {
                         "integrate" => writeln!(out, "let r{q} = q{q} + dv{v};"),
                         "difference" => writeln!(out, "let r{v} = to{q} - from{q};"),
+                        "carry_rate" => writeln!(out, "let r{v} = 0.0;"),
                         _ => writeln!(out, "let r{v} = v{v};"),
                     };
                     continue;
