@@ -77,8 +77,8 @@ fn write_translation(out: &mut String, charts: Option<&[Chart]>, s: &Signature<'
     let v = s.vector_type(s.nv);
     let _ = writeln!(
         out,
-        "#[doc(hidden)]\n/// The part of the displacement `dv` that is linear velocities of free joints.\n#[inline]\n\
-         #[must_use]\npub fn __translation{}(&self, dv: &{v}) -> {v} {{",
+        "#[doc(hidden)]\n/// The part of the displacement `dv` that is linear velocities of free joints.\n\
+         #[inline]\n#[must_use]\npub fn __translation{}(&self, dv: &{v}) -> {v} {{",
         s.generics_text()
     );
     match charts {
