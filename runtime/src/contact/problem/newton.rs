@@ -11,6 +11,7 @@ use super::banded::{eliminate_banded, identify};
 use super::basis::ContactBlock;
 use super::convex::PARTS;
 use super::linear::square;
+use super::search::PATIENCE;
 use super::trial::{Mode, Trial};
 use super::{List, Problem, Square};
 use crate::Real;
@@ -77,7 +78,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             if trial.left < best.0 {
                 best = (trial.left, trial.impulses);
             }
-            if is_stalled && self.is_enough(&trial) {
+            if (is_stalled || self.iterations.get() > PATIENCE) && self.is_enough(&trial) {
                 break;
             }
         }

@@ -32,6 +32,12 @@ const DENSE: usize = 36;
 /// Violation of the contact conditions that ends the search in a step of a simulation, relative to the
 /// largest contact velocity.
 const ENOUGH: f64 = 1e-8;
+/// Number of iterations of Newton's method in a step after which this violation grows, number of further
+/// iterations in which it grows tenfold, and maximum number of times. With these numbers, the 99 % quantile
+/// of the durations of steps of five falling dominoes is half of that with a constant violation.
+pub(super) const PATIENCE: usize = 16;
+const PER_DECADE: usize = 8;
+const MAX_DECADES: usize = 3;
 /// Number of rows up to which impulses of the least norm come first, and the violation of impulses of the
 /// previous step, relative to the largest contact velocity, below which they come first otherwise.
 const FEW: usize = 12;
@@ -165,6 +171,12 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         matrix: &mut Square<T, NR>,
     ) -> Trial<T, NK, NR> {
         let mut best = self.newton_within(STEPS_OF_SCALE, start, matrix);
+        if self.size <= FEW && self.is_smooth() && !self.solves(&best) {
+            let pressed = self.tried(self.press_in_turn());
+            if pressed.worst.0 < best.worst.0 {
+                best = pressed;
+            }
+        }
         for scale in SCALES.into_iter().skip(1) {
             if self.solves(&best) || self.is_enough(&best) {
                 break;
@@ -186,6 +198,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     ) -> Trial<T, NK, NR> {
         let approach = self.those(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]);
         let stuck = self.tried(self.together_with(&approach, equations));
+        // Nearly dependent rows may have impulses that are worse than none.
+        let stuck = match stuck.worst.0 <= self.speed() {
+            true => stuck,
+            false => self.tried(List::repeat(T::zero())),
+        };
         match start.filter(|start| !self.solves(&stuck) && start.worst.0 < stuck.worst.0) {
             Some(start) => start,
             None => stuck,
@@ -194,9 +211,13 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Whether the violation of the contact conditions is small enough for a step of a simulation with
     /// several bodies. Velocities of redundant contacts contradict each other by rounding errors of the
-    /// geometry, so that no impulses may satisfy all conditions.
+    /// geometry, so that no impulses may satisfy all conditions. The accepted violation grows with the number
+    /// of iterations, which bounds the duration of a step.
     pub(super) fn is_enough(&self, trial: &Trial<T, NK, NR>) -> bool {
-        self.is_relaxed && self.size > FEW && trial.worst.0 <= self.speed() * constant(ENOUGH)
+        let iterations = self.iterations.get().saturating_sub(PATIENCE);
+        let decades = iterations.div_ceil(PER_DECADE).min(MAX_DECADES);
+        let enough = (0..decades).fold(constant::<T>(ENOUGH), |enough, _| enough * constant(10.0));
+        self.is_relaxed && self.size > FEW && trial.worst.0 <= self.speed() * enough
     }
 
     /// Returns the contacts that satisfy a condition.
