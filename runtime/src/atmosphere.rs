@@ -49,8 +49,9 @@ fn depth_in_layer<T: Real>(h: T, layer: &Layer, end: Option<f64>) -> T {
     inside - constant(layer.base)
 }
 
-/// Returns one for a nonnegative number and zero for a negative one, lane by lane.
-fn step<T: Real>(x: T) -> T {
+/// Returns the unit step function of `x`, lane by lane: one for a nonnegative number and zero for a negative
+/// one.
+fn unit_step<T: Real>(x: T) -> T {
     (T::one() + x.signum()) * constant(0.5)
 }
 
@@ -69,8 +70,11 @@ pub trait Atmosphere: Real {
         let mut rate: Self = constant(0.0);
         let mut before = 0.0;
         for (k, layer) in LAYERS.iter().enumerate() {
-            let above =
-                if k == 0 { Self::one() + self * Self::zero() } else { step(self - constant(layer.base)) };
+            let above = if k == 0 {
+                Self::one() + self * Self::zero()
+            } else {
+                unit_step(self - constant(layer.base))
+            };
             rate += above * constant(layer.lapse - before);
             before = layer.lapse;
         }
@@ -106,7 +110,8 @@ mod tests {
     use super::*;
     use crate::lanes::{Lanes, f64x4};
 
-    /// Geometric height, m; temperature, K; pressure, Pa: *U.S. Standard Atmosphere 1976*, tables I and II.
+    /// Published values of the *U.S. Standard Atmosphere 1976*, tables I and II: geometric height, m;
+    /// temperature, K; pressure, Pa.
     const TABLE: [(f64, f64, f64); 8] = [
         (0.0, 288.150, 1.01325e5),
         (1_000.0, 281.651, 8.9876e4),
@@ -123,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn the_published_figures_are_met() {
+    fn published_values_are_reproduced() {
         for (h, temperature, pressure) in TABLE {
             let h = geopotential_height(h);
             assert!((h.isa_temperature() - temperature).abs() < 2e-3, "{h}: {}", h.isa_temperature());
@@ -132,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn slopes_are_those_of_the_hydrostatic_equation() {
+    fn lapse_rates_match_hydrostatic_equation() {
         for h in [
             -500.0,
             300.0,
@@ -154,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn lanes_are_each_in_a_layer_of_their_own() {
+    fn lanes_evaluate_different_layers() {
         let heights = [-100.0, 15_000.0, 33_000.0, 90_000.0];
         let all: f64x4 = Lanes(heights).isa_pressure();
         for (lane, h) in heights.into_iter().enumerate() {

@@ -10,12 +10,14 @@ mod event;
 mod run;
 mod start;
 
-pub use event::{Action, Crossing, Event, Events, Flow, Hit, Impact, NoEvents, Report, Stop, Undefined};
+pub use event::{
+    Action, Crossing, Event, EventHit, EventOutcome, EventSearchError, Events, Impact, NoEvents, Report, Stop,
+};
 pub use start::Start;
 
 use crate::integrate::{
     ContinuousInputs, DormandPrince, Error, Inputs, Method, NoInputs, SampledInputs, State, System,
-    check_positive, not_negative,
+    check_not_negative, check_positive,
 };
 use crate::private::to_f64;
 use crate::{Mechanism, Real};
@@ -65,7 +67,7 @@ where
     }
 }
 
-/// List of the events `E` extended by one more event.
+/// List of the events `E`, extended by one event.
 type With<E, T, G, A> = (E, Event<T, G, A>);
 /// List of the events `E` extended by one more event whose effect is an impact.
 type WithImpact<E, T, G, F> = With<E, T, G, Impact<F>>;
@@ -84,9 +86,9 @@ pub struct Sample<T, const NQ: usize, const NV: usize, const NU: usize> {
     pub u: SVector<T, NU>,
     /// Index of the event that this sample reports, in the order of declaration; `None` for other samples.
     pub event: Option<usize>,
-    /// Largest violation of the contact conditions in the steps since the sample before, as a contact
-    /// velocity, m/s or rad/s: a few roundings where contact impulses were found that satisfy the conditions,
-    /// and zero without contacts ([guide](crate::guide::contact)).
+    /// Largest violation of the contact conditions in the steps since the previous sample, as a contact
+    /// velocity, m/s or rad/s: at rounding level if the contact impulses satisfy the conditions, and zero
+    /// without contacts ([guide](crate::guide::contact)).
     pub violation: T,
 }
 
@@ -143,7 +145,7 @@ enum Samples<'m, T> {
     Steps,
     /// Samples at equal intervals of this length, s.
     Every(T),
-    /// Samples at these times, s.
+    /// Samples at listed times, s.
     At(&'m [T]),
 }
 
@@ -246,17 +248,17 @@ where
         Self { duration: Some(duration), ..self.reset_simulation() }
     }
 
-    /// Samples every `interval` seconds; the `k`-th sample is exactly at start + k · interval. Fixed-step
-    /// methods divide the interval into equal steps, adaptive methods interpolate. By default, every step of
-    /// the integrator is a sample.
+    /// Selects samples every `interval` seconds; the `k`-th sample is exactly at start + k · interval.
+    /// Fixed-step methods divide the interval into equal steps, adaptive methods interpolate. By default,
+    /// every step of the integrator is a sample.
     pub fn sample_every(self, interval: T) -> Self {
         Self { samples: Samples::Every(interval), ..self.reset_simulation() }
     }
 
-    /// Samples at these times of the run, s. The times must increase, and none may be before the start; the
-    /// initial state is a sample only if its time is listed. The run ends at the last time, or at the end of
-    /// the [`duration`](Self::duration), which is then a sample, too. Fixed-step methods end steps at these
-    /// times, adaptive methods interpolate.
+    /// Selects samples at these times of the run, s. The times must increase, and none may be before the
+    /// start; the initial state is a sample only if its time is listed. The run ends at the last time, or at
+    /// the end of the [`duration`](Self::duration), which is then a sample, too. Fixed-step methods end steps
+    /// at these times, adaptive methods interpolate.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -377,7 +379,7 @@ where
         self.with_event(Event::new(function, crossing, Impact(after)))
     }
 
-    /// Runs to the end and returns the last sample.
+    /// Runs the simulation to its end and returns the last sample.
     ///
     /// # Errors
     ///

@@ -32,7 +32,7 @@ impl<'m, M, const L: usize> Lanewise<'m, M, L> {
     }
 }
 
-/// Defines functions of `t` and vectors that call the counterpart for lanes.
+/// Defines functions of `t` and vectors that call the function of the wrapped mechanism for several lanes.
 macro_rules! lanewise {
     ($($name:ident = $twin:ident[$($time:ident)?]($($argument:ident: $of:ident),*) -> $result:ty;)+) => {$(
         #[inline(always)]
@@ -102,7 +102,8 @@ where
         Features::of_mechanism::<Self, Lanes<M::Scalar, L>, NQ, NV, NU>()
     }
 
-    /// Projects lane by lane. A lane whose projection fails becomes NaN; it is an error if all lanes fail.
+    /// Projects the state of each lane onto the constraints. A lane whose projection fails becomes NaN; it is
+    /// an error if all lanes fail.
     fn project(
         &self,
         t: Lanes<M::Scalar, L>,
@@ -180,8 +181,8 @@ where
         Ok(lane_by_lane(|k| results[k].unwrap_or_else(|_| lane(q, k))))
     }
 
-    /// Solves the contacts lane by lane. A lane whose contacts have no solution becomes NaN; it is an error
-    /// if all lanes fail.
+    /// Solves the contacts of each lane separately. A lane whose contacts have no solution becomes NaN; it is
+    /// an error if all lanes fail.
     fn contact_step(
         &self,
         t: Lanes<M::Scalar, L>,
@@ -222,7 +223,7 @@ where
         None
     }
 
-    /// Computes the impulse lane by lane if there are constraints.
+    /// Computes the velocity change by an impulse for each lane separately if there are constraints.
     fn impulse(
         &self,
         t: Lanes<M::Scalar, L>,

@@ -8,8 +8,9 @@ use crate::arithmetic::{Arithmetic, Compiled};
 use crate::multiplication::{part, registers_of_eight, registers_of_four, write_entries};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
-/// Returns the factors `L` (below the diagonal) and `1/D` of `H + r = L D Lᵀ`, where `L` has ones on its
-/// diagonal. The error is the index of a pivot that is not positive.
+/// Returns the factors `L` (below the diagonal) and `1/D` of the regularised symmetric matrix
+/// `H + r = L D Lᵀ`, where `L` has ones on its diagonal. The error is the index of a pivot that is not
+/// positive.
 pub fn factors<T: Real, const N: usize>(
     matrix: &SMatrix<T, N, N>,
     regularisation: T,
@@ -36,7 +37,7 @@ pub fn factors<T: Real, const N: usize>(
     Ok((matrix_from_storage(l), SMatrix::from_array_storage(ArrayStorage([inverse]))))
 }
 
-/// Replaces the matrix `B` by `−(L D Lᵀ)⁻¹ B`.
+/// Replaces the matrix `B` by `−(L D Lᵀ)⁻¹ B`, given the factors `L` and `1/D`.
 pub fn solve<T: Real, const N: usize, const C: usize>(
     l: &SMatrix<T, N, N>,
     inverse: &SVector<T, N>,
@@ -45,7 +46,7 @@ pub fn solve<T: Real, const N: usize, const C: usize>(
     *b = transposed(&solved_rows(l, inverse, &transposed(b)));
 }
 
-/// Returns the matrix `−B (L D Lᵀ)⁻¹`.
+/// Returns the matrix `−B (L D Lᵀ)⁻¹`, given the factors `L` and `1/D`.
 fn solved_rows<T: Real, const N: usize, const R: usize>(
     l: &SMatrix<T, N, N>,
     inverse: &SVector<T, N>,
@@ -56,7 +57,7 @@ fn solved_rows<T: Real, const N: usize, const R: usize>(
     solved
 }
 
-/// Writes `−B (L D Lᵀ)⁻¹` to a matrix.
+/// Writes the matrix `−B (L D Lᵀ)⁻¹` to `into`, given the factors `L` and `1/D`.
 #[inline(never)]
 pub fn solve_rows_into<T: Real, const N: usize, const R: usize>(
     l: &SMatrix<T, N, N>,

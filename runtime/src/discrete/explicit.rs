@@ -286,7 +286,7 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
     {
         let (h, start) = (self.length(), Start { mechanism, t, q, u });
         if mechanism.features().is_plain() {
-            return Ok(plain::runge_kutta(&start, v, h));
+            return Ok(plain::runge_kutta_transition(&start, v, h));
         }
         let v = Sensitive::start_velocity(v);
         let stage_derivatives =

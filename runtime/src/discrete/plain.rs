@@ -15,12 +15,12 @@ use crate::derivatives::Derivatives;
 use crate::private::constant;
 use nalgebra::{SMatrix, SVector};
 
-/// Coefficient and acceleration (with derivatives) of an earlier Runge–Kutta stage.
-type Part<'a, T, const NV: usize, const NU: usize> = (T, &'a Sensitive<T, NV, NU>);
+/// Coefficient and acceleration of an earlier Runge–Kutta stage. The acceleration has derivatives.
+type EarlierStage<'a, T, const NV: usize, const NU: usize> = (T, &'a Sensitive<T, NV, NU>);
 
 impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
     /// Adds a matrix times the derivatives of another vector.
-    fn add_led(&mut self, by: &SMatrix<T, NV, NV>, other: &Self) {
+    fn add_matrix_product(&mut self, by: &SMatrix<T, NV, NV>, other: &Self) {
         add_product(&mut self.by_q, by, &other.by_q);
         add_product(&mut self.by_v, by, &other.by_v);
         add_product(&mut self.by_u, by, &other.by_u);
@@ -34,8 +34,8 @@ fn acceleration_stage<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     start: &Start<'_, M, T, NQ, NV, NU>,
     v: &SVector<T, NV>,
     after: T,
-    near: Option<Part<'_, T, NV, NU>>,
-    far: Option<Part<'_, T, NV, NU>>,
+    near: Option<EarlierStage<'_, T, NV, NU>>,
+    far: Option<EarlierStage<'_, T, NV, NU>>,
 ) -> Sensitive<T, NV, NU>
 where
     T: Real,
@@ -58,14 +58,14 @@ where
     add_multiple(&mut found.by_v, after, &by_q);
     for (by, part) in parts.iter().zip([near, far]) {
         if let (Some(by), Some((_, part))) = (by, part) {
-            found.add_led(by, part);
+            found.add_matrix_product(by, part);
         }
     }
     found
 }
 
-/// Returns the step of `h` seconds from a start with the velocity `v`.
-pub(super) fn runge_kutta<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+/// Returns the Runge–Kutta step of `h` seconds from a start with the velocity `v`, with its Jacobians.
+pub(super) fn runge_kutta_transition<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     start: &Start<'_, M, T, NQ, NV, NU>,
     v: &SVector<T, NV>,
     h: T,

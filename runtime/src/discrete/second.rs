@@ -3,7 +3,7 @@
 
 use super::curvature::{Curvature, Displacement};
 use super::explicit::{Sensitive, Start};
-use super::{DifferentiableStep, Through, projection};
+use super::{ContactStepVisitor, DifferentiableStep, projection};
 use crate::constraint::{ConstrainedSecondDerivatives, ConstraintError, CurvatureVisitor};
 use crate::derivatives::LinearMotion;
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
@@ -82,7 +82,7 @@ where
     method.check()?;
     let found = if M::CONSTRAINED {
         let undetermined = Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular };
-        let through = Curved { through: Through { method, t, q, v, u }, factors };
+        let through = ConstrainedCurvature { through: ContactStepVisitor { method, t, q, v, u }, factors };
         mechanism.visit_constraint_curvature(through).unwrap_or(Err(undetermined))?
     } else {
         method.differentiate_twice(mechanism, t, q, v, u, factors)
@@ -91,14 +91,15 @@ where
     if finite { Ok(found) } else { Err(Error::NotFinite { t: to_f64(t) }) }
 }
 
-/// Arguments of a step under constraints, with the factors of the state after it.
-struct Curved<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
-    through: Through<'a, S, T, NQ, NV, NU>,
+/// Arguments of a step with constraints, and the factors of the state after it in the contracted second
+/// derivatives.
+struct ConstrainedCurvature<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
+    through: ContactStepVisitor<'a, S, T, NQ, NV, NU>,
     factors: (&'a SVector<T, NV>, &'a SVector<T, NV>),
 }
 
 impl<S, T, const NQ: usize, const NV: usize, const NU: usize> CurvatureVisitor<T, NQ, NV, NU>
-    for Curved<'_, S, T, NQ, NV, NU>
+    for ConstrainedCurvature<'_, S, T, NQ, NV, NU>
 where
     T: Real,
     S: TwiceDifferentiableStep<T>,
@@ -111,7 +112,7 @@ where
     where
         M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        let Through { method, t, q, v, u } = self.through;
+        let ContactStepVisitor { method, t, q, v, u } = self.through;
         let free = method.differentiate(mechanism, t, q, v, u)?;
         let end = t + method.period();
         let added = projection::curvature_of_projection(mechanism, end, (&free.q, &free.v), self.factors)?;
@@ -195,7 +196,7 @@ impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
 
 /// Stage of a step: its time and displacement after the start, the state of evaluation, and the linearised
 /// motion in that state.
-struct Stage<T, const NQ: usize, const NV: usize, const NU: usize> {
+struct DifferentiatedStage<T, const NQ: usize, const NV: usize, const NU: usize> {
     after: T,
     displacement: Sensitive<T, NV, NU>,
     q: (SVector<T, NQ>, Sensitive<T, NV, NU>),
@@ -225,10 +226,15 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
         let (h, start) = (self.length(), Start { mechanism, t, q, u });
         let half = h * constant(0.5);
         let first = Sensitive::start_velocity(v);
-        let begin = Stage::new(&start, T::zero(), first.scaled_derivatives(T::zero()), first);
-        let next_stage = |after: T, stage: &Stage<T, NQ, NV, NU>| {
+        let begin = DifferentiatedStage::new(&start, T::zero(), first.scaled_derivatives(T::zero()), first);
+        let next_stage = |after: T, stage: &DifferentiatedStage<T, NQ, NV, NU>| {
             let v = first.plus_scaled(after, &stage.stage_acceleration());
-            Stage::new(&start, after, stage.displacement_rate(&start).scaled_derivatives(after), v)
+            DifferentiatedStage::new(
+                &start,
+                after,
+                stage.displacement_rate(&start).scaled_derivatives(after),
+                v,
+            )
         };
         let second = next_stage(half, &begin);
         let third = next_stage(half, &second);
@@ -302,7 +308,7 @@ fn zero_second_order<T: Real, const NV: usize, const NU: usize>() -> InputSecond
     (state, state, state, mixed, mixed, SMatrix::zeros())
 }
 
-impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV, NU> {
+impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> DifferentiatedStage<T, NQ, NV, NU> {
     fn new<M>(
         start: &Start<'_, M, T, NQ, NV, NU>,
         after: T,

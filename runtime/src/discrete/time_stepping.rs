@@ -14,14 +14,14 @@ use nalgebra::{SMatrix, SVector};
 
 /// Configuration manifold of a mechanism.
 #[derive(Clone, Copy)]
-pub(crate) struct Manifold<'a, M, const NV: usize> {
+pub(crate) struct ConfigurationManifold<'a, M, const NV: usize> {
     mechanism: &'a M,
     /// Indices of all velocities, and the half-open range of those of ball and free joints.
     indices: [usize; NV],
     rotating: (usize, usize),
 }
 
-impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
+impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
     /// Returns the manifold of a mechanism.
     pub(crate) fn new<T: Real, const NQ: usize, const NU: usize>(mechanism: &'a M) -> Self
     where
@@ -33,11 +33,11 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
     }
 
     /// Whether no joint has rotating axes.
-    fn is_plain(&self) -> bool {
+    fn has_fixed_axes(&self) -> bool {
         self.rotating.0 >= self.rotating.1
     }
 
-    /// Returns the velocities of ball and free joints.
+    /// Returns the indices of the velocities of ball and free joints.
     fn rotating_indices(&self) -> &[usize] {
         self.indices.get(self.rotating.0..self.rotating.1).unwrap_or(&[])
     }
@@ -60,16 +60,20 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
 
     /// Multiplies derivatives from the left by a matrix that is the identity outside of the rows and columns
     /// of ball and free joints.
-    fn lead<T: Real, const NU: usize>(&self, by: &SMatrix<T, NV, NV>, of: &mut Sensitive<T, NV, NU>) {
+    fn multiply_from_left<T: Real, const NU: usize>(
+        &self,
+        by: &SMatrix<T, NV, NV>,
+        of: &mut Sensitive<T, NV, NU>,
+    ) {
         let by = NearlyIdentity::with_range(by, self.rotating);
         by.lead(&mut of.by_q);
         by.lead(&mut of.by_v);
         by.lead(&mut of.by_u);
     }
 
-    /// Returns the derivatives of the motion of a configuration after a displacement, with respect to the
-    /// configuration before it and to the displacement.
-    fn derivatives<T: Real, const NQ: usize, const NU: usize>(
+    /// Returns the derivatives of the displaced configuration with respect to the configuration before and to
+    /// the displacement.
+    fn displacement_derivatives<T: Real, const NQ: usize, const NU: usize>(
         &self,
         q: &SVector<T, NQ>,
         dv: &SVector<T, NV>,
@@ -77,15 +81,15 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        match self.is_plain() {
+        match self.has_fixed_axes() {
             true => (SMatrix::identity(), SMatrix::identity()),
             false => self.mechanism.integrate_derivatives_at(q, dv),
         }
     }
 
-    /// Returns a configuration after a displacement, with the derivatives of its motion. Those of the
-    /// configuration before are `motion`.
-    pub(crate) fn displaced<T: Real, const NQ: usize, const NU: usize>(
+    /// Returns the configuration after a displacement, with derivatives. `motion` has the derivatives of the
+    /// configuration before the displacement.
+    pub(crate) fn displaced_configuration<T: Real, const NQ: usize, const NU: usize>(
         &self,
         (q, motion): (&SVector<T, NQ>, &Sensitive<T, NV, NU>),
         by: &Sensitive<T, NV, NU>,
@@ -94,19 +98,19 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         let to = self.mechanism.integrate(q, &by.value);
-        if self.is_plain() {
+        if self.has_fixed_axes() {
             return (to, motion.plus_scaled(T::one(), by));
         }
         let (by_q, by_dv) = self.mechanism.integrate_derivatives_at(q, &by.value);
         let (mut turned, mut way) = (*motion, *by);
-        self.lead(&by_q, &mut turned);
-        self.lead(&by_dv, &mut way);
+        self.multiply_from_left(&by_q, &mut turned);
+        self.multiply_from_left(&by_dv, &mut way);
         (to, turned.plus_scaled(T::one(), &way))
     }
 
-    /// Returns a velocity in the axes after a displacement `by` from the configuration `q`, with its
-    /// derivatives ([`carry`](crate::integrate::Hooks::carry)). The motion of `q` does not affect it.
-    pub(crate) fn carried<T: Real, const NQ: usize, const NU: usize>(
+    /// Returns the velocity `v` at the configuration `q`, in the axes after a displacement `by`, with its
+    /// derivatives ([`carry`](crate::integrate::Hooks::carry)). The derivatives of `q` do not affect it.
+    pub(crate) fn transported_velocity<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
         q: &SVector<T, NQ>,
@@ -116,18 +120,18 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        if self.is_plain() {
+        if self.has_fixed_axes() {
             return *v;
         }
         let (_, by_dv) = self.mechanism.integrate_derivatives_at(q, &by.value);
         let mut end = *by;
-        self.lead(&by_dv, &mut end);
-        self.carried_to(t, q, (&by.value, &end), v)
+        self.multiply_from_left(&by_dv, &mut end);
+        self.transport_to_end(t, q, (&by.value, &end), v)
     }
 
-    /// Returns a velocity in the axes after a displacement `dv` from `q`, given the derivatives of the motion
-    /// of the displaced configuration relative to `q`.
-    pub(crate) fn carried_to<T: Real, const NQ: usize, const NU: usize>(
+    /// Returns a velocity in the axes after a displacement `dv` from `q`, with its derivatives. `end` has the
+    /// derivatives of the displaced configuration relative to `q`.
+    pub(crate) fn transport_to_end<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
         q: &SVector<T, NQ>,
@@ -137,7 +141,7 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        if self.is_plain() {
+        if self.has_fixed_axes() {
             return *v;
         }
         let m = self.mechanism;
@@ -153,19 +157,21 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
             }
             // By Rodrigues' formula, half the difference of a vector rotated by right angles in both
             // directions is its cross product with the axis: the derivative of a rotation about it.
-            let rotated = |angle: T| m.carry(t, q, &unit(*k, angle), &value);
+            let rotated_value = |angle: T| m.carry(t, q, &unit(*k, angle), &value);
             if let Some(column) = rotation.data.0.get_mut(*k) {
-                *column = ((rotated(right_angle) - rotated(-right_angle)) * constant::<T>(0.5)).data.0[0];
+                *column = ((rotated_value(right_angle) - rotated_value(-right_angle)) * constant::<T>(0.5))
+                    .data
+                    .0[0];
             }
         }
-        self.lead(&axes, &mut carried);
+        self.multiply_from_left(&axes, &mut carried);
         self.add_mapped(&mut carried, &rotation, end);
         carried
     }
 
-    /// Returns the velocity `v` of the configuration `from` in the axes of the configuration `to`, with its
-    /// derivatives; those of the motion of `to` are `motion`, and `from` moves along all velocities.
-    pub(crate) fn carried_between<T: Real, const NQ: usize, const NU: usize>(
+    /// Returns the velocity `v` at the configuration `from`, in the axes of the configuration `to`, with its
+    /// derivatives. `motion` has the derivatives of `to`; `from` is the start of the derivatives.
+    pub(crate) fn transport_between<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
         (from, v): (&SVector<T, NQ>, &Sensitive<T, NV, NU>),
@@ -174,22 +180,22 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        if self.is_plain() {
+        if self.has_fixed_axes() {
             return *v;
         }
         let way = self.mechanism.difference(from, to);
         let (by_q, _) = self.mechanism.integrate_derivatives_at(from, &way);
         let relative = Sensitive { by_q: motion.by_q - by_q, ..*motion };
-        self.carried_to(t, from, (&way, &relative), v)
+        self.transport_to_end(t, from, (&way, &relative), v)
     }
 }
 
 /// End of a step before the impulses of its contacts, with derivatives.
 pub(crate) struct SmoothMotion<T, const NQ: usize, const NV: usize, const NU: usize> {
     pub(crate) q: (SVector<T, NQ>, Sensitive<T, NV, NU>),
-    /// Velocity, with the contribution of the contact forces that were assumed.
+    /// Velocity at the end of the step, including the contribution of the assumed contact forces.
     pub(crate) v: Sensitive<T, NV, NU>,
-    /// Contribution of the assumed contact forces.
+    /// Contribution of the assumed contact forces to the velocity.
     pub(crate) given: Option<Sensitive<T, NV, NU>>,
 }
 
@@ -207,12 +213,12 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     match method.has_four_stages() {
-        true => four_stages(start, method.length(), v, before, rate),
-        false => through_middle(start, method.length(), v, before, rate),
+        true => four_stage_motion(start, method.length(), v, before, rate),
+        false => midpoint_motion(start, method.length(), v, before, rate),
     }
 }
 
-fn through_middle<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+fn midpoint_motion<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     start: &Start<'_, M, T, NQ, NV, NU>,
     h: T,
     v: &Sensitive<T, NV, NU>,
@@ -223,7 +229,7 @@ where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
-    let (half, manifold) = (h * constant(0.5), Manifold::new(start.mechanism));
+    let (half, manifold) = (h * constant(0.5), ConfigurationManifold::new(start.mechanism));
     let way = v.value * half;
     let q = start.mechanism.integrate(start.q, &way);
     let mean = rate.map_or(*before, |rate| before.plus_scaled(T::one(), rate));
@@ -233,8 +239,8 @@ where
     // Only the configuration and the velocity at the start move the middle.
     let (mut by_q, mut by_way) = (by_place, by_place);
     let mut motion = Sensitive { value: way, by_q: zeros(), by_v: zeros(), by_u: zeros() };
-    (motion.by_q, motion.by_v) = manifold.derivatives(start.q, &way);
-    if !manifold.is_plain() {
+    (motion.by_q, motion.by_v) = manifold.displacement_derivatives(start.q, &way);
+    if !manifold.has_fixed_axes() {
         NearlyIdentity::with_range(&motion.by_q, manifold.rotating).follow(&mut by_q);
         NearlyIdentity::with_range(&motion.by_v, manifold.rotating).follow(&mut by_way);
     }
@@ -244,17 +250,18 @@ where
     add_product(&mut change.by_q, &by_velocity, &mean.by_q);
     add_product(&mut change.by_v, &by_velocity, &mean.by_v);
     add_product(&mut change.by_u, &by_velocity, &mean.by_u);
-    let carried_rate =
-        |h: T| rate.map(|rate| manifold.carried(start.t, start.q, &v.scaled_derivatives(h), rate));
+    let carried_rate = |h: T| {
+        rate.map(|rate| manifold.transported_velocity(start.t, start.q, &v.scaled_derivatives(h), rate))
+    };
     if let Some(rate) = carried_rate(half) {
         change = change.plus_scaled(T::one(), &rate);
     }
     let end = v.plus_scaled(h, &change);
-    let q = manifold.displaced((&q, &motion), &end.scaled_derivatives(half));
+    let q = manifold.displaced_configuration((&q, &motion), &end.scaled_derivatives(half));
     SmoothMotion { q, v: end, given: carried_rate(h).map(|rate| rate.scaled_derivatives(h)) }
 }
 
-fn four_stages<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+fn four_stage_motion<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     start: &Start<'_, M, T, NQ, NV, NU>,
     h: T,
     v: &Sensitive<T, NV, NU>,
@@ -266,12 +273,12 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     type StageRates<T, const NV: usize, const NU: usize> = (Sensitive<T, NV, NU>, Sensitive<T, NV, NU>);
-    let (half, manifold) = (h * constant(0.5), Manifold::new(start.mechanism));
+    let (half, manifold) = (h * constant(0.5), ConfigurationManifold::new(start.mechanism));
     let is_plain = start.mechanism.features().is_plain();
-    let stage = |after: T, (rates, acceleration): &StageRates<T, NV, NU>| {
+    let stage_state = |after: T, (rates, acceleration): &StageRates<T, NV, NU>| {
         let (way, v) = (rates.scaled_derivatives(after), v.plus_scaled(after, acceleration));
         let mut acceleration = start.acceleration_after(after, &start.displace_configuration(&way), &v);
-        let carried = rate.map(|rate| manifold.carried(start.t, start.q, &way, rate));
+        let carried = rate.map(|rate| manifold.transported_velocity(start.t, start.q, &way, rate));
         if let Some(carried) = &carried {
             acceleration = acceleration.plus_scaled(T::one(), carried);
         }
@@ -283,9 +290,9 @@ where
         ((Sensitive::compose_derivatives(value, (&by_dv, &way), (&by_v, &v)), acceleration), carried)
     };
     let k1 = (*v, rate.map_or(*before, |rate| before.plus_scaled(T::one(), rate)));
-    let (k2, _) = stage(half, &k1);
-    let (k3, _) = stage(half, &k2);
-    let (k4, at_end) = stage(h, &k3);
+    let (k2, _) = stage_state(half, &k1);
+    let (k3, _) = stage_state(half, &k2);
+    let (k4, at_end) = stage_state(h, &k3);
     let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
     let way =
         k1.0.plus_scaled(two, &k2.0)
@@ -305,7 +312,7 @@ where
 }
 
 /// Arguments of a step of a mechanism with contacts.
-struct Contacting<'a, T, const NQ: usize, const NV: usize, const NU: usize> {
+struct ContactTransitionVisitor<'a, T, const NQ: usize, const NV: usize, const NU: usize> {
     method: &'a TimeStepping<T>,
     t: T,
     state: (&'a SVector<T, NQ>, &'a SVector<T, NV>),
@@ -314,7 +321,7 @@ struct Contacting<'a, T, const NQ: usize, const NV: usize, const NU: usize> {
 }
 
 impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, NV, NU>
-    for Contacting<'_, T, NQ, NV, NU>
+    for ContactTransitionVisitor<'_, T, NQ, NV, NU>
 {
     type Output = Result<(), Error>;
 
@@ -361,7 +368,7 @@ impl<T: Real> DifferentiableStep<T> for TimeStepping<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        let step = Contacting { method: self, t, state: (q, v), u, into: &mut *into };
+        let step = ContactTransitionVisitor { method: self, t, state: (q, v), u, into: &mut *into };
         if let Some(done) = mechanism.visit_contacts(step) {
             return done;
         }

@@ -1,6 +1,6 @@
 //! The method of Dormand and Prince of order 8 with adaptive steps.
 
-use super::adaptive::{AdaptiveMemory, Attempt, Control, Settings, Trial, adaptive};
+use super::adaptive::{AdaptiveMemory, Attempt, Settings, StepControl, StepTrial, adaptive};
 use super::stages::{Rates, rates_at_stage, weighted_stage_rates};
 use super::{Dynamics, Error, Jump, Method, State, Step};
 use crate::Real;
@@ -12,7 +12,7 @@ mod coefficients;
 use coefficients::{FIFTH, STAGES, TERMS, THIRD, TIMES};
 
 /// Constants of the step-size controller of DOP853.
-pub(super) const CONTROL: Control = Control { exponent: 1.0 / 8.0, beta: 0.0, factors: [6.0, 3.0] };
+pub(super) const CONTROL: StepControl = StepControl { exponent: 1.0 / 8.0, beta: 0.0, factors: [6.0, 3.0] };
 
 /// Index of the stage at the end of the step.
 const END: usize = 12;
@@ -76,7 +76,7 @@ pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
     system: &mut D,
     attempt: &Attempt<'_, T, NQ, NV>,
     dense: bool,
-) -> Trial<T, NQ, NV> {
+) -> StepTrial<T, NQ, NV> {
     let Attempt { start, acceleration, scale, h, t } = *attempt;
     let mut k = [Rates { displacement: start.v, velocity: *acceleration }; 16];
     let mut reach = |k: &mut [Rates<T, NV>; 16], stages: core::ops::Range<usize>| {
@@ -97,8 +97,8 @@ pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
     let end = reach(&mut k, END..END + 1);
     let displacement = change.displacement;
     let mut step = Step::linear(*start, end, displacement);
-    let fifth = scale.error(&step, &displacement, &weighted_stage_rates(h, FIFTH, &k));
-    let third = scale.error(&step, &displacement, &weighted_stage_rates(h, THIRD, &k));
+    let fifth = scale.relative_error(&step, &displacement, &weighted_stage_rates(h, FIFTH, &k));
+    let third = scale.relative_error(&step, &displacement, &weighted_stage_rates(h, THIRD, &k));
     let both = fifth * fifth + third * third * constant(0.01);
     let error = if both == T::zero() { both } else { fifth * fifth / both.sqrt() };
     let after = k[END];
@@ -115,5 +115,5 @@ pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
         step.velocity =
             step.velocity.with_terms([square, cube, a.velocity, b.velocity, c.velocity, d.velocity]);
     }
-    Trial { step, acceleration: Some(after.velocity), error }
+    StepTrial { step, acceleration: Some(after.velocity), error }
 }

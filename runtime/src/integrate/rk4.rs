@@ -1,4 +1,4 @@
-//! Classical Runge–Kutta method of order 4.
+//! Classical Runge–Kutta method of order 4 with fixed steps.
 
 use super::{Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step, project_end_of_step};
 use crate::Real;
@@ -30,7 +30,7 @@ impl<T: Real> Rk4<T> {
 /// Rates `φ̇` and `v̇` of displacement and velocity at one Runge–Kutta stage.
 type Rates<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
 
-/// Returns the rates at time `h` after `start`, reached with the mean rates `mean`.
+/// Returns the rates of the state at time `h` after `start`, reached with the mean rates `mean`.
 fn rates_after<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,

@@ -17,7 +17,7 @@ fn equal_steps(h: f64) -> DormandPrince<f64> {
     DormandPrince::new().tolerance(1e6, 1e6).initial_step(h).max_step(h)
 }
 
-/// Returns the method of order 8 with equal steps.
+/// Returns the Dormand–Prince method of order 8 whose steps all have the length `h`.
 fn eighth_order_method(h: f64) -> DormandPrince8<f64> {
     DormandPrince8::new().tolerance(1e6, 1e6).initial_step(h).max_step(h)
 }
@@ -101,7 +101,7 @@ orders! {
     rodas_has_order_four: |h| Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h), 4.0, 2.0 / 32.0;
 }
 
-/// Checks that the order 8 is observed to within one half. Steps that are short enough to show the order
+/// Checks that the observed order is 8 to within one half. Steps that are short enough to show the order
 /// leave little error above rounding.
 #[test]
 fn dormand_prince_8_has_order_eight() {
@@ -147,24 +147,25 @@ fn dense_output_of_order_eight_has_order_seven() {
     assert!((found - 8.0).abs() < 0.5, "{found}");
 }
 
-fn assert_met<S: Method<f64> + Copy>(tolerance: f64, method: S) {
+fn assert_tolerance_met<S: Method<f64> + Copy>(tolerance: f64, method: S) {
     for error in [driven_error(method), top_error(method), thrown_error(method)] {
         assert!(error < 20.0 * tolerance, "{tolerance}: {error}");
     }
 }
 
 #[test]
-fn tolerance_is_met() {
+fn adaptive_methods_meet_tolerances() {
     for tolerance in [1e-6, 1e-8, 1e-10, 1e-12] {
-        assert_met(tolerance, DormandPrince::new().tolerance(tolerance, tolerance));
-        assert_met(tolerance, DormandPrince8::new().tolerance(tolerance, tolerance));
+        assert_tolerance_met(tolerance, DormandPrince::new().tolerance(tolerance, tolerance));
+        assert_tolerance_met(tolerance, DormandPrince8::new().tolerance(tolerance, tolerance));
     }
     for tolerance in [1e-4, 1e-6, 1e-8] {
-        assert_met(tolerance, Rodas::new().tolerance(tolerance, tolerance));
+        assert_tolerance_met(tolerance, Rodas::new().tolerance(tolerance, tolerance));
     }
 }
 
-/// Compares the evaluations of the forces for a pendulum that swings ten times, to 1e-12.
+/// Compares the number of force evaluations of two methods for a pendulum that swings ten times, with a
+/// tolerance of 1e-12.
 #[test]
 fn order_eight_takes_fewer_evaluations_where_tolerances_are_tight() {
     let calls = core::cell::Cell::new(0_u32);
@@ -211,7 +212,7 @@ fn invariants_of_top(top: &Top<f64>, q: SVector<f64, 4>, v: SVector<f64, 3>) -> 
 }
 
 #[test]
-fn tumbling_body_keeps_momentum_and_energy() {
+fn tumbling_body_conserves_momentum_and_energy() {
     let top = Top { inertia: TUMBLING };
     let start = invariants_of_top(&top, top.neutral(), SPIN.into());
     let run = simulate(&top).from(top.neutral(), SPIN);
@@ -224,7 +225,7 @@ fn tumbling_body_keeps_momentum_and_energy() {
 }
 
 #[test]
-fn midpoint_rule_keeps_the_invariants_of_the_top() {
+fn midpoint_rule_preserves_top_invariants() {
     let top = Top { inertia: TUMBLING };
     let start = invariants_of_top(&top, top.neutral(), SPIN.into());
     let run = simulate(&top).from(top.neutral(), SPIN).method(ImplicitMidpoint::step(0.05));
@@ -236,7 +237,7 @@ fn midpoint_rule_keeps_the_invariants_of_the_top() {
 }
 
 #[test]
-fn midpoint_rule_keeps_the_energy_of_the_pendulum_bounded() {
+fn midpoint_rule_bounds_pendulum_energy_error() {
     let pendulum = pendulum();
     let run = simulate(&pendulum).from([2.0], [0.0]).method(ImplicitMidpoint::step(0.05)).duration(5000.0);
     let mut worst = [0.0_f64; 2];
@@ -281,7 +282,7 @@ fn quaternions_stay_unit_over_many_steps() {
 }
 
 #[test]
-fn single_precision_runs() {
+fn simulation_runs_in_single_precision() {
     let oscillator = oscillator::<f32>();
     let run = simulate(&oscillator).from([1.0], [0.0]).duration(10.0);
     let ends = [
@@ -293,7 +294,7 @@ fn single_precision_runs() {
 }
 
 #[test]
-fn settings_that_make_no_sense_are_refused() {
+fn invalid_settings_are_rejected() {
     let oscillator = oscillator::<f64>();
     let run = simulate(&oscillator).duration(1.0);
     let is_invalid_step =
@@ -314,7 +315,7 @@ fn settings_that_make_no_sense_are_refused() {
 }
 
 #[test]
-fn failures_are_errors() {
+fn failed_runs_return_errors() {
     let broken = OneDof { force: |_| f64::NAN, ..oscillator::<f64>() };
     let run = simulate(&broken).duration(1.0);
     let lost = Err(Error::NotFinite { t: 0.0 });

@@ -1,7 +1,7 @@
 //! Tiles of a matrix: numbers of rows that are computed together, and the registers that hold them.
 
 use super::column::Columns;
-use super::kernels::{add_all, add_products, multiply};
+use super::kernels::{add_all_multiples, add_products, multiply};
 use super::{Range, Run, inverse};
 use crate::Real;
 use crate::arithmetic::Arithmetic;
@@ -9,10 +9,11 @@ use nalgebra::SMatrix;
 
 /// Linear algebra on the columns of a matrix, divided into tiles that fit in registers.
 pub trait Tiling<T: Real, const N: usize> {
-    /// Replaces columns by minus their products with a matrix; the columns are zero outside the given rows.
+    /// Replaces columns by their negative products with a matrix. The columns are zero outside the given
+    /// rows.
     fn multiply<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]);
 
-    /// Adds multiples of vectors to columns, or subtracts them; only the vectors and factors in `range` are
+    /// Adds multiples of vectors to columns, or subtracts them. Only the vectors and factors in `range` are
     /// used.
     fn add_multiples<A: Arithmetic, const V: usize, const W: usize, const MINUS: bool>(
         sums: &mut [[T; N]],
@@ -42,7 +43,7 @@ pub trait Tiling<T: Real, const N: usize> {
     fn invert<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]);
 }
 
-/// Tile of `R` rows, in `E` registers of eight numbers and `F` of four.
+/// Tile of `R` matrix rows, in `E` registers of eight numbers and `F` of four.
 #[derive(Clone, Copy, Debug)]
 pub struct Tile<const R: usize, const E: usize, const F: usize>;
 
@@ -62,7 +63,7 @@ impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Ti
         factors: &[[T; V]],
         range: Range,
     ) {
-        add_all::<A, T, _, E, F, N, V, MINUS>(sums, vectors, factors, range);
+        add_all_multiples::<A, T, _, E, F, N, V, MINUS>(sums, vectors, factors, range);
     }
 
     #[inline(always)]
@@ -91,7 +92,7 @@ impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Ti
         for ((first, end), range, place) in runs {
             let columns = matrix.data.0.get_mut(*first..*end).unwrap_or(&mut []);
             let factors = factors.get(*place..).unwrap_or(&[]);
-            add_all::<A, T, _, E, F, N, V, false>(columns, &known, factors, *range);
+            add_all_multiples::<A, T, _, E, F, N, V, false>(columns, &known, factors, *range);
         }
     }
 

@@ -16,7 +16,8 @@ pub(super) struct Clock {
     end: Option<f64>,
     every: Option<f64>,
     period: Option<f64>,
-    /// Indices of the sample and of the control instant that coincide with the end.
+    /// Indices of the sample and of the control instant that coincide with the end of the run; `None` if none
+    /// does.
     last: [Option<u64>; 2],
     /// Ratio `period / every` of control period to sample interval, as numerator and denominator, if it is a
     /// ratio of small integers.
@@ -58,14 +59,15 @@ impl Clock {
         self.end
     }
 
-    /// Returns the instant of a sample, limited to the end; `None` if every step is a sample.
+    /// Returns the instant of a sample, at most the end of the run; `None` if every step is a sample.
     pub(super) fn sample_instant(&self, count: u64) -> Option<f64> {
         // Counts are exact up to 2⁵³.
         let due = self.every? * count as f64;
         Some(self.end.filter(|end| due > *end || self.last[0] == Some(count)).unwrap_or(due))
     }
 
-    /// Returns a control instant. If it coincides with a sample or the end, both are exactly equal.
+    /// Returns the instant of a control period. If it coincides with a sample or the end of the run, both are
+    /// exactly equal.
     pub(super) fn control_instant(&self, count: u64) -> Option<f64> {
         let plain = self.period? * count as f64;
         if self.last[1] == Some(count) {
@@ -83,7 +85,7 @@ impl Clock {
     }
 }
 
-/// Returns the time `elapsed` seconds after the start.
+/// Returns the time of the run `elapsed` seconds after its start.
 pub(super) fn time_after<T: Real>(start: T, elapsed: f64) -> T {
     start + constant::<T>(elapsed)
 }
@@ -92,9 +94,10 @@ pub(super) fn time_after<T: Real>(start: T, elapsed: f64) -> T {
 mod tests {
     use super::*;
 
-    /// Ten million samples at intervals of a millisecond in single precision: none is missing or repeated.
+    /// Checks ten million sample instants at intervals of a millisecond in single precision: none is missing
+    /// or repeated.
     #[test]
-    fn instants_are_counted() {
+    fn sample_instants_are_complete() {
         let clock = Clock::new::<f32>(Some(10_000.0), Some(1e-3), Some(1e-3));
         let mut last = -1.0;
         let mut count = 0;
@@ -111,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn instants_that_coincide_are_the_same() {
+    fn coinciding_instants_are_equal() {
         let clock = Clock::new(Some(0.9), Some(0.1), Some(0.3));
         assert_eq!(
             [clock.control_instant(1), clock.control_instant(2), clock.control_instant(3)],

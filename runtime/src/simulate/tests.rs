@@ -8,7 +8,7 @@ use std::vec::Vec;
 
 const TIGHT: fn() -> DormandPrince<f64> = || DormandPrince::new().tolerance(1e-13, 1e-13);
 
-/// Returns the times of the samples of a run of the oscillator.
+/// Returns the times of the samples in a simulation of the oscillator.
 fn sample_times<S: Method<f64>>(method: S, duration: f64, interval: f64) -> Vec<f64> {
     let oscillator = oscillator::<f64>();
     let run = simulate(&oscillator).from([1.0], [0.0]).duration(duration).sample_every(interval);
@@ -16,7 +16,7 @@ fn sample_times<S: Method<f64>>(method: S, duration: f64, interval: f64) -> Vec<
 }
 
 #[test]
-fn samples_are_on_time() {
+fn samples_are_at_requested_times() {
     let expected_sample_time = |interval: f64| move |k: usize| k as f64 * interval;
     for (duration, interval, count) in [(10.0, 0.01, 1000), (1.0, 0.1, 10), (0.3, 0.1, 3), (0.7, 0.7, 1)] {
         let mut wanted: Vec<f64> = (0..count).map(expected_sample_time(interval)).collect();
@@ -55,7 +55,7 @@ fn interpolated_samples_are_accurate() {
 }
 
 #[test]
-fn the_defaults_are_rest_in_the_neutral_configuration() {
+fn default_start_is_neutral_at_rest() {
     let body = FreeBody { mass: 1.0, inertia: Vector3::new(1.0, 2.0, 2.5), gravity: 0.0 };
     let end = simulate(&body).duration(1.0).finish().unwrap();
     assert_eq!(end.q, Mechanism::neutral(&body));
@@ -63,9 +63,9 @@ fn the_defaults_are_rest_in_the_neutral_configuration() {
     assert!(end.u.is_empty());
 }
 
-/// A reference to a mechanism can be simulated like the mechanism.
+/// Simulates a reference to a mechanism, and checks that the result is that of the mechanism itself.
 #[test]
-fn a_plant_is_borrowed() {
+fn mechanism_reference_is_simulated() {
     struct Controller<P> {
         plant: P,
     }
@@ -76,7 +76,7 @@ fn a_plant_is_borrowed() {
 }
 
 #[test]
-fn a_run_can_start_later() {
+fn run_starts_at_given_time() {
     let simulate_pushed_from = |start| {
         let oscillator = oscillator::<f64>();
         let run = simulate(&oscillator).start_at(start).inputs(|t, _, _| SVector::from([t]));
@@ -104,7 +104,7 @@ fn simulate_controlled_mass<S: Method<f64>>(method: S) -> (f64, Vec<f64>) {
 }
 
 #[test]
-fn digital_controllers_hold_their_output() {
+fn digital_control_is_constant_within_period() {
     // Ten periods: up and down five times, and 0.01 m in each pair.
     for (q, instants) in [
         simulate_controlled_mass(DormandPrince::new()),
@@ -129,7 +129,7 @@ fn sampled_inputs<S: Method<f64>>(method: S) -> Vec<f64> {
 }
 
 #[test]
-fn samples_hold_the_inputs() {
+fn samples_contain_held_inputs() {
     let wanted: Vec<f64> = (0..=30).map(|k| f64::from(k / 3)).collect();
     assert_eq!(sampled_inputs(Rk4::step(0.1)), wanted);
     assert_eq!(sampled_inputs(ImplicitMidpoint::step(0.03)), wanted);
@@ -164,7 +164,7 @@ fn pendulum_crossings_are_periodic() {
 }
 
 #[test]
-fn a_run_ends_where_it_is_told() {
+fn run_ends_at_stopping_event() {
     // A stone thrown upwards from the ground lands after t = 2 v; the start is no event.
     let stone = falling_ball();
     let run = simulate(&stone).from([0.0], [3.0]).until(|_, q, _| q[0]);
@@ -188,7 +188,7 @@ fn a_run_ends_where_it_is_told() {
 }
 
 #[test]
-fn several_events_come_in_order() {
+fn several_events_are_in_time_order() {
     let mass = OneDof { force: |_| 0.0, ..oscillator::<f64>() };
     let run = simulate(&mass).from([0.0], [1.0]).duration(1.0).method(Rk4::step(1.0));
     let run = run
@@ -204,7 +204,7 @@ fn several_events_come_in_order() {
 }
 
 #[test]
-fn a_ball_bounces() {
+fn bouncing_ball_has_exact_impact_times() {
     // From 0.5 m with unit gravity, the ball falls for 1 s. Each bounce halves the speed: impacts at 1, 2,
     // 2.5 and 2.75 s.
     let ball = falling_ball();
@@ -228,7 +228,7 @@ fn a_ball_bounces() {
 }
 
 #[test]
-fn a_ball_bounces_for_ever() {
+fn elastic_ball_bounces_without_loss() {
     let ball = falling_ball();
     let run = simulate(&ball).from([0.5], [0.0]).impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| -v);
     // 500 flights of 2 s.
@@ -239,9 +239,10 @@ fn a_ball_bounces_for_ever() {
     assert!((thrown.t - 6.0).abs() < 1e-12, "{thrown:?}");
 }
 
-/// Bounces that each lose a fraction of the speed accumulate at a finite time.
+/// Checks that bounces that each lose a fraction of the speed, which accumulate at a finite time, end with an
+/// error.
 #[test]
-fn impacts_without_end_are_an_error() {
+fn accumulating_impacts_are_an_error() {
     let ball = falling_ball();
     for part in [0.8, 0.5, 0.05] {
         let run = simulate(&ball).from([0.5], [0.0]);
@@ -257,7 +258,7 @@ fn impacts_without_end_are_an_error() {
 }
 
 #[test]
-fn an_event_that_is_not_a_number_is_an_error() {
+fn nan_event_function_is_an_error() {
     let ball = falling_ball();
     let end = simulate(&ball).duration(1.0).until(|t, _, _| if t < 0.5 { 1.0 } else { f64::NAN }).finish();
     assert!(matches!(end, Err(Error::Event { event: 0, .. })), "{end:?}");
@@ -267,7 +268,7 @@ fn an_event_that_is_not_a_number_is_an_error() {
 }
 
 #[test]
-fn an_impact_on_a_control_instant_is_both() {
+fn impact_coincides_with_control_instant() {
     let ball = falling_ball();
     let run = simulate(&ball).from([0.5], [0.0]).control_every(1.0, |_, _, _| SVector::zeros());
     let run = run.impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| -v).duration(2.5);
@@ -278,7 +279,7 @@ fn an_impact_on_a_control_instant_is_both() {
 }
 
 #[test]
-fn an_error_ends_the_run() {
+fn iteration_ends_after_an_error() {
     let broken = OneDof { force: |q: f64| if q > 0.5 { f64::NAN } else { 1.0 }, ..oscillator::<f64>() };
     let mut run = simulate(&broken).duration(2.0).method(Rk4::step(0.125));
     let failed = run.by_ref().find(Result::is_err);
@@ -287,7 +288,7 @@ fn an_error_ends_the_run() {
 }
 
 #[test]
-fn changing_a_setting_starts_over() {
+fn changed_setting_restarts_the_run() {
     let oscillator = oscillator::<f64>();
     let mut run = simulate(&oscillator).from([1.0], [0.0]).duration(1.0).sample_every(0.1);
     assert_eq!(run.by_ref().count(), 11);
@@ -308,7 +309,7 @@ fn energy_gain<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const
 }
 
 #[test]
-fn generic_code_can_simulate() {
+fn generic_code_simulates_mechanisms() {
     assert!(energy_gain(&pendulum(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-8);
     assert!(energy_gain(&oscillator::<f32>(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-4);
     let body = FreeBody { mass: 1.0, inertia: Vector3::new(1.0, 2.0, 2.5), gravity: 1.0 };
@@ -318,9 +319,10 @@ fn generic_code_can_simulate() {
     );
 }
 
-/// After a plastic impact, no contact force supports the ball: an error instead of a fall through the floor.
+/// Checks that a plastic impact is an error: no contact force supports the ball afterwards, and it would fall
+/// through the floor.
 #[test]
-fn a_plastic_impact_is_an_error() {
+fn plastic_impact_is_an_error() {
     let ball = falling_ball();
     for part in [0.0, -1e-9, 1e-12, 1e-7, 1e-5, 1e-3] {
         let run = simulate(&ball).from([0.5], [0.0]).duration(30.0);
@@ -357,7 +359,7 @@ fn a_plastic_impact_is_an_error() {
 
 /// Checks that all events of one instant take effect, in the order of their declaration.
 #[test]
-fn events_that_coincide_all_act() {
+fn simultaneous_events_all_act() {
     let ball = falling_ball();
     let run = simulate(&ball).from([0.5], [0.0]).duration(4.0);
     let first =
@@ -378,9 +380,9 @@ fn events_that_coincide_all_act() {
     }
 }
 
-/// A quaternion without unit norm is not an orientation.
+/// Checks that an initial quaternion without unit norm is an error.
 #[test]
-fn quaternions_at_the_start_are_unit() {
+fn initial_quaternion_must_be_unit() {
     let body = FreeBody { mass: 1.0, inertia: Vector3::new(1.0, 2.0, 2.5), gravity: 0.0 };
     for q in [[0.0; 7], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0], [1.0, 0.0, 0.0, 0.0, 0.6, 0.0, 0.7]] {
         let end = simulate(&body).from(q, [1.0; 6]).duration(0.1).finish();
@@ -394,9 +396,9 @@ fn quaternions_at_the_start_are_unit() {
     );
 }
 
-/// A run of zero duration yields only the initial state.
+/// Checks that a run of zero duration yields only the initial state.
 #[test]
-fn a_run_may_be_its_start() {
+fn zero_duration_yields_initial_state() {
     let oscillator = oscillator::<f64>();
     let run = simulate(&oscillator).from([1.0], [2.0]).start_at(3.0).duration(0.0);
     let end = run.clone().finish().unwrap();
@@ -408,7 +410,7 @@ fn a_run_may_be_its_start() {
 /// Checks that control periods of one millisecond have the same length after hours as at the start, in single
 /// precision.
 #[test]
-fn single_precision_keeps_time() {
+fn control_periods_stay_exact_in_single_precision() {
     let mass = OneDof { force: |_| 0.0, ..oscillator::<f32>() };
     let start = 8192.0;
     let calls = Cell::new(0);
@@ -437,7 +439,7 @@ fn single_precision_keeps_time() {
 
 /// Samples an oscillator at given times, with an adaptive method, which interpolates, and with a fixed-step
 /// method.
-fn looked_at<S: Method<f64> + Clone>(method: S, tolerance: f64) {
+fn check_listed_sample_times<S: Method<f64> + Clone>(method: S, tolerance: f64) {
     let (start, looked) = (2.0, [2.0, 2.013, 2.5, 2.500_000_1, 5.75]);
     let mass = oscillator::<f64>();
     let run = simulate(&mass).from([1.0], [0.0]).start_at(start).method(method);
@@ -460,13 +462,13 @@ fn looked_at<S: Method<f64> + Clone>(method: S, tolerance: f64) {
 }
 
 #[test]
-fn samples_come_when_they_are_asked_for() {
-    looked_at(DormandPrince::new(), 1e-7);
-    looked_at(Rk4::step(1e-2), 1e-8);
+fn samples_at_listed_times() {
+    check_listed_sample_times(DormandPrince::new(), 1e-7);
+    check_listed_sample_times(Rk4::step(1e-2), 1e-8);
 }
 
 #[test]
-fn times_of_samples_increase() {
+fn sample_times_must_increase() {
     let mass = oscillator::<f64>();
     let simulation_error =
         |times: &[f64]| simulate(&mass).start_at(1.0).sample_at(times).finish().unwrap_err();

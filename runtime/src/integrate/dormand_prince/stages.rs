@@ -1,7 +1,7 @@
 //! Stages of one Dormand–Prince step of order 5, with error estimate and interpolating polynomial.
 
 use crate::Real;
-use crate::integrate::adaptive::{Attempt, Trial};
+use crate::integrate::adaptive::{Attempt, StepTrial};
 use crate::integrate::stages::{Rates, rates_at_stage, weighted_sum_of_rates};
 use crate::integrate::{Dynamics, Step};
 use crate::private::constant;
@@ -11,7 +11,7 @@ use crate::private::constant;
 pub(super) fn step_stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     attempt: &Attempt<'_, T, NQ, NV>,
-) -> Trial<T, NQ, NV> {
+) -> StepTrial<T, NQ, NV> {
     let Attempt { start, acceleration, scale, h, t } = *attempt;
     let time_at_fraction = |part: f64| start.t + h * constant(part);
     let k1 = &Rates { displacement: start.v, velocity: *acceleration };
@@ -78,6 +78,6 @@ pub(super) fn step_stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, cons
         velocity: step.velocity.with_fourth(fourth.velocity),
         ..step
     };
-    let error = scale.error(&step, &displacement, &error);
-    Trial { step, acceleration: Some(k7.velocity), error }
+    let error = scale.relative_error(&step, &displacement, &error);
+    StepTrial { step, acceleration: Some(k7.velocity), error }
 }
