@@ -23,7 +23,8 @@ impl Pencil {
 }
 
 impl StateSpace {
-    /// Returns the frequency of a point in the plane of poles and zeros, rad/s: `|Im s|`, or `|arg z| / h`.
+    /// Returns the frequency of a pole or zero in the complex plane, rad/s: `|Im s|`, or `|arg z| / h` for a
+    /// discrete system.
     pub(crate) fn frequency_of(&self, root: C) -> f64 {
         self.period.map_or(root.im.abs(), |h| root.arg().abs() / h)
     }
@@ -98,8 +99,8 @@ impl StateSpace {
         self.pencil_frequencies(&Pencil { m: left, e: right })
     }
 
-    /// Returns the frequencies of a pencil's eigenvalues, computed with several shifts. Each shift is
-    /// accurate for eigenvalues of about its own magnitude.
+    /// Returns the frequencies of the eigenvalues of a matrix pencil, rad/s, computed with several shifts.
+    /// Each shift is accurate for eigenvalues of about its own magnitude.
     fn pencil_frequencies(&self, pencil: &Pencil) -> Result<Vec<f64>, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
         let mut scales = self.root_frequencies()?;
