@@ -27,7 +27,8 @@ pub(crate) struct Shape {
     pub(crate) frames: [Option<usize>; 2],
     pub(crate) numbers: Vec<f64>,
     pub(crate) mesh: Option<Mesh>,
-    /// Index of its first number among the numbers of the declared pieces.
+    /// Index of the first number of the shape among the numbers of the declared pieces; `None` for a shape
+    /// that the program adds.
     first: Option<usize>,
     /// Whether the piece is the equivalent ellipsoid of mass and moments of inertia, drawn if no shape is
     /// declared.
@@ -52,8 +53,8 @@ impl Figure {
         Figure::from_pieces(M::FRAMES.iter().map(ToString::to_string).collect(), M::DRAWING, &numbers)
     }
 
-    /// Creates a drawing from pieces and their dimensions, in frames of these names. Pieces with missing
-    /// dimensions or dimensions that are not finite are omitted.
+    /// Creates a drawing from pieces and their dimensions, in frames with the names `frames`. Pieces with
+    /// missing dimensions or dimensions that are not finite are omitted.
     pub fn from_pieces(frames: Vec<String>, pieces: &[Piece], numbers: &[f64]) -> Figure {
         let mut figure = Figure { frames, ..Figure::default() };
         for piece in pieces {
@@ -68,8 +69,8 @@ impl Figure {
         figure
     }
 
-    /// Adds a piece to a frame, or to the ground if `frame` is `None`. The dimensions are those documented at
-    /// [`Kind`], m and rad.
+    /// Adds a piece to a frame of the drawing, or to the ground if `frame` is `None`. The dimensions are
+    /// those documented at [`Kind`], m and rad.
     ///
     /// # Errors
     ///
@@ -90,8 +91,8 @@ impl Figure {
         Ok(self)
     }
 
-    /// Adds a surface to a frame, or to the ground if `frame` is `None`. The function `place` maps the
-    /// parameters `u` and `w` between these bounds to a position, m in the axes of the frame.
+    /// Adds a surface to a frame of the drawing, or to the ground if `frame` is `None`. The function `place`
+    /// maps the parameters `u` and `w` between these bounds to a position, m in the axes of the frame.
     ///
     /// Contact surfaces given by functions may be unbounded. This method draws a region of such a surface, or
     /// a larger region of a terrain than [`Motion::of`](crate::Motion::of) draws by default. No floor is
@@ -158,8 +159,8 @@ impl Figure {
         missing
     }
 
-    /// Iterates over the shapes that are drawn. Shapes of mass properties are omitted if all meshes of their
-    /// body were read.
+    /// Returns the shapes of the drawing that are drawn. Shapes of mass properties are omitted if all meshes
+    /// of their body were read.
     pub(crate) fn drawn_shapes(&self) -> impl Iterator<Item = &Shape> {
         self.shapes.iter().filter(|shape| shape.is_visible() && !self.has_meshes(shape))
     }
@@ -231,7 +232,7 @@ impl Figure {
         }
     }
 
-    /// Returns the indices of the frames in which pieces are fixed.
+    /// Returns the indices of the frames in which pieces of the drawing are fixed.
     pub(crate) fn used_frames(&self) -> Vec<usize> {
         (0..self.frames.len()).filter(|k| self.shapes.iter().any(|s| s.frames.contains(&Some(*k)))).collect()
     }
@@ -258,8 +259,8 @@ impl Shape {
         self.first.map(|first| [first, count])
     }
 
-    /// Returns the reference points of the shape, each with its frame and the distance that the shape extends
-    /// beyond it.
+    /// Returns the reference points of the shape, each with its frame and the distance by which the shape
+    /// extends beyond it.
     pub(crate) fn reference_points(&self) -> Vec<(Option<usize>, Vector3<f64>, f64)> {
         let n = &self.numbers;
         let vector_from_numbers = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
@@ -362,7 +363,7 @@ mod tests {
     /// Checks that the equivalent ellipsoid of a homogeneous ellipsoid is itself. With semi-axes a, b, c, its
     /// inertia is `I_xx = m (b² + c²) / 5` (any table of mechanics).
     #[test]
-    fn an_ellipsoid_is_its_own_equivalent() {
+    fn equivalent_of_ellipsoid_is_itself() {
         let (m, [a, b, c]) = (3.0, [0.5, 0.2, 0.3_f64]);
         let ellipsoid_moment = |p: f64, q: f64| m * (p * p + q * q) / 5.0;
         let numbers = [
@@ -387,7 +388,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_numbers_is_left_out() {
+    fn pieces_without_numbers_are_omitted() {
         let frames = vec!["a".to_string()];
         let piece =
             |first| Piece { name: "p", role: Role::Body, kind: Kind::Sphere, frames: [Some(0), None], first };

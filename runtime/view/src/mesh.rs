@@ -11,10 +11,10 @@ pub(crate) struct Mesh {
     corners: Vec<[f32; 3]>,
 }
 
-/// Maximum number of triangles of a file: a page with more would be large and slow.
+/// Maximum number of triangles of a mesh file: a page with more would be large and slow.
 pub(crate) const MAX_TRIANGLES: usize = 200_000;
 
-/// Number of cells of a surface along each of its two directions.
+/// Number of cells of a triangulated surface along each of its two directions.
 const CELLS: u32 = 80;
 
 impl Mesh {
@@ -50,13 +50,13 @@ impl Mesh {
         Ok(Mesh { corners })
     }
 
-    /// Returns the distance of the farthest corner from the origin.
+    /// Returns the distance of the mesh's farthest corner from the origin.
     pub(crate) fn radius_of_mesh(&self) -> f64 {
         let corner_norm = |c: &[f32; 3]| c.iter().map(|x| f64::from(*x) * f64::from(*x)).sum::<f64>().sqrt();
         self.corners.iter().map(corner_norm).fold(0.0, f64::max)
     }
 
-    /// Returns at most this number of corners, evenly chosen.
+    /// Returns at most `count` corners of the mesh, evenly chosen.
     pub(crate) fn some_corners(&self, count: usize) -> Vec<[f64; 3]> {
         let step = self.corners.len().div_ceil(count).max(1);
         self.corners.iter().step_by(step).map(|corner| corner.map(f64::from)).collect()
@@ -92,7 +92,7 @@ impl Mesh {
     }
 }
 
-/// Returns the file in a folder that a path of a robot's file refers to.
+/// Returns the mesh file in a folder that a path in a robot file refers to, if it exists.
 pub(crate) fn find_mesh_file(folder: &Path, path: &str) -> Option<PathBuf> {
     let path = path.split_once("://").map_or(path, |(_, path)| path);
     // `..` is dropped, so that no file outside the folder is read.
@@ -203,7 +203,7 @@ mod tests {
     const TRIANGLE: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
 
     #[test]
-    fn the_same_triangle_in_three_ways() {
+    fn stl_and_obj_give_the_same_triangle() {
         let mut binary = vec![0; 80];
         binary.extend(1_u32.to_le_bytes());
         binary.extend([0; 12]);
@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn broken_files_are_told() {
+    fn invalid_mesh_files_are_errors() {
         for (what, found) in [
             ("neither", read_stl(&[0xff; 90])),
             ("three numbers", read_stl(b"solid\nvertex 0 zero 0")),
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn paths_do_not_leave_the_folder() {
+    fn mesh_paths_stay_in_the_folder() {
         assert_eq!(find_mesh_file(Path::new("/nowhere"), "package://robot/../../etc/hosts"), None);
         let source = Path::new(env!("CARGO_MANIFEST_DIR"));
         assert_eq!(

@@ -5,7 +5,7 @@ use crate::text;
 use linkwork::drawing::{Kind, Role};
 use linkwork::nalgebra::{IsometryMatrix3, Point3, Vector3};
 
-/// Scene of a motion, as the camera needs it.
+/// Scene of a motion: the data that determine the initial view of the camera.
 pub(crate) struct Scene {
     /// Extent of the mechanism in the first sample, m.
     pub(crate) size: f64,
@@ -19,7 +19,7 @@ pub(crate) struct Scene {
     eye: Vector3<f64>,
     /// Whether the motion is planar, so that the camera looks along its normal.
     plane: bool,
-    /// Height of the floor along `up`: a ground plane, or below the motion if there is gravity but no
+    /// Height of the floor along `up`: that of a ground plane, or below the motion if there is gravity but no
     /// terrain.
     floor: Option<f64>,
 }
@@ -35,17 +35,18 @@ impl Scene {
         let place_in_world = |k: usize, frame: Option<usize>, point: Vector3<f64>| {
             frame.map_or(point, |f| (placements[k][f] * Point3::from(point)).coords)
         };
-        let (mut start, mut whole, mut lowest) = (Extent::default(), Extent::default(), f64::INFINITY);
+        let (mut start, mut whole, mut lowest) =
+            (BoundingBox::default(), BoundingBox::default(), f64::INFINITY);
         for (frame, point, beyond) in pieces.iter().filter(|s| s.is_body()).flat_map(|s| s.reference_points())
         {
-            start.add(&place_in_world(0, frame, point), beyond);
+            start.add_point(&place_in_world(0, frame, point), beyond);
         }
         let reaches: Vec<_> = pieces.iter().flat_map(|s| s.reference_points()).collect();
         for k in shown {
             for (frame, point, beyond) in &reaches {
                 let at = place_in_world(*k, *frame, *point);
                 lowest = lowest.min(at.dot(&up) - beyond);
-                whole.add(&at, *beyond);
+                whole.add_point(&at, *beyond);
             }
         }
         let is_valid_size = |size: &f64| *size > 0.0 && size.is_finite();
@@ -70,7 +71,7 @@ impl Scene {
         }
     }
 
-    /// Returns the unit vectors to the right, upward and towards the viewer of the initial view.
+    /// Returns the unit vectors of the initial view to the right, upward and towards the viewer.
     pub(crate) fn view_axes(&self) -> [Vector3<f64>; 3] {
         let (yaw, pitch): (f64, f64) = if self.plane { (0.25, 0.2) } else { (0.7, 0.38) };
         let side = self.eye * yaw.cos() + self.up.cross(&self.eye) * yaw.sin();
@@ -103,31 +104,32 @@ impl Figure {
 }
 
 impl Shape {
-    /// Returns whether the shape can be drawn: meshes and terrains may not have been read or computed.
+    /// Whether the shape can be drawn: the files of meshes may not have been read, and terrains not have been
+    /// computed.
     pub(crate) fn is_visible(&self) -> bool {
         !matches!(self.kind, Kind::Mesh(_) | Kind::Terrain(_)) || self.mesh.is_some()
     }
 
-    /// Returns whether the shape is part of the mechanism itself, whose size is measured.
+    /// Whether the shape is part of the mechanism itself, whose size is measured.
     fn is_body(&self) -> bool {
         matches!(self.role, Role::Body | Role::Link | Role::Visual | Role::Joint)
     }
 }
 
 /// Axis-aligned bounding box of the drawn points.
-struct Extent {
+struct BoundingBox {
     low: Vector3<f64>,
     high: Vector3<f64>,
 }
 
-impl Default for Extent {
-    fn default() -> Extent {
-        Extent { low: Vector3::repeat(f64::INFINITY), high: Vector3::repeat(f64::NEG_INFINITY) }
+impl Default for BoundingBox {
+    fn default() -> BoundingBox {
+        BoundingBox { low: Vector3::repeat(f64::INFINITY), high: Vector3::repeat(f64::NEG_INFINITY) }
     }
 }
 
-impl Extent {
-    fn add(&mut self, at: &Vector3<f64>, beyond: f64) {
+impl BoundingBox {
+    fn add_point(&mut self, at: &Vector3<f64>, beyond: f64) {
         self.low = self.low.inf(&at.add_scalar(-beyond));
         self.high = self.high.sup(&at.add_scalar(beyond));
     }

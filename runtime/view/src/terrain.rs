@@ -6,7 +6,8 @@ use linkwork::drawing::Kind;
 use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Vector3};
 
 impl Figure {
-    /// Replaces every terrain by a surface over the region of the frames' positions, extended by `beyond`, m.
+    /// Replaces every terrain of the drawing by a surface over the region of the frames' positions, extended
+    /// by `beyond`, m.
     pub(crate) fn raise_terrains(
         &mut self,
         placements: &[Vec<IsometryMatrix3<f64>>],
