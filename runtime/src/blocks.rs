@@ -139,9 +139,9 @@ fn multiply_all_rows<
     }
 }
 
-/// Computes a matrix product as [`rows_of`] does, with registers of eight, and a final register of four if it
-/// can hold the remaining rows. Instructions on four are half as long on processors that split instructions
-/// on eight.
+/// Computes a matrix product as [`multiply_all_rows`] does, with registers of eight, and a final register of
+/// four if it can hold the remaining rows. Instructions on four are half as long on processors that split
+/// instructions on eight.
 #[inline(always)]
 fn multiply_rows_wide<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C: usize>(
     columns: &mut [[T; R]; C],

@@ -191,7 +191,7 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
     /// Index of the contact whose normal force limits the friction of each entry: the contact itself, except
     /// for friction moments. Spin and rolling moments such as `foot.spin` and `foot.roll` belong to the
     /// contact `foot` and share its gap; their contact velocities are relative angular velocities.
-    const PRESSED_BY: [usize; NK] = layout::own_contacts();
+    const PRESSED_BY: [usize; NK] = layout::contacts_pressed_by_themselves();
 
     /// Returns the tables [`CONTACT_ROWS`](Self::CONTACT_ROWS) and [`PRESSED_BY`](Self::PRESSED_BY). A
     /// mechanism that is loaded at run time returns tables of its own, in which a contact without rows is
@@ -459,7 +459,7 @@ where
             let selection =
                 ContactSelection::<NK, NR>::select_closed(ContactLayout::of_mechanism(mechanism), &closed);
             let mut acted = ActedContacts::without_impulses(selection, false);
-            let velocities = ContactVelocities::at(mechanism, t, q);
+            let velocities = ContactVelocities::in_configuration(mechanism, t, q);
             let velocities_before = || selection.selected_rates(before);
             compute_impulses(
                 mechanism,

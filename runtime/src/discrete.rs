@@ -55,7 +55,7 @@ mod second;
 mod time_stepping;
 
 pub use explicit::semi_implicit_into;
-pub(crate) use explicit::{Sensitive, Start};
+pub(crate) use explicit::{DifferentiatedStart, VectorWithDerivatives};
 pub(crate) use implicit::eliminate_with_pivoting;
 pub use parameters::{StepByParameters, by_parameters};
 pub use second::{TwiceDifferentiableStep, second_order};
@@ -361,7 +361,7 @@ pub trait DifferentiableStep<T: Real>: FixedStep<T> {
     /// # Errors
     ///
     /// The errors of [`step`].
-    fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
+    fn differentiate_step<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
         t: T,
@@ -389,7 +389,7 @@ pub trait DifferentiableStep<T: Real>: FixedStep<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        *into = self.differentiate(mechanism, t, q, v, u)?;
+        *into = self.differentiate_step(mechanism, t, q, v, u)?;
         Ok(())
     }
 }
@@ -484,8 +484,8 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, N
 
     /// Returns the transition to a configuration and a velocity, given their derivatives.
     pub(crate) fn from_sensitive(
-        (q, motion): &(SVector<T, NQ>, Sensitive<T, NV, NU>),
-        v: &Sensitive<T, NV, NU>,
+        (q, motion): &(SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>),
+        v: &VectorWithDerivatives<T, NV, NU>,
     ) -> Self {
         Self {
             q: *q,

@@ -38,16 +38,16 @@ pub const fn rows(numbers: usize, wide: bool) -> usize {
 }
 
 /// Half-open range of adjacent rows or columns.
-type Range = (usize, usize);
+type IndexRange = (usize, usize);
 
 /// Run of neighbouring columns: their range, the rows of the trunk in which their factors are nonzero, and
 /// the index of the first column's factors.
-pub type Run = (Range, Range, usize);
+pub type Run = (IndexRange, IndexRange, usize);
 
 /// Matrix to be multiplied by another; column and row of the entries to set to zero in it; and half-open
 /// ranges of its columns with the rows that can be nonzero. All other columns are zero.
 pub type Factor<'a, T, const N: usize, const M: usize> =
-    (&'a mut SMatrix<T, N, M>, &'a [(usize, usize)], &'a [(Range, &'a [usize])]);
+    (&'a mut SMatrix<T, N, M>, &'a [(usize, usize)], &'a [(IndexRange, &'a [usize])]);
 
 /// Replaces each matrix by its negative product with `matrix`.
 #[inline]
@@ -82,7 +82,7 @@ impl<T: Real, P: Tiling<T, N>, const N: usize, const M: usize, const COUNT: usiz
             clear_entries(b, zeros);
             for ((first, end), rows) in groups {
                 let some = b.data.0.get_mut(*first..*end).unwrap_or(&mut []);
-                P::multiply::<A>(self.matrix, some, rows);
+                P::negate_products::<A>(self.matrix, some, rows);
             }
         }
     }

@@ -23,7 +23,7 @@ use crate::private::to_f64;
 use crate::{Mechanism, Real};
 use core::fmt;
 use nalgebra::SVector;
-use run::Progress;
+use run::RunProgress;
 
 /// Creates a simulation of a mechanism. By default, it starts from the neutral configuration at rest at t = 0
 /// and uses no inputs and the method [`DormandPrince`]. The methods of [`Simulation`] change these settings.
@@ -61,16 +61,16 @@ where
         start,
         overlaps: Overlaps::Refuse,
         duration: None,
-        samples: Samples::Steps,
+        samples: SampleTimes::Steps,
         progress: None,
         over: false,
     }
 }
 
 /// List of the events `E`, extended by one event.
-type With<E, T, G, A> = (E, Event<T, G, A>);
+type EventsWith<E, T, G, A> = (E, Event<T, G, A>);
 /// List of the events `E` extended by one more event whose effect is an impact.
-type WithImpact<E, T, G, F> = With<E, T, G, Impact<F>>;
+type WithImpact<E, T, G, F> = EventsWith<E, T, G, Impact<F>>;
 
 /// Sample of a simulation: state and inputs at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,7 +140,7 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Sample<T, NQ, N
 
 /// Times at which a simulation emits samples.
 #[derive(Clone, Copy, Debug)]
-enum Samples<'m, T> {
+enum SampleTimes<'m, T> {
     /// Samples at the end of every step.
     Steps,
     /// Samples at equal intervals of this length, s.
@@ -185,8 +185,8 @@ where
     start: State<T, NQ, NV>,
     overlaps: Overlaps,
     duration: Option<T>,
-    samples: Samples<'m, T>,
-    progress: Option<Progress<T, S::Memory<NV>, NQ, NV>>,
+    samples: SampleTimes<'m, T>,
+    progress: Option<RunProgress<T, S::Memory<NV>, NQ, NV>>,
     over: bool,
 }
 
@@ -252,7 +252,7 @@ where
     /// Fixed-step methods divide the interval into equal steps, adaptive methods interpolate. By default,
     /// every step of the integrator is a sample.
     pub fn sample_every(self, interval: T) -> Self {
-        Self { samples: Samples::Every(interval), ..self.reset_simulation() }
+        Self { samples: SampleTimes::Every(interval), ..self.reset_simulation() }
     }
 
     /// Selects samples at these times of the run, s. The times must increase, and none may be before the
@@ -281,7 +281,7 @@ where
     /// # Ok::<(), Error>(())
     /// ```
     pub fn sample_at(self, times: &'m [T]) -> Self {
-        Self { samples: Samples::At(times), ..self.reset_simulation() }
+        Self { samples: SampleTimes::At(times), ..self.reset_simulation() }
     }
 
     /// Sets the inputs `u` of the mechanism to a function `|t, q, v|` that is continuous in time, and
@@ -319,7 +319,7 @@ where
 
     /// Ends the run when `function(t, q, v)` crosses zero in either direction; the last sample is at the
     /// crossing.
-    pub fn until<G>(self, function: G) -> Simulation<'m, M, T, I, S, With<E, T, G, Stop>, NQ, NV, NU>
+    pub fn until<G>(self, function: G) -> Simulation<'m, M, T, I, S, EventsWith<E, T, G, Stop>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
     {
@@ -332,7 +332,7 @@ where
         self,
         crossing: Crossing,
         function: G,
-    ) -> Simulation<'m, M, T, I, S, With<E, T, G, Stop>, NQ, NV, NU>
+    ) -> Simulation<'m, M, T, I, S, EventsWith<E, T, G, Stop>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
     {
@@ -350,7 +350,7 @@ where
         self,
         crossing: Crossing,
         function: G,
-    ) -> Simulation<'m, M, T, I, S, With<E, T, G, Report>, NQ, NV, NU>
+    ) -> Simulation<'m, M, T, I, S, EventsWith<E, T, G, Report>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
     {
@@ -390,7 +390,7 @@ where
         I: Inputs<T, NQ, NV, NU>,
         E: Events<T, NQ, NV>,
     {
-        if self.duration.is_none() && !E::STOPS && !matches!(self.samples, Samples::At(_)) {
+        if self.duration.is_none() && !E::STOPS && !matches!(self.samples, SampleTimes::At(_)) {
             return Err(Error::Endless);
         }
         let mut run = self.begin_run()?;
@@ -418,7 +418,7 @@ where
     fn with_event<G, A>(
         self,
         event: Event<T, G, A>,
-    ) -> Simulation<'m, M, T, I, S, With<E, T, G, A>, NQ, NV, NU> {
+    ) -> Simulation<'m, M, T, I, S, EventsWith<E, T, G, A>, NQ, NV, NU> {
         let Self { system, method, events, start, overlaps, duration, samples, .. } = self;
         let events = (events, event);
         Simulation { system, method, events, start, overlaps, duration, samples, progress: None, over: false }

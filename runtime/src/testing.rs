@@ -15,13 +15,13 @@ pub(crate) struct OneDof<T> {
 }
 
 /// Returns the harmonic oscillator `q̈ = −q` as a test mechanism.
-pub(crate) fn oscillator<T: Real>() -> OneDof<T> {
+pub(crate) fn harmonic_oscillator<T: Real>() -> OneDof<T> {
     let half_square = |q: T| q * q * constant(0.5);
     OneDof { inertia: T::one(), damping: T::zero(), force: |q| -q, energy: half_square }
 }
 
 /// Returns a pendulum of unit mass and length under unit gravity.
-pub(crate) fn pendulum() -> OneDof<f64> {
+pub(crate) fn unit_pendulum() -> OneDof<f64> {
     OneDof { inertia: 1.0, damping: 0.0, force: |q| -q.sin(), energy: |q| 1.0 - q.cos() }
 }
 
@@ -103,15 +103,15 @@ impl<T: Real> Mechanism<1, 1, 1> for OneDof<T> {
 }
 
 /// A body that rotates about its fixed centre of mass: a ball joint. The input is a torque in the body frame.
-pub(crate) struct Top<T> {
+pub(crate) struct SpinningTop<T> {
     pub(crate) inertia: Vector3<T>,
 }
 
-impl<T: Real> Hooks<T, 4, 3, 3> for Top<T> {}
+impl<T: Real> Hooks<T, 4, 3, 3> for SpinningTop<T> {}
 
-impl<T: Real> Scleronomic for Top<T> {}
+impl<T: Real> Scleronomic for SpinningTop<T> {}
 
-impl<T: Real> Mechanism<4, 3, 3> for Top<T> {
+impl<T: Real> Mechanism<4, 3, 3> for SpinningTop<T> {
     type Scalar = T;
     const CONFIGURATION: [&'static str; 4] = ["qx", "qy", "qz", "qw"];
     const VELOCITIES: [&'static str; 3] = ["wx", "wy", "wz"];

@@ -44,7 +44,7 @@ pub fn sin_cos_all<A: Registers, T: Real, const N: usize>(x: [T; N]) -> ([T; N],
 /// Value that is aligned to cache lines. A function with such a value on its stack aligns the whole stack
 /// frame, so that registers saved there never cross a cache line.
 #[repr(align(64))]
-pub(crate) struct Aligned<T>(pub(crate) T);
+pub(crate) struct CacheAligned<T>(pub(crate) T);
 
 /// Returns a reference as another type if both types are the same, otherwise `None`. The decision is made at
 /// compile time.
@@ -73,7 +73,7 @@ fn sin_cos_of_doubles<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], 
     }
     if large {
         // A copy: passing the angles themselves would force them through memory even if none is large.
-        let copy = Aligned(*x);
+        let copy = CacheAligned(*x);
         (s, c) = A::sin_cos_of_large(&copy.0);
     }
     (s, c)

@@ -1,6 +1,6 @@
 //! Adapter that makes a mechanism evaluate several states in SIMD lanes as its scalar type.
 
-use super::{Batch, Column};
+use super::{Batch, LaneColumn};
 use crate::blocks::zeros;
 use crate::contact::{Assumed, Impulses, Touched};
 use crate::forward::constants;
@@ -107,9 +107,9 @@ where
     fn project(
         &self,
         t: Lanes<M::Scalar, L>,
-        q: &Column<M::Scalar, L, NQ>,
-        v: &Column<M::Scalar, L, NV>,
-    ) -> Result<(Column<M::Scalar, L, NQ>, Column<M::Scalar, L, NV>), ConstraintError> {
+        q: &LaneColumn<M::Scalar, L, NQ>,
+        v: &LaneColumn<M::Scalar, L, NV>,
+    ) -> Result<(LaneColumn<M::Scalar, L, NQ>, LaneColumn<M::Scalar, L, NV>), ConstraintError> {
         let results: [_; L] =
             core::array::from_fn(|k| self.mechanism.project(t.0[k], &lane(q, k), &lane(v, k)));
         if let Some(Err(error)) = results.first()
@@ -129,8 +129,8 @@ where
     fn is_nearly_singular(
         &self,
         t: Lanes<M::Scalar, L>,
-        q: &Column<M::Scalar, L, NQ>,
-        dv: &Column<M::Scalar, L, NV>,
+        q: &LaneColumn<M::Scalar, L, NQ>,
+        dv: &LaneColumn<M::Scalar, L, NV>,
     ) -> bool {
         M::CONSTRAINED && (0..L).any(|k| self.mechanism.is_nearly_singular(t.0[k], &lane(q, k), &lane(dv, k)))
     }
@@ -139,9 +139,9 @@ where
     fn acceleration_derivatives(
         &self,
         t: Lanes<M::Scalar, L>,
-        q: &Column<M::Scalar, L, NQ>,
-        v: &Column<M::Scalar, L, NV>,
-        u: &Column<M::Scalar, L, NU>,
+        q: &LaneColumn<M::Scalar, L, NQ>,
+        v: &LaneColumn<M::Scalar, L, NV>,
+        u: &LaneColumn<M::Scalar, L, NU>,
     ) -> Option<ByMotion<Lanes<M::Scalar, L>, NV, NU>> {
         let mut all: ByMotion<Lanes<M::Scalar, L>, NV, NU> = (zeros(), zeros(), zeros());
         for k in 0..L {
@@ -158,10 +158,10 @@ where
     fn carry(
         &self,
         t: Lanes<M::Scalar, L>,
-        q: &Column<M::Scalar, L, NQ>,
-        dv: &Column<M::Scalar, L, NV>,
-        v: &Column<M::Scalar, L, NV>,
-    ) -> Column<M::Scalar, L, NV> {
+        q: &LaneColumn<M::Scalar, L, NQ>,
+        dv: &LaneColumn<M::Scalar, L, NV>,
+        v: &LaneColumn<M::Scalar, L, NV>,
+    ) -> LaneColumn<M::Scalar, L, NV> {
         lane_by_lane(|k| self.mechanism.carry(t.0[k], &lane(q, k), &lane(dv, k), &lane(v, k)))
     }
 
@@ -170,9 +170,9 @@ where
     fn contact_start(
         &self,
         t: Lanes<M::Scalar, L>,
-        q: &Column<M::Scalar, L, NQ>,
+        q: &LaneColumn<M::Scalar, L, NQ>,
         parts: bool,
-    ) -> Result<Column<M::Scalar, L, NQ>, ConstraintError> {
+    ) -> Result<LaneColumn<M::Scalar, L, NQ>, ConstraintError> {
         let results: [_; L] =
             core::array::from_fn(|k| self.mechanism.contact_start(t.0[k], &lane(q, k), parts));
         if let Some(Err(error)) = results.iter().find(|result| result.is_err()) {
@@ -186,8 +186,8 @@ where
     fn contact_step(
         &self,
         t: Lanes<M::Scalar, L>,
-        start: (&Column<M::Scalar, L, NQ>, &Column<M::Scalar, L, NV>),
-        end: (&Column<M::Scalar, L, NQ>, &Column<M::Scalar, L, NV>),
+        start: (&LaneColumn<M::Scalar, L, NQ>, &LaneColumn<M::Scalar, L, NV>),
+        end: (&LaneColumn<M::Scalar, L, NQ>, &LaneColumn<M::Scalar, L, NV>),
         (given, impulses): Assumed<'_, Lanes<M::Scalar, L>, NV>,
         h: Lanes<M::Scalar, L>,
     ) -> Result<Touched<Lanes<M::Scalar, L>, NQ, NV>, ConstraintError> {
@@ -227,11 +227,11 @@ where
     fn impulse(
         &self,
         t: Lanes<M::Scalar, L>,
-        q: &Column<M::Scalar, L, NQ>,
-        v: &Column<M::Scalar, L, NV>,
+        q: &LaneColumn<M::Scalar, L, NQ>,
+        v: &LaneColumn<M::Scalar, L, NV>,
         h: Lanes<M::Scalar, L>,
-        p: &Column<M::Scalar, L, NV>,
-    ) -> Column<M::Scalar, L, NV> {
+        p: &LaneColumn<M::Scalar, L, NV>,
+    ) -> LaneColumn<M::Scalar, L, NV> {
         if M::CONSTRAINED {
             let one =
                 |k: usize| self.mechanism.impulse(t.0[k], &lane(q, k), &lane(v, k), h.0[k], &lane(p, k));

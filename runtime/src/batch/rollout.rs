@@ -16,27 +16,27 @@ pub trait Lockstep<T: Real>: Method<T> {
     const ITERATES_CONSTRAINTS: bool = false;
 
     /// Same integration method with SIMD lanes as its scalar type.
-    type Wide<const L: usize>: Method<Lanes<T, L>>;
+    type MethodInLanes<const L: usize>: Method<Lanes<T, L>>;
 
     /// Returns the method with SIMD lanes as its scalar type, and the same step size in all lanes.
-    fn wide<const L: usize>(&self) -> Self::Wide<L>;
+    fn in_lanes<const L: usize>(&self) -> Self::MethodInLanes<L>;
 }
 
 impl<T: Real> Lockstep<T> for Rk4<T> {
-    type Wide<const L: usize> = Rk4<Lanes<T, L>>;
+    type MethodInLanes<const L: usize> = Rk4<Lanes<T, L>>;
 
-    fn wide<const L: usize>(&self) -> Self::Wide<L> {
-        Rk4::step(Lanes::splat(self.length()))
+    fn in_lanes<const L: usize>(&self) -> Self::MethodInLanes<L> {
+        Rk4::step(Lanes::splat(self.nominal_step_length()))
     }
 }
 
 impl<T: Real> Lockstep<T> for SemiImplicitEuler<T> {
     const ITERATES_CONSTRAINTS: bool = true;
 
-    type Wide<const L: usize> = SemiImplicitEuler<Lanes<T, L>>;
+    type MethodInLanes<const L: usize> = SemiImplicitEuler<Lanes<T, L>>;
 
-    fn wide<const L: usize>(&self) -> Self::Wide<L> {
-        SemiImplicitEuler::step(Lanes::splat(self.length()))
+    fn in_lanes<const L: usize>(&self) -> Self::MethodInLanes<L> {
+        SemiImplicitEuler::step(Lanes::splat(self.nominal_step_length()))
     }
 }
 
@@ -263,7 +263,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         }
         let inputs = ContinuousInputs(|t, q: &SVector<_, NQ>, v: &SVector<_, NV>| control(first, t, q, v));
         let mut system: System<'_, Self, _, NU> = System::new(self, inputs);
-        let method = rollout.method.wide::<L>();
+        let method = rollout.method.in_lanes::<L>();
         let mut memory = method.memory();
         let mut group = FinishedGroup { end: start, failures: [None; L] };
         for _ in 0..rollout.steps {

@@ -65,17 +65,19 @@ pub fn solve_rows_into<T: Real, const N: usize, const R: usize>(
     b: &SMatrix<T, R, N>,
     into: &mut SMatrix<T, R, N>,
 ) {
-    dispatch::<1, T, _, _>(&Solve { l, inverse, b }, into);
+    dispatch::<1, T, _, _>(&SymmetricSystem { l, inverse, b }, into);
 }
 
 /// Factors and right-hand sides of a symmetric linear system.
-pub(super) struct Solve<'a, T, const N: usize, const R: usize> {
+pub(super) struct SymmetricSystem<'a, T, const N: usize, const R: usize> {
     pub(super) l: &'a SMatrix<T, N, N>,
     pub(super) inverse: &'a SVector<T, N>,
     pub(super) b: &'a SMatrix<T, R, N>,
 }
 
-impl<T: Real, const N: usize, const R: usize> Evaluate<1, &mut SMatrix<T, R, N>> for Solve<'_, T, N, R> {
+impl<T: Real, const N: usize, const R: usize> Evaluate<1, &mut SMatrix<T, R, N>>
+    for SymmetricSystem<'_, T, N, R>
+{
     type Output = ();
 
     #[inline(always)]
@@ -96,7 +98,7 @@ impl<T: Real, const N: usize, const R: usize> Evaluate<1, &mut SMatrix<T, R, N>>
     }
 }
 
-impl<T: Real, const N: usize, const R: usize> Solve<'_, T, N, R> {
+impl<T: Real, const N: usize, const R: usize> SymmetricSystem<'_, T, N, R> {
     /// Solves the linear system for one register of right-hand sides, beginning with the one at index `from`.
     #[inline(always)]
     fn solve_one_register<A: Arithmetic, const W: usize>(&self, out: &mut [[T; R]; N], from: usize) {

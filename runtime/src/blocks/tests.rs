@@ -1,7 +1,7 @@
 //! Tests that compare matrix products and solutions with those of nalgebra, for all register widths and
 //! numbers of remaining rows.
 
-use super::solve::Solve;
+use super::solve::SymmetricSystem;
 use super::*;
 use crate::multiplication::testing::pseudorandom_matrix;
 
@@ -21,7 +21,7 @@ fn check_product_and_solution<A: Arithmetic, const R: usize, const C: usize>() {
     let matrix = half * half.transpose() + SMatrix::identity();
     let (l, inverse) = factors(&matrix, 0.25).expect("it is positive definite");
     let mut solved = zeros();
-    Solve { l: &l, inverse: &inverse, b: &a }.evaluate::<A>(&mut solved);
+    SymmetricSystem { l: &l, inverse: &inverse, b: &a }.evaluate::<A>(&mut solved);
     let left = solved * (matrix + SMatrix::identity() * 0.25) + a;
     assert!(left.amax() < 1e-12, "{R} right-hand sides: {left}");
 }

@@ -2,7 +2,7 @@
 
 use super::held::held_with_gains;
 use super::layout::ContactLayout;
-use super::problem::{ContactProblem, entry};
+use super::problem::{ContactProblem, entry_or_zero};
 use super::{Contacts, Rows, Touch};
 use crate::blocks::{
     add_multiple, add_product, add_product_of_some, product, transpose_into, transposed, zeros,
@@ -290,7 +290,7 @@ where
     let turned = touches.contains(&Touch::Slips).then(|| {
         let mut turned = [zeros::<T, NR, NV>(); 2];
         for (k, law) in laws.iter().enumerate().filter(|(k, _)| touches.get(*k) == Some(&Touch::Slips)) {
-            let normal = law.friction * entry(&held.forces, layout.bounding_contact(k).1);
+            let normal = law.friction * entry_or_zero(&held.forces, layout.bounding_contact(k).1);
             for (turned, rates) in turned.iter_mut().zip([&parts.rates_by_q, &jacobian]) {
                 write_friction_derivative(turned, layout.tangent_rows(k), normal, &along, rates);
             }
@@ -385,17 +385,21 @@ fn write_friction_derivative<T: Real, const NV: usize, const NR: usize>(
     rates: &SVector<T, NR>,
     changes: &SMatrix<T, NR, NV>,
 ) {
-    let speed = tangents.clone().fold(T::zero(), |sum, i| sum + entry(rates, i) * entry(rates, i)).sqrt();
+    let speed = tangents
+        .clone()
+        .fold(T::zero(), |sum, i| sum + entry_or_zero(rates, i) * entry_or_zero(rates, i))
+        .sqrt();
     if speed == T::zero() {
         return;
     }
     for j in 0..NV {
         let change_entry = |i: usize| changes.get((i, j)).copied().unwrap_or(T::zero());
         let faster =
-            tangents.clone().fold(T::zero(), |sum, i| sum + entry(rates, i) * change_entry(i)) / speed;
+            tangents.clone().fold(T::zero(), |sum, i| sum + entry_or_zero(rates, i) * change_entry(i))
+                / speed;
         for i in tangents.clone() {
             if let Some(turned) = turned.get_mut((i, j)) {
-                *turned = -(change_entry(i) - entry(rates, i) / speed * faster) * (friction / speed);
+                *turned = -(change_entry(i) - entry_or_zero(rates, i) / speed * faster) * (friction / speed);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Contact forces in a state, and mean contact forces over a time.
 
 use super::layout::ContactLayout;
-use super::problem::{ContactProblem, entry};
+use super::problem::{ContactProblem, entry_or_zero};
 use super::selection::ContactSelection;
 use super::solution::{ActedContacts, compute_impulses};
 use super::stepping::{StepStart, closed_contacts};
@@ -52,7 +52,7 @@ where
     let free = project_end_of_step(&system, free, t)?;
     let came = StepStart::from_state((q, v), h, given * (h * constant(0.5)));
     let end = free.v - given;
-    let velocities = ContactVelocities::at(mechanism, t + h, &free.q);
+    let velocities = ContactVelocities::in_configuration(mechanism, t + h, &free.q);
     let closed = closed_contacts(mechanism, t + h, (&free.q, &end), Some((&came, &velocities)))
         .map_err(constraint_error)?;
     let Some(closed) = closed else { return Ok(SVector::zeros()) };
@@ -142,8 +142,8 @@ where
     {
         let presses = (0..NK).filter(|k| closed.get(*k) == Some(&true)).all(|k| {
             let (_, first) = layout.bounding_contact(k);
-            let largest = laws.get(k).map_or(T::zero(), |law| law.stiction) * entry(&impulses, first);
-            entry(&impulses, first) >= T::zero()
+            let largest = laws.get(k).map_or(T::zero(), |law| law.stiction) * entry_or_zero(&impulses, first);
+            entry_or_zero(&impulses, first) >= T::zero()
                 && phase::norm_of_range(&impulses, layout.tangent_rows(k)) <= largest
         });
         if presses {

@@ -4,7 +4,7 @@
 use super::coefficients::checked_contact_laws;
 use super::layout::ContactLayout;
 use super::light::sticking_change;
-use super::problem::{ContactProblem, entry, put};
+use super::problem::{ContactProblem, entry_or_zero, set_entry};
 use super::{Contacts, Responses, Touch, unsolved_contact_error};
 use crate::Real;
 use crate::constraint::ConstraintError;
@@ -125,8 +125,8 @@ where
     if position != T::zero() {
         let gaps = mechanism.contact_gaps(t, q);
         for (k, first) in layout.gap_contacts() {
-            let rate = entry(&free, first);
-            put(&mut free, first, rate + entry(&gaps, k) * position);
+            let rate = entry_or_zero(&free, first);
+            set_entry(&mut free, first, rate + entry_or_zero(&gaps, k) * position);
         }
     }
     if free.iter().any(|rate| !rate.is_finite()) {

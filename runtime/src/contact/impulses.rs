@@ -1,6 +1,6 @@
 //! Contact impulses of a step, as the start of the iteration for the next step.
 
-use super::problem::entry;
+use super::problem::entry_or_zero;
 use super::selection::ContactSelection;
 use crate::Real;
 use crate::private::constant;
@@ -55,15 +55,16 @@ impl<T: Real, const NV: usize> Impulses<T, NV> {
         selection: &ContactSelection<CK, CR>,
         all: &SVector<T, CR>,
     ) -> Self {
-        let (layout, mut recorded) = (selection.layout(), Self::none());
+        let (layout, mut recorded) = (selection.contact_layout(), Self::none());
         let stored_impulses = |k: usize, i: usize| {
             let rows = layout.rows(k);
-            if i < rows.count { entry(all, rows.first + i) } else { T::zero() }
+            if i < rows.count { entry_or_zero(all, rows.first + i) } else { T::zero() }
         };
-        let pressed = (0..selection.count()).filter(|k| (0..3).any(|i| stored_impulses(*k, i) != T::zero()));
+        let pressed =
+            (0..selection.contact_count()).filter(|k| (0..3).any(|i| stored_impulses(*k, i) != T::zero()));
         let places = (0..CONTACTS).flat_map(|list| (0..NV).map(move |place| (list, place)));
         for (k, (list, place)) in pressed.zip(places) {
-            let number: u32 = selection.contact(k).try_into().unwrap_or(u32::MAX);
+            let number: u32 = selection.index_of_contact(k).try_into().unwrap_or(u32::MAX);
             let values = [
                 constant(f64::from(number) + 1.0),
                 stored_impulses(k, 0),
@@ -86,19 +87,19 @@ impl<T: Real, const NV: usize> Impulses<T, NV> {
         &self,
         selection: &ContactSelection<CK, CR>,
     ) -> Option<SVector<T, CR>> {
-        let (layout, mut all) = (selection.layout(), SVector::<T, CR>::zeros());
+        let (layout, mut all) = (selection.contact_layout(), SVector::<T, CR>::zeros());
         let mut is_any = false;
         for [numbers, impulses @ ..] in &self.0 {
             for (place, number) in numbers.iter().enumerate().take_while(|(_, number)| **number > T::zero()) {
                 let is_same_contact = |k: &usize| {
-                    let own: u32 = selection.contact(*k).try_into().unwrap_or(u32::MAX);
+                    let own: u32 = selection.index_of_contact(*k).try_into().unwrap_or(u32::MAX);
                     constant::<T>(f64::from(own) + 1.0) == *number
                 };
-                let Some(k) = (0..selection.count()).find(is_same_contact) else { continue };
+                let Some(k) = (0..selection.contact_count()).find(is_same_contact) else { continue };
                 let rows = layout.rows(k);
                 for (i, list) in (rows.first..rows.first + rows.count).zip(impulses) {
                     if let Some(impulse) = all.get_mut(i) {
-                        *impulse = entry(list, place);
+                        *impulse = entry_or_zero(list, place);
                         is_any = true;
                     }
                 }

@@ -64,7 +64,7 @@ impl<const NK: usize> ContactLayout<NK> {
 }
 
 /// Returns the table in which each contact bounds its own friction.
-pub(super) const fn own_contacts<const NK: usize>() -> [usize; NK] {
+pub(super) const fn contacts_pressed_by_themselves<const NK: usize>() -> [usize; NK] {
     let mut all = [0; NK];
     let mut k = 0;
     while k < NK {

@@ -2,7 +2,7 @@
 //! without overlaps.
 
 use super::layout::ContactLayout;
-use super::problem::{ContactProblem, entry, put};
+use super::problem::{ContactProblem, entry_or_zero, set_entry};
 use super::{Contacts, Law, Restitution, touching_distance};
 use crate::Real;
 use crate::constraint::ConstraintError;
@@ -118,7 +118,7 @@ where
         let overlaps = gap < -enough;
         let left = ConstraintError::Overlap { constraint, depth: to_f64(-gap) };
         // What was pushed too far goes back.
-        let is_pushed = |k: usize| entry(&pushes, layout.bounding_contact(k).1) > T::zero();
+        let is_pushed = |k: usize| entry_or_zero(&pushes, layout.bounding_contact(k).1) > T::zero();
         let parted = gaps.iter().enumerate().any(|(k, gap)| *gap > enough && is_pushed(k));
         match step == MOST_STEPS {
             _ if !overlaps && !parted => break,
@@ -132,12 +132,12 @@ where
         let responses = mechanism.contact_responses(t, &q, &closed);
         let moved = responses.rates * pushes;
         let mut free = SVector::<T, NR>::zeros();
-        layout
-            .gap_contacts()
-            .for_each(|(k, first)| put(&mut free, first, entry(&gaps, k) - entry(&moved, first)));
+        layout.gap_contacts().for_each(|(k, first)| {
+            set_entry(&mut free, first, entry_or_zero(&gaps, k) - entry_or_zero(&moved, first))
+        });
         let mut problem = ContactProblem::new(layout, &smooth, &closed, &free);
         problem.copy_weights(&responses.rates);
-        let found = problem.solve().map_err(|_| left)?;
+        let found = problem.solve_impulses().map_err(|_| left)?;
         let all = problem.spread_to_mechanism(&found);
         q = mechanism.integrate(&q, &(responses.velocities * (all - pushes)));
         pushes = all;

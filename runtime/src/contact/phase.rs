@@ -3,7 +3,7 @@
 use super::coefficients::checked_contact_laws;
 use super::held::held_with_gains;
 use super::layout::ContactLayout;
-use super::problem::{ContactProblem, entry, put};
+use super::problem::{ContactProblem, entry_or_zero, set_entry};
 use super::total::TotalArray;
 use super::{Contacts, Law, Touch, impact, touching_distance};
 use crate::constraint::ConstraintError;
@@ -38,7 +38,7 @@ struct Flight<T> {
 
 impl<T: Real> Flight<T> {
     /// Returns the time until the gap is zero if the acceleration stays constant.
-    fn duration(&self) -> Option<T> {
+    fn time_until_touchdown(&self) -> Option<T> {
         let two = constant::<T>(2.0);
         let square = self.rate * self.rate - self.acceleration * self.gap * two;
         let time = if self.acceleration < T::zero() {
@@ -79,7 +79,7 @@ pub(super) fn sustain_slip<T: Real, const NK: usize, const NR: usize>(
         if slip > still {
             let size = (slip / epsilon::<T>().powf(constant(0.75))).min(most * constant(1e6));
             for i in tangents {
-                put(free, i, entry(free, i) + entry(rates, i) / slip * size);
+                set_entry(free, i, entry_or_zero(free, i) + entry_or_zero(rates, i) / slip * size);
             }
         }
     }
@@ -101,7 +101,7 @@ pub(super) fn stopped_contact<T: Real, const NK: usize, const NR: usize>(
 
 /// Returns the Euclidean norm of a range of entries of a vector.
 pub(super) fn norm_of_range<T: Real, const N: usize>(vector: &SVector<T, N>, part: Range<usize>) -> T {
-    part.fold(T::zero(), |sum, i| sum + entry(vector, i) * entry(vector, i)).sqrt()
+    part.fold(T::zero(), |sum, i| sum + entry_or_zero(vector, i) * entry_or_zero(vector, i)).sqrt()
 }
 
 /// Returns the gap, m, up to which surfaces count as resting on each other: rounding and integration errors
@@ -141,7 +141,7 @@ where
     let (touching, still) = (gap_rounding(q), rest_velocity(&rates));
     let strikes = ContactLayout::of_mechanism(mechanism)
         .gap_contacts()
-        .any(|(k, first)| entry(&gaps, k) <= touching && entry(&rates, first) < -still);
+        .any(|(k, first)| entry_or_zero(&gaps, k) <= touching && entry_or_zero(&rates, first) < -still);
     if strikes { impact(mechanism, t, q, v).map(|solved| solved.v) } else { Ok(*v) }
 }
 
@@ -167,7 +167,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactPhase<T, NK, NR> {
         let layout = ContactLayout::of_mechanism(mechanism);
         let mut closed = [false; NK];
         for (k, (closed, gap)) in closed.iter_mut().zip(&gaps).enumerate() {
-            *closed = *gap <= resting && entry(&rates, layout.bounding_contact(k).1).abs() <= still;
+            *closed = *gap <= resting && entry_or_zero(&rates, layout.bounding_contact(k).1).abs() <= still;
         }
         let mut a = mechanism.try_forward_dynamics(t, q, v, tau)?;
         let driven = mechanism.contact_rates(t, q, &SVector::zeros());
@@ -210,7 +210,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactPhase<T, NK, NR> {
         let states = gaps.iter().zip(closed).zip(phase.flights.iter_mut()).enumerate();
         for (k, ((gap, closed), flight)) in states.filter(|(k, _)| layout.is_gap(*k)) {
             let (_, first) = layout.bounding_contact(k);
-            let (gap, rate, acceleration) = (*gap, entry(&rates, first), entry(&bent, first));
+            let (gap, rate, acceleration) = (*gap, entry_or_zero(&rates, first), entry_or_zero(&bent, first));
             if closed || gap > touching_distance() {
                 continue;
             }
@@ -232,7 +232,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactPhase<T, NK, NR> {
         let slips = self.touches.iter().enumerate().filter(|(_, touch)| **touch == Touch::Slips);
         for tangents in slips.map(|(k, _)| layout.tangent_rows(k)) {
             if self.slip_along_direction(rates, tangents.clone()) <= T::zero() {
-                tangents.for_each(|i| put(&mut braked, i, entry(&self.along, i)));
+                tangents.for_each(|i| set_entry(&mut braked, i, entry_or_zero(&self.along, i)));
             }
         }
         braked
@@ -240,7 +240,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactPhase<T, NK, NR> {
 
     /// Returns the slip velocity of a contact along its stored slip direction.
     fn slip_along_direction(&self, rates: &SVector<T, NR>, tangents: Range<usize>) -> T {
-        tangents.fold(T::zero(), |sum, i| sum + entry(&self.along, i) * entry(rates, i))
+        tangents.fold(T::zero(), |sum, i| sum + entry_or_zero(&self.along, i) * entry_or_zero(rates, i))
     }
 
     /// Whether contacts slide and the contact forces are not unique.
@@ -250,7 +250,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactPhase<T, NK, NR> {
 
     /// Returns the time until the first of the low flights ends, if accelerations stay constant.
     pub(crate) fn time_to_landing(&self) -> Option<T> {
-        let landings = self.flights.iter().flatten().filter_map(Flight::duration);
+        let landings = self.flights.iter().flatten().filter_map(Flight::time_until_touchdown);
         landings.fold(None, |first, time| Some(first.map_or(time, |first: T| first.min(time))))
     }
 }
@@ -379,12 +379,13 @@ impl<T: Real, const NQ: usize, const NV: usize> PhaseState<'_, T, NQ, NV> {
         let contacts = phase.touches.into_iter().zip(phase.flights).zip(gaps.iter().zip(stiction));
         for (k, ((touch, flight), (gap, stiction))) in contacts.enumerate() {
             let ((_, first), tangents) = (layout.bounding_contact(k), layout.tangent_rows(k));
-            let (rate, normal) = (entry(&rates, first), entry(&held.forces, first));
+            let (rate, normal) = (entry_or_zero(&rates, first), entry_or_zero(&held.forces, first));
             let least = match touch {
                 // Moments of friction close and open with their contact.
                 Touch::Open if !layout.is_gap(k) => T::one(),
                 Touch::Open => {
-                    let gap = flight.map_or(*gap, |flight| flight.gap_after(s, rate, entry(&bent, first)));
+                    let gap =
+                        flight.map_or(*gap, |flight| flight.gap_after(s, rate, entry_or_zero(&bent, first)));
                     if gap < T::zero() && rate >= -still { T::one() } else { gap }
                 }
                 Touch::Slips => {
@@ -471,7 +472,7 @@ where
     };
     let (gaps, mut left) = (mechanism.contact_gaps(t, q), SVector::<T, NR>::zeros());
     for (k, first) in layout.gap_contacts() {
-        put(&mut left, first, entry(&gaps, k));
+        set_entry(&mut left, first, entry_or_zero(&gaps, k));
     }
     let push = correcting_change(&left, &laws.map(|law| Law { friction: T::zero(), ..law }));
     let (q, v) = (mechanism.integrate(q, &push), mechanism.carry(t, q, &push, v));

@@ -67,13 +67,13 @@ pub(super) struct ContactProblem<T, const NK: usize, const NR: usize> {
     /// Impulses of compression, and the smallest impulses of restitution. They act in addition to those that
     /// are searched.
     base: RowList<T, NR>,
-    /// `u₀`: contact velocities with the impulses `base`.
+    /// Contact velocities `u₀` after the impulses of the field `base`.
     free: RowList<T, NR>,
-    /// `W`; `None` if it is the product of an exact `B`.
+    /// Matrix `W` of the velocity changes by unit impulses; `None` if it equals `B Bᵀ` with an exact `B`.
     weights: Option<RowMatrix<T, NR>>,
-    /// `B` of `W = B Bᵀ`, where it is known.
+    /// Factor `B` of `W = B Bᵀ`, if it is known.
     pub(super) basis: BasisRows<T, NR>,
-    /// Smallest normal velocity.
+    /// Smallest permitted normal velocity after the impulses, of each contact.
     least: TotalArray<T, NK>,
     /// Part of `base` that is an impulse of restitution; it bounds friction as well.
     floor: TotalArray<T, NK>,
@@ -100,7 +100,7 @@ pub(super) struct ContactProblem<T, const NK: usize, const NR: usize> {
 impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns a problem without contacts. The problem of a relaxed step accepts impulses that violate the
     /// contact conditions if it finds no others.
-    pub(super) fn empty(is_relaxed: bool) -> Self {
+    pub(super) fn without_contacts(is_relaxed: bool) -> Self {
         let none = Rows { first: 0, count: 0 };
         Self {
             contacts: TotalArray::repeat_entry((0, none)),
@@ -115,7 +115,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             base: TotalArray::repeat_entry(T::zero()),
             free: TotalArray::repeat_entry(T::zero()),
             weights: None,
-            basis: BasisRows::none(),
+            basis: BasisRows::without_columns(),
             least: TotalArray::repeat_entry(T::zero()),
             floor: TotalArray::repeat_entry(T::zero()),
             friction: TotalArray::repeat_entry(T::zero()),
@@ -137,7 +137,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         closed: &[bool; NK],
         free: &SVector<T, NR>,
     ) -> Self {
-        let mut problem = Self::empty(false);
+        let mut problem = Self::without_contacts(false);
         problem.select_contacts(layout, laws, closed, free);
         problem
     }
@@ -168,7 +168,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             problem.kinetic[c] = law.friction;
             for i in 0..of.count {
                 problem.places[first + i] = of.first + i;
-                problem.free[first + i] = entry(free, of.first + i);
+                problem.free[first + i] = entry_or_zero(free, of.first + i);
                 problem.given[first + i] = problem.free[first + i];
             }
             problem.count += 1;
@@ -193,16 +193,16 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         first..first + count
     }
 
-    /// Returns impulses at the rows of the mechanism, with the impulses `base`.
+    /// Returns the sums of given impulses and the impulses of the field `base`, at the rows of the mechanism.
     pub(super) fn spread_to_mechanism(&self, impulses: &RowList<T, NR>) -> SVector<T, NR> {
-        self.scatter(&self.total_impulses(impulses))
+        self.spread_to_mechanism_rows(&self.total_impulses(impulses))
     }
 
     /// Returns values of the rows of closed contacts at the rows of the mechanism; zeros elsewhere.
-    fn scatter(&self, values: &RowList<T, NR>) -> SVector<T, NR> {
+    fn spread_to_mechanism_rows(&self, values: &RowList<T, NR>) -> SVector<T, NR> {
         let mut all = SVector::<T, NR>::zeros();
         for (place, value) in self.places.iter().zip(values.iter()).take(self.size) {
-            put(&mut all, *place, *value);
+            set_entry(&mut all, *place, *value);
         }
         all
     }
@@ -235,7 +235,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns the largest violation of the contact conditions by the impulses found last, as a contact
     /// velocity.
-    pub(super) fn violation(&self) -> T {
+    pub(super) fn largest_violation(&self) -> T {
         self.violation
     }
 
@@ -254,7 +254,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     pub(super) fn was_loaded(&self, before: &SVector<T, NR>) -> bool {
         (0..self.count)
             .filter(|k| self.is_gap(*k))
-            .any(|k| entry(before, self.contacts[k].1.first) < T::zero())
+            .any(|k| entry_or_zero(before, self.contacts[k].1.first) < T::zero())
     }
 
     /// Sets the violation of the contact conditions to that of impulses found earlier.
@@ -360,15 +360,16 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         slides
     }
 
-    /// Returns the impulses with the static coefficient of friction where [`stick`](Self::stick) has set it
-    /// and surfaces do not slip, and with the kinetic one elsewhere.
+    /// Returns the impulses with the static coefficient of friction where
+    /// [`set_static_friction`](Self::set_static_friction) has set it and surfaces do not slip, and with the
+    /// kinetic one elsewhere.
     ///
     /// # Errors
     ///
     /// As [`solve`](Self::solve).
     pub(super) fn solve_sticking(&mut self) -> Result<RowList<T, NR>, usize> {
         loop {
-            let impulses = self.solve()?;
+            let impulses = self.solve_impulses()?;
             if !self.release_sliding_contacts(&impulses) {
                 return Ok(impulses);
             }
@@ -396,7 +397,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 ContactMode::Slip { direction, .. } if self.friction[k] > T::zero() => {
                     let start = usize::from(self.is_gap(k));
                     for (place, component) in (rows.first + start..rows.first + rows.count).zip(direction) {
-                        put(&mut along, place, -component);
+                        set_entry(&mut along, place, -component);
                     }
                     Touch::Slips
                 }
@@ -432,10 +433,13 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         (near * constant(1e-2)).max(epsilon::<T>() * constant(16.0))
     }
 
-    /// Whether all distances are so small that [`close`](Self::close) has nothing to do.
+    /// Whether all distances are so small that [`gap_closing_impulses`](Self::gap_closing_impulses) has
+    /// nothing to do.
     pub(super) fn are_gaps_closed(&self, gaps: &SVector<T, NK>, near: T) -> bool {
         let enough = Self::ignored_distance(near);
-        (0..self.count).filter(|k| self.is_gap(*k)).all(|k| entry(gaps, self.contacts[k].0).abs() <= enough)
+        (0..self.count)
+            .filter(|k| self.is_gap(*k))
+            .all(|k| entry_or_zero(gaps, self.contacts[k].0).abs() <= enough)
     }
 
     /// Sets `B`, and `W` if `B` is not exact, to those of selected rows of another problem.
@@ -471,7 +475,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         }
     }
 
-    /// [`close`](Self::close) in arrays for up to `GK` contacts and `GR` normal impulses.
+    /// [`gap_closing_impulses`](Self::gap_closing_impulses) in arrays for up to `GK` contacts and `GR` normal
+    /// impulses.
     fn gap_closing_impulses_in<const GK: usize, const GR: usize>(
         &self,
         impulses: &RowList<T, NR>,
@@ -484,14 +489,14 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         // impulse.
         let rest = self.rate_rounding(impulses).max(worst) * constant(ROUNDINGS);
         let (mut kept, mut stay) =
-            (ContactProblem::<T, GK, GR>::empty(true), TotalArray::<_, GK>::repeat_entry(false));
+            (ContactProblem::<T, GK, GR>::without_contacts(true), TotalArray::<_, GK>::repeat_entry(false));
         let (mut overlap, mut distance) = (T::zero(), T::zero());
         let enough = Self::ignored_distance(near);
         let mut normals = TotalArray::<_, GR>::repeat_entry(0);
         for k in (0..self.count).filter(|k| self.is_gap(*k)) {
             let n = self.rows[k].first;
             let (contact, _) = self.contacts[k];
-            let gap = entry(gaps, contact);
+            let gap = entry_or_zero(gaps, contact);
             // A contact with a larger gap has moved to another place of its surfaces.
             if gap <= reach {
                 let c = kept.count;
@@ -543,7 +548,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let left = kept.rates_after(&pushes);
         if left.iter().zip(kept.least.iter()).take(kept.size).any(|(gap, least)| *gap < *least - enough) {
             let mut rest = ContactProblem { free: left, ..kept };
-            let found = rest.solve();
+            let found = rest.solve_impulses();
             let more = rest.accept_if_relaxed(found).ok()?;
             pushes.iter_mut().zip(more.iter()).for_each(|(push, more)| *push += *more);
             let way = largest_displacement(&pushes);
@@ -551,17 +556,17 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 pushes.iter_mut().for_each(|push| *push *= most / way);
             }
         }
-        Some(self.scatter(&spread_pushes(&pushes)))
+        Some(self.spread_to_mechanism_rows(&spread_pushes(&pushes)))
     }
 }
 
 /// Returns an entry of a vector; past the end zero.
-pub(super) fn entry<T: Real, const N: usize>(vector: &SVector<T, N>, k: usize) -> T {
+pub(super) fn entry_or_zero<T: Real, const N: usize>(vector: &SVector<T, N>, k: usize) -> T {
     vector.get(k).copied().unwrap_or(T::zero())
 }
 
 /// Sets an entry of a vector; past the end it does nothing.
-pub(super) fn put<T: Real, const N: usize>(vector: &mut SVector<T, N>, k: usize, value: T) {
+pub(super) fn set_entry<T: Real, const N: usize>(vector: &mut SVector<T, N>, k: usize, value: T) {
     if let Some(entry) = vector.get_mut(k) {
         *entry = value;
     }

@@ -22,7 +22,7 @@ where
     let mut velocities = SMatrix::<T, NV, NR>::zeros();
     let features = mechanism.features();
     let is_plain = !features.constrained && !features.feedback;
-    let factor = if is_plain { CholeskyFactor::factorise(&mechanism.mass_matrix(t, q)) } else { None };
+    let factor = if is_plain { CholeskyFactor::from_mass_matrix(&mechanism.mass_matrix(t, q)) } else { None };
     let still = SVector::zeros();
     let none =
         if factor.is_none() { mechanism.impulse(t, q, &still, T::zero(), &SVector::zeros()) } else { still };
@@ -31,7 +31,7 @@ where
         let p = jacobian.data.0.map(|column| column.get(row).copied().unwrap_or(T::zero()));
         let Some(answer) = velocities.data.0.get_mut(row) else { continue };
         *answer = match &factor {
-            Some(factor) => factor.solve(p),
+            Some(factor) => factor.solve_with_factor(p),
             None => (mechanism.impulse(t, q, &still, T::zero(), &SVector::from(p)) - none).data.0[0],
         };
     }
@@ -90,13 +90,13 @@ pub(super) struct CholeskyFactor<T, const N: usize> {
 
 impl<T: Real, const N: usize> CholeskyFactor<T, N> {
     /// Returns the Cholesky factor of a matrix; `None` if the matrix is not positive definite.
-    pub(super) fn factorise(m: &SMatrix<T, N, N>) -> Option<Self> {
-        let mut factor = Self::none();
+    pub(super) fn from_mass_matrix(m: &SMatrix<T, N, N>) -> Option<Self> {
+        let mut factor = Self::zero_factor();
         factor.fill_from_matrix(m).then_some(factor)
     }
 
-    /// Returns zeros, to be [filled](Self::fill).
-    pub(super) fn none() -> Self {
+    /// Returns zeros, to be [filled](Self::fill_from_matrix).
+    pub(super) fn zero_factor() -> Self {
         Self { rows: [[T::zero(); N]; N], starts: [0; N], ends: [N; N] }
     }
 
@@ -142,7 +142,7 @@ impl<T: Real, const N: usize> CholeskyFactor<T, N> {
     }
 
     /// Returns the solution `x` of `L Lᵀ x = p`.
-    pub(super) fn solve(&self, p: [T; N]) -> [T; N] {
+    pub(super) fn solve_with_factor(&self, p: [T; N]) -> [T; N] {
         let mut x = p;
         self.solve_lower(&mut x, first_nonzero(&p), N);
         self.solve_upper(x)

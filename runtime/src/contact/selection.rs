@@ -1,7 +1,7 @@
 //! Contacts that take part in a step, numbered among themselves.
 
 use super::layout::ContactLayout;
-use super::problem::{BasisRows, ContactProblem, UsedColumns, dot, entry, put};
+use super::problem::{BasisRows, ContactProblem, UsedColumns, dot, entry_or_zero, set_entry};
 use super::response::{CholeskyFactor, ImpulseEffects};
 use super::total::TotalArray;
 use super::velocities::ContactVelocities;
@@ -48,22 +48,22 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
     }
 
     /// Returns the rows of the selected contacts.
-    pub(super) fn layout(&self) -> ContactLayout<CK> {
+    pub(super) fn contact_layout(&self) -> ContactLayout<CK> {
         self.layout
     }
 
     /// Returns the number of selected contacts.
-    pub(super) fn count(&self) -> usize {
+    pub(super) fn contact_count(&self) -> usize {
         self.count
     }
 
     /// Returns a selected contact's index in the mechanism.
-    pub(super) fn contact(&self, k: usize) -> usize {
+    pub(super) fn index_of_contact(&self, k: usize) -> usize {
         self.contacts[k]
     }
 
     /// Returns a selected row's index in the mechanism.
-    pub(super) fn row(&self, i: usize) -> usize {
+    pub(super) fn index_of_row(&self, i: usize) -> usize {
         self.rows[i]
     }
 
@@ -77,14 +77,14 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
     /// Returns the contact velocities of the selected rows from those of all rows.
     pub(super) fn selected_rates<T: Real, const NR: usize>(&self, all: &SVector<T, NR>) -> SVector<T, CR> {
         let mut rates = SVector::zeros();
-        (0..self.size).for_each(|i| put(&mut rates, i, entry(all, self.rows[i])));
+        (0..self.size).for_each(|i| set_entry(&mut rates, i, entry_or_zero(all, self.rows[i])));
         rates
     }
 
     /// Returns the gaps of the selected contacts from those of all contacts.
     pub(super) fn selected_gaps<T: Real, const NK: usize>(&self, all: &SVector<T, NK>) -> SVector<T, CK> {
         let mut gaps = SVector::zeros();
-        (0..self.count).for_each(|k| put(&mut gaps, k, entry(all, self.contacts[k])));
+        (0..self.count).for_each(|k| set_entry(&mut gaps, k, entry_or_zero(all, self.contacts[k])));
         gaps
     }
 
@@ -105,7 +105,7 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
         rates: &SVector<T, CR>,
     ) -> SVector<T, NR> {
         let mut all = SVector::zeros();
-        (0..self.size).for_each(|i| put(&mut all, self.rows[i], entry(rates, i)));
+        (0..self.size).for_each(|i| set_entry(&mut all, self.rows[i], entry_or_zero(rates, i)));
         all
     }
 
@@ -136,11 +136,11 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
             *effects = ImpulseEffects::Matrix(velocities);
             return;
         }
-        let Some(jacobian) = velocities.jacobian() else { return };
+        let Some(jacobian) = velocities.contact_jacobian() else { return };
         let features = mechanism.features();
         let is_plain = !features.constrained && !features.feedback;
         if is_plain {
-            *effects = ImpulseEffects::Factor(CholeskyFactor::none());
+            *effects = ImpulseEffects::Factor(CholeskyFactor::zero_factor());
         }
         if let ImpulseEffects::Factor(factor) = effects
             && factor.fill_from_matrix(&mechanism.mass_matrix(t, q))
@@ -149,7 +149,7 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
                 problem.set_steps();
                 return;
             }
-            let matrix = self.fill_matrix(jacobian, |row| factor.solve(row), problem);
+            let matrix = self.fill_matrix(jacobian, |row| factor.solve_with_factor(row), problem);
             *effects = ImpulseEffects::Matrix(matrix);
             return;
         }
@@ -210,7 +210,7 @@ impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
             }
         }
         let columns = UsedColumns::of_used_entries(is_used);
-        if !basis.begin(&columns) {
+        if !basis.begin_columns(&columns) {
             return false;
         }
         for k in 0..self.count {

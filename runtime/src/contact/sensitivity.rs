@@ -16,7 +16,9 @@ use super::stepping::observed_step;
 use super::{Touched, touching_distance};
 use crate::blocks::{add_multiple, add_product, zeros};
 use crate::constraint::ConstraintError;
-use crate::discrete::{ConfigurationManifold, Sensitive, Start, Transition, smooth_motion};
+use crate::discrete::{
+    ConfigurationManifold, DifferentiatedStart, Transition, VectorWithDerivatives, smooth_motion,
+};
 use crate::integrate::{Error, TimeStepping};
 use crate::private::{constant, to_f64};
 use crate::{Derivatives, Real};
@@ -52,8 +54,9 @@ where
         ConstraintError::NotFinite => Error::NotFinite { t: to_f64(t) },
         reason => Error::Constraint { t: to_f64(t), reason },
     };
-    let h = method.length();
-    let (start, velocity) = (Start { mechanism, t, q, u }, Sensitive::start_velocity(v));
+    let h = method.nominal_step_length();
+    let (start, velocity) =
+        (DifferentiatedStart { mechanism, t, q, u }, VectorWithDerivatives::start_velocity(v));
     let before = start.acceleration_in_state(T::zero(), (q, v));
     let contacts =
         StepWithContacts { mechanism, manifold: ConfigurationManifold::new(mechanism), start: (q, v) };
@@ -69,22 +72,22 @@ where
     let (after, end) = contacts.differentiate_impulses(&at_end, &held.impulses).map_err(as_step_error)?;
     let state = after.and_then(|(_, state)| state);
     let (place, v) = state.unwrap_or_else(|| contacts.state_after(&at_end, &free));
-    *into = Transition::from_sensitive(&(end.q, place.1), &Sensitive { value: end.v, ..v });
+    *into = Transition::from_sensitive(&(end.q, place.1), &VectorWithDerivatives { value: end.v, ..v });
     Ok(())
 }
 
 /// Configuration and the derivatives of its displacement.
 type SensitiveConfiguration<T, const NQ: usize, const NV: usize, const NU: usize> =
-    (SVector<T, NQ>, Sensitive<T, NV, NU>);
+    (SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>);
 
 /// State with its derivatives.
 type SensitiveState<T, const NQ: usize, const NV: usize, const NU: usize> =
-    (SensitiveConfiguration<T, NQ, NV, NU>, Sensitive<T, NV, NU>);
+    (SensitiveConfiguration<T, NQ, NV, NU>, VectorWithDerivatives<T, NV, NU>);
 
 /// Velocity after the contact impulses, in the axes of the configuration where they act, and the state at the
 /// end of a step.
 type ActingState<T, const NQ: usize, const NV: usize, const NU: usize> =
-    (Sensitive<T, NV, NU>, Option<SensitiveState<T, NQ, NV, NU>>);
+    (VectorWithDerivatives<T, NV, NU>, Option<SensitiveState<T, NQ, NV, NU>>);
 
 /// Mechanism, with the state at the start of a step in which contacts act.
 struct StepWithContacts<'a, M, T, const NQ: usize, const NV: usize> {
@@ -100,12 +103,12 @@ struct ContactInstant<'a, T, const NQ: usize, const NV: usize, const NU: usize> 
     q: &'a SVector<T, NQ>,
     /// Derivatives of the displacement of the configuration since the start of the step; `None` at the start
     /// of the step.
-    motion: Option<&'a Sensitive<T, NV, NU>>,
+    motion: Option<&'a VectorWithDerivatives<T, NV, NU>>,
     /// Velocity without contact impulses, with its derivatives.
-    free: &'a Sensitive<T, NV, NU>,
+    free: &'a VectorWithDerivatives<T, NV, NU>,
     /// Change of the velocity by the assumed contact forces, with its derivatives; `None` if no forces were
     /// assumed.
-    given: Option<&'a Sensitive<T, NV, NU>>,
+    given: Option<&'a VectorWithDerivatives<T, NV, NU>>,
 }
 
 impl<M, T: Real, const NQ: usize, const NV: usize> StepWithContacts<'_, M, T, NQ, NV> {
@@ -134,7 +137,7 @@ impl<M, T: Real, const NQ: usize, const NV: usize> StepWithContacts<'_, M, T, NQ
     fn state_after<const NU: usize>(
         &self,
         at: &ContactInstant<'_, T, NQ, NV, NU>,
-        after: &Sensitive<T, NV, NU>,
+        after: &VectorWithDerivatives<T, NV, NU>,
     ) -> SensitiveState<T, NQ, NV, NU>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
@@ -143,7 +146,7 @@ impl<M, T: Real, const NQ: usize, const NV: usize> StepWithContacts<'_, M, T, NQ
         if let Some(given) = at.given {
             change = change.plus_scaled(-T::one(), given);
         }
-        let here = Sensitive::zero_displacement();
+        let here = VectorWithDerivatives::zero_displacement();
         let place = (at.q, at.motion.unwrap_or(&here));
         self.displaced_state((at.t, place), &change.scaled_derivatives(at.h * constant(0.5)), after)
     }
@@ -151,9 +154,9 @@ impl<M, T: Real, const NQ: usize, const NV: usize> StepWithContacts<'_, M, T, NQ
     /// Returns the state after a displacement, with the velocity in the axes there.
     fn displaced_state<const NU: usize>(
         &self,
-        (t, place): (T, (&SVector<T, NQ>, &Sensitive<T, NV, NU>)),
-        by: &Sensitive<T, NV, NU>,
-        v: &Sensitive<T, NV, NU>,
+        (t, place): (T, (&SVector<T, NQ>, &VectorWithDerivatives<T, NV, NU>)),
+        by: &VectorWithDerivatives<T, NV, NU>,
+        v: &VectorWithDerivatives<T, NV, NU>,
     ) -> SensitiveState<T, NQ, NV, NU>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
@@ -197,7 +200,7 @@ where
         }
         let responses = acted.velocity_responses();
         let underivable_contact_error = |contact| {
-            let index = acted.selection.contact(contact);
+            let index = acted.selection.index_of_contact(contact);
             let constraint = M::CONTACTS.get(index).copied().unwrap_or_default();
             ConstraintError::NoDerivatives { constraint }
         };
@@ -263,26 +266,26 @@ impl<T: Real, const CR: usize, const NV: usize, const NU: usize> RowDerivatives<
     }
 
     /// Adds a matrix times the derivatives of a vector.
-    fn add_product(&mut self, by: &SMatrix<T, CR, NV>, of: &Sensitive<T, NV, NU>) {
+    fn add_product(&mut self, by: &SMatrix<T, CR, NV>, of: &VectorWithDerivatives<T, NV, NU>) {
         add_product(&mut self.by_q, by, &of.by_q);
         add_product(&mut self.by_v, by, &of.by_v);
         add_product(&mut self.by_u, by, &of.by_u);
     }
 
-    /// Adds a matrix times the row derivatives `of`.
+    /// Adds the product of a matrix `by` and the derivatives `of`, whose rows belong to contact velocities.
     fn add_rows(&mut self, by: &SMatrix<T, CR, CR>, of: &Self) {
         add_product(&mut self.by_q, by, &of.by_q);
         add_product(&mut self.by_v, by, &of.by_v);
         add_product(&mut self.by_u, by, &of.by_u);
     }
 
-    /// Returns the rows times a number.
+    /// Returns all derivatives, multiplied by a number.
     fn scaled_rows(&self, s: T) -> Self {
         Self { by_q: self.by_q * s, by_v: self.by_v * s, by_u: self.by_u * s }
     }
 
-    /// Returns the changes of the impulses that follow from these changes of the contact velocities without
-    /// impulses.
+    /// Returns the derivatives of the impulses, if `self` holds the derivatives of the contact velocities
+    /// without impulses.
     fn solved_impulses(&self, equations: &LinearisedImpulses<T, CR>) -> Self {
         let Self { by_q, by_v, by_u } = self;
         Self {
@@ -293,7 +296,7 @@ impl<T: Real, const CR: usize, const NV: usize, const NU: usize> RowDerivatives<
     }
 
     /// Adds the velocity change that these impulses cause.
-    fn add_effect(&self, responses: &SMatrix<T, NV, CR>, to: &mut Sensitive<T, NV, NU>) {
+    fn add_effect(&self, responses: &SMatrix<T, NV, CR>, to: &mut VectorWithDerivatives<T, NV, NU>) {
         add_product(&mut to.by_q, responses, &self.by_q);
         add_product(&mut to.by_v, responses, &self.by_v);
         add_product(&mut to.by_u, responses, &self.by_u);
@@ -324,8 +327,11 @@ where
     ) -> Self {
         let (m, q) = (contacts.mechanism, at.q);
         let jacobian = selected_rows(&acted.selection, &m.contact_jacobian(at.t, q));
-        let factor =
-            if m.features().feedback { None } else { CholeskyFactor::factorise(&m.mass_matrix(at.t, q)) };
+        let factor = if m.features().feedback {
+            None
+        } else {
+            CholeskyFactor::from_mass_matrix(&m.mass_matrix(at.t, q))
+        };
         Self { contacts, at, acted, responses, jacobian, factor }
     }
 
@@ -361,8 +367,8 @@ where
         ConfigurationDerivatives { velocities, rates }
     }
 
-    /// Returns the derivatives of [`by_place`](Self::by_place) for a displacement `v` instead of a velocity:
-    /// contact velocities of prescribed motions are left out.
+    /// Returns the derivatives of [`configuration_derivatives`](Self::configuration_derivatives) for a
+    /// displacement `v` instead of a velocity: contact velocities of prescribed motions are left out.
     fn displacement_derivatives(
         &self,
         v: &SVector<T, NV>,
@@ -381,7 +387,11 @@ where
     }
 
     /// Adds to a velocity the change that follows from the displacement of the configuration.
-    fn add_displacement_effect(&self, sum: &mut Sensitive<T, NV, NU>, by_place: &SMatrix<T, NV, NV>) {
+    fn add_displacement_effect(
+        &self,
+        sum: &mut VectorWithDerivatives<T, NV, NU>,
+        by_place: &SMatrix<T, NV, NV>,
+    ) {
         let Some(motion) = self.at.motion else { return add_multiple(&mut sum.by_q, T::one(), by_place) };
         add_product(&mut sum.by_q, by_place, &motion.by_q);
         add_product(&mut sum.by_v, by_place, &motion.by_v);
@@ -397,15 +407,16 @@ where
     }
 
     /// Returns the velocity after the impulses, with its derivatives.
-    fn velocity_after(&self) -> Sensitive<T, NV, NU> {
+    fn velocity_after(&self) -> VectorWithDerivatives<T, NV, NU> {
         let ActedContacts { problem, impulses, free: corrected, .. } = self.acted;
-        let (equations, is_whole) = problem.linearised(impulses);
+        let (equations, is_whole) = problem.linearised_impulse_equations(impulses);
         let impulses = problem.spread_to_mechanism(impulses);
         let mut after = *self.at.free;
         after.value = corrected + self.responses * impulses;
         let (mut acting, is_corrected) = (impulses, *corrected != self.at.free.value);
         let transport = self.at.given.filter(|_| is_corrected).map(|given| {
-            let half = Sensitive { value: after.value, ..after.plus_scaled(constant(0.5), given) };
+            let half =
+                VectorWithDerivatives { value: after.value, ..after.plus_scaled(constant(0.5), given) };
             after = half;
             let transport = self.rotation_correction(given, is_whole);
             acting += transport.0;
@@ -429,7 +440,7 @@ where
     /// derivatives.
     fn rotation_correction(
         &self,
-        given: &Sensitive<T, NV, NU>,
+        given: &VectorWithDerivatives<T, NV, NU>,
         is_whole: bool,
     ) -> (SVector<T, CR>, Option<RowDerivatives<T, CR, NV, NU>>) {
         let (problem, half) = (&self.acted.problem, constant::<T>(0.5));
@@ -441,7 +452,7 @@ where
         }
         let left = given.value - self.responses * start;
         let by_place = self.displacement_derivatives(&left, &start);
-        let mut effect = Sensitive { value: SVector::zeros(), ..*given };
+        let mut effect = VectorWithDerivatives { value: SVector::zeros(), ..*given };
         self.add_displacement_effect(&mut effect, &(-by_place.velocities));
         let mut rates = RowDerivatives::zeros();
         self.add_displacement_rates(&mut rates, &by_place.rates);
@@ -472,7 +483,7 @@ where
             return;
         }
         let (StepWithContacts { mechanism: m, manifold, start }, at) = (self.contacts, self.at);
-        let velocity = Sensitive::start_velocity(start.1);
+        let velocity = VectorWithDerivatives::start_velocity(start.1);
         let carried = match at.motion {
             None => velocity,
             Some(motion) => manifold.transport_between(at.t, (start.0, &velocity), (at.q, motion)),
@@ -491,7 +502,7 @@ where
         &self,
         closing: &GapClosing<T, CK, CR>,
         (q, motion): &SensitiveConfiguration<T, NQ, NV, NU>,
-    ) -> Option<Sensitive<T, NV, NU>> {
+    ) -> Option<VectorWithDerivatives<T, NV, NU>> {
         let ActedContacts { problem, selection, impulses, .. } = self.acted;
         let GapClosing { gaps, reach, pushes, part } = closing;
         if *part == T::zero() {
@@ -503,7 +514,7 @@ where
         let mut rates = RowDerivatives::zeros();
         rates.add_product(&jacobian, motion);
         let mut rows = problem.diagonal_of_rows(&closed);
-        let mut by = Sensitive { value: zeros(), by_q: zeros(), by_v: zeros(), by_u: zeros() };
+        let mut by = VectorWithDerivatives { value: zeros(), by_q: zeros(), by_v: zeros(), by_u: zeros() };
         // The gaps of these contacts stay the same.
         let mut all = RowDerivatives::zeros();
         all.add_rows(&rows, &rates);

@@ -30,7 +30,7 @@ impl<T: Real, const NV: usize, const CK: usize, const CR: usize> ActedContacts<T
         let (impulses, free) = (TotalArray::repeat_entry(T::zero()), SVector::zeros());
         Self {
             selection,
-            problem: ContactProblem::empty(is_relaxed),
+            problem: ContactProblem::without_contacts(is_relaxed),
             impulses,
             free,
             effects: ImpulseEffects::Unknown,
@@ -89,7 +89,7 @@ where
     let mut solved = Solved { v: *free, impulses: SVector::zeros() };
     let laws = checked_contact_laws(mechanism)?;
     let ActedContacts { selection, problem, effects, .. } = acted;
-    let (layout, laws) = (selection.layout(), selection.selected_laws(&laws));
+    let (layout, laws) = (selection.contact_layout(), selection.selected_laws(&laws));
     let after =
         ContactVelocities::<M, T, NQ, NV, NR>::select_rates(selection, velocities.rates_of_velocity(free));
     problem.select_contacts(layout, &laws, &selection.closed_contacts(), &after);
@@ -110,7 +110,7 @@ where
     selection.fill_effects(mechanism, (t, q, velocities), closed, effects, problem);
     problem.set_velocity_count(NV);
     let unsolved_error =
-        |contact| unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>(selection.contact(contact));
+        |contact| unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>(selection.index_of_contact(contact));
     let mut equations = ImpulseEquations::new();
     let (given, recorded, is_moving) = match given {
         Some(((given, recorded), is_moving)) => (Some(given), recorded.recall(selection), is_moving),
@@ -136,7 +136,7 @@ where
     let may_gain = problem.demands_restitution() && !velocities.is_driven();
     let mut found = problem.solve_from(start.as_ref(), &mut equations);
     while found.as_ref().is_ok_and(|impulses| problem.release_sliding_contacts(impulses)) {
-        found = problem.solve();
+        found = problem.solve_impulses();
     }
     let impulses = match found {
         Ok(impulses) if !(may_gain && problem.adds_energy(&impulses)) => impulses,
@@ -178,7 +178,7 @@ fn impulses_with_restitution<T: Real, const NK: usize, const NR: usize>(
         {
             least += step;
             start = Some(problem.total_impulses(&impulses));
-            found = Some((impulses, problem.violation()));
+            found = Some((impulses, problem.largest_violation()));
         }
     }
     problem.set_restitution_demands(laws, before, least);

@@ -2,7 +2,7 @@
 
 use super::layout::ContactLayout;
 use super::observer::{GapClosing, ImpulseObserver, Unobserved};
-use super::problem::{ContactProblem, ImpulseEquations, entry, put};
+use super::problem::{ContactProblem, ImpulseEquations, entry_or_zero, set_entry};
 use super::selection::{ContactSelection, FEW};
 use super::total::TotalArray;
 use super::velocities::ContactVelocities;
@@ -198,7 +198,7 @@ where
         }
     };
     let still = SVector::<T, NV>::zeros();
-    let velocities = ContactVelocities::at(mechanism, t, q);
+    let velocities = ContactVelocities::in_configuration(mechanism, t, q);
     let Some(closed) = closed_contacts(mechanism, t, (q, free), Some((&came, &velocities)))? else {
         let is_led = h != T::zero() && *given != still;
         return Ok(if is_led {
@@ -309,7 +309,7 @@ where
     .v;
     if h == T::zero() {
         observer.observe(&acted, None);
-        let (held, violation) = (after - free, acted.problem.violation());
+        let (held, violation) = (after - free, acted.problem.largest_violation());
         let impulses = Impulses::record(&selection, &acted.problem.spread_to_mechanism(&acted.impulses));
         return Ok(Touched { q: *q, v: after, held, impulses, violation });
     }
@@ -338,7 +338,7 @@ where
         }
     }
     let (problem, impulses) = (&acted.problem, &acted.impulses);
-    touched.violation = problem.violation();
+    touched.violation = problem.largest_violation();
     touched.impulses = Impulses::record(&selection, &problem.spread_to_mechanism(impulses));
     if !is_moving && !moves_farther_than(touching_distance::<T>() * constant(1e-3)) {
         let states = ((start, v), &touched, &after);
@@ -403,10 +403,13 @@ where
         ContactVelocities::<M, T, NQ, NV, NR>::select_rates(selection, velocities.rate_changes(&excess));
     let slip =
         ContactVelocities::<M, T, NQ, NV, NR>::select_rates(selection, velocities.rates_of_velocity(after));
-    let (layout, mut back) = (selection.layout(), SVector::<T, CR>::zeros());
+    let (layout, mut back) = (selection.contact_layout(), SVector::<T, CR>::zeros());
     for tangents in (0..CK).map(|k| layout.tangent_rows(k)) {
-        if tangents.clone().all(|i| entry(&slip, i).abs() <= touching_distance::<T>() * touching_distance()) {
-            tangents.for_each(|i| put(&mut back, i, -entry(&crept, i)));
+        if tangents
+            .clone()
+            .all(|i| entry_or_zero(&slip, i).abs() <= touching_distance::<T>() * touching_distance())
+        {
+            tangents.for_each(|i| set_entry(&mut back, i, -entry_or_zero(&crept, i)));
         }
     }
     Some(problem.impulses_for_changes(&back))
@@ -442,7 +445,7 @@ where
         return None;
     }
     let (mut found, mut least, mut step) = (None, T::zero(), T::one());
-    let (mut equations, mut violation) = (ImpulseEquations::new(), acted.problem.violation());
+    let (mut equations, mut violation) = (ImpulseEquations::new(), acted.problem.largest_violation());
     let mut start = Some(acted.problem.total_impulses(&acted.impulses));
     for round in 0..=acted.problem.max_halvings() {
         if found.is_some() && !acted.problem.may_refine() {
@@ -456,7 +459,7 @@ where
             let touched = led(&acted.velocity_change(&acted.problem.spread_to_mechanism(&impulses)));
             if round == 0 || total_energy(mechanism, t, &touched) <= most {
                 (found, least) = (Some((touched, impulses)), part);
-                violation = acted.problem.violation();
+                violation = acted.problem.largest_violation();
             }
         }
         step *= constant(0.5);

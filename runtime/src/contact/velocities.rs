@@ -1,6 +1,6 @@
 //! Contact velocities in one configuration.
 
-use super::problem::{entry, put};
+use super::problem::{entry_or_zero, set_entry};
 use super::selection::{ContactSelection, FEW};
 use super::{Contacts, Rows};
 use crate::Real;
@@ -32,12 +32,12 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
 {
     /// Returns the contact velocities in a configuration, as functions of the velocity that are not yet
     /// evaluated.
-    pub(super) fn at(mechanism: &'a M, t: T, q: &'a SVector<T, NQ>) -> Self {
+    pub(super) fn in_configuration(mechanism: &'a M, t: T, q: &'a SVector<T, NQ>) -> Self {
         Self { mechanism, t, q, jacobian: OnceCell::new(), drift: OnceCell::new() }
     }
 
     /// Returns the Jacobian of all contacts, which always exists; an `Option` needs no code that panics.
-    pub(super) fn jacobian<const NU: usize, const NK: usize>(&self) -> Option<&SMatrix<T, NR, NV>>
+    pub(super) fn contact_jacobian<const NU: usize, const NK: usize>(&self) -> Option<&SMatrix<T, NR, NV>>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
@@ -78,8 +78,8 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         let drift = if NR <= FEW { None } else { self.rest_velocities() };
         let change = self.changes_from_jacobian(v);
         move |k, row| match (&all, drift) {
-            (Some(all), _) => entry(all, row),
-            (None, Some(drift)) => change(k, row) + entry(drift, row),
+            (Some(all), _) => entry_or_zero(all, row),
+            (None, Some(drift)) => change(k, row) + entry_or_zero(drift, row),
             (None, None) => change(k, row),
         }
     }
@@ -101,11 +101,11 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
             }
         });
         let change = self.changes_from_jacobian(change);
-        move |k, row| all.as_ref().map_or_else(|| change(k, row), |all| entry(all, row))
+        move |k, row| all.as_ref().map_or_else(|| change(k, row), |all| entry_or_zero(all, row))
     }
 
-    /// Computes [`changes`](Self::changes) from the contact Jacobian, which the first call of the returned
-    /// function evaluates.
+    /// Computes [`rate_changes`](Self::rate_changes) from the contact Jacobian, which the first call of the
+    /// returned function evaluates.
     fn changes_from_jacobian<const NU: usize, const NK: usize>(
         &self,
         change: &SVector<T, NV>,
@@ -116,7 +116,7 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         let columns = self.mechanism.contact_columns();
         move |k, row| {
             let (first, last) = columns.get(k).copied().unwrap_or((0, NV));
-            let Some(jacobian) = self.jacobian() else { return T::zero() };
+            let Some(jacobian) = self.contact_jacobian() else { return T::zero() };
             let terms = jacobian.data.0.iter().zip(&change.data.0[0]).take(last).skip(first);
             terms.fold(T::zero(), |sum, (column, v)| sum + column.get(row).copied().unwrap_or(T::zero()) * *v)
         }
@@ -127,11 +127,12 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         selection: &ContactSelection<CK, CR>,
         rate: impl Fn(usize, usize) -> T,
     ) -> SVector<T, CR> {
-        let (layout, mut rates) = (selection.layout(), SVector::zeros());
-        for k in 0..selection.count() {
+        let (layout, mut rates) = (selection.contact_layout(), SVector::zeros());
+        for k in 0..selection.contact_count() {
             let Rows { first, count } = layout.rows(k);
-            (first..first + count)
-                .for_each(|i| put(&mut rates, i, rate(selection.contact(k), selection.row(i))));
+            (first..first + count).for_each(|i| {
+                set_entry(&mut rates, i, rate(selection.index_of_contact(k), selection.index_of_row(i)))
+            });
         }
         rates
     }

@@ -310,7 +310,7 @@ where
 impl<T: Real> DifferentiableStep<T> for ImplicitMidpoint<T> {
     const IN_MOMENTA: [bool; 2] = [true; 2];
 
-    fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
+    fn differentiate_step<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         m: &M,
         t: T,
@@ -361,7 +361,7 @@ impl<T: Real> ImplicitMidpoint<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        let h = self.length();
+        let h = self.nominal_step_length();
         let (end, mean) = state_after_step(m, self, t, q, v, u, h)?;
         let half = h * constant(0.5);
         let w = midpoint_velocity(m, q, mean, half);
@@ -405,7 +405,7 @@ where
     T: Real,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
-    let (h, still) = (method.length(), SVector::zeros());
+    let (h, still) = (method.nominal_step_length(), SVector::zeros());
     let (end, mean) = state_after_step(m, method, t, q, v, u, h)?;
     let half = h * constant(0.5);
     let w = midpoint_velocity(m, q, mean, half);

@@ -171,7 +171,7 @@ impl<T: Real> StepByParameters<T> for SemiImplicitEuler<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
     {
-        let (h, v) = (self.length(), ParameterSensitive::parameter_independent(v));
+        let (h, v) = (self.nominal_step_length(), ParameterSensitive::parameter_independent(v));
         let after = v.plus_scaled(
             h,
             &acceleration_at_stage(
@@ -197,7 +197,7 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
     {
-        let (h, v) = (self.length(), ParameterSensitive::parameter_independent(v));
+        let (h, v) = (self.nominal_step_length(), ParameterSensitive::parameter_independent(v));
         let half = h * constant(0.5);
         let stage_derivatives = |after: T,
                                  (rate, change): &(

@@ -1,6 +1,6 @@
 //! Second derivatives of the projection onto constraints at the end of a step.
 
-use super::curvature::{Curvature, Displacement};
+use super::curvature::{SecondDerivativesOfTwo, SecondOrderDisplacement};
 use super::projected::{ConfigurationCorrection, MOST_CORRECTIONS, StepCorrections, VelocityCorrection};
 use crate::Real;
 use crate::blocks::product;
@@ -19,7 +19,7 @@ pub(super) struct ProjectionContraction<T, const NV: usize> {
     pub(super) gradient: (SVector<T, NV>, SVector<T, NV>),
     /// Second derivatives of the contracted projection; the block of second derivatives with respect to the
     /// velocity is zero.
-    pub(super) second: Curvature<T, NV>,
+    pub(super) second: SecondDerivativesOfTwo<T, NV>,
 }
 
 /// Equations of a correction `x` with multipliers `λ`, contracted with `w`, `z` and `y`: `wᵀ (M x − Jᵀ λ) +
@@ -143,7 +143,8 @@ where
     m.check_full_rank(t, &q)?;
     // Intermediate configurations of the projection, with their derivatives with respect to the first. In
     // coordinates that are a vector space, the derivative of a displacement is the identity.
-    let displacement_if_on_manifold = |x: &SVector<T, NV>| (NQ != NV).then(|| Displacement::new(m, x));
+    let displacement_if_on_manifold =
+        |x: &SVector<T, NV>| (NQ != NV).then(|| SecondOrderDisplacement::new(m, x));
     let mut way = [(*q_free, SMatrix::zeros()); MOST_CORRECTIONS];
     let (mut near, mut moved, mut count) = (*q_free, SMatrix::<T, NV, NV>::identity(), 0);
     for stage in &mut way {
@@ -184,7 +185,7 @@ where
         let mut own = SMatrix::zeros();
         if let Some(along) = displacement_if_on_manifold(&found.x) {
             of_x = along.by_dv.tr_mul(&gradient);
-            let Curvature { mixed, second, .. } = along.curvature_of_displacement(m, &gradient);
+            let SecondDerivativesOfTwo { mixed, second, .. } = along.curvature_of_displacement(m, &gradient);
             let twice =
                 second.map_or_else(SMatrix::zeros, |b| found.change.tr_mul(&product(&b, &found.change)));
             own = with_transpose(twice, &product(&mixed, &found.change));
@@ -194,6 +195,6 @@ where
         qq += moved.tr_mul(&product(&own, moved));
         gradient += found.change.tr_mul(&of_x);
     }
-    let second = Curvature { first: Some(qq), mixed: qv, second: None };
+    let second = SecondDerivativesOfTwo { first: Some(qq), mixed: qv, second: None };
     Ok(ProjectionContraction { gradient: (gradient, kept.tr_mul(of_v)), second })
 }

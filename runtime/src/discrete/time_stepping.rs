@@ -1,7 +1,7 @@
 //! Derivatives of steps of [`TimeStepping`]: the motion without contact impulses at the end, and
 //! displacements and transported velocities. Derivatives of the impulses are in `contact`.
 
-use super::explicit::{Sensitive, Start};
+use super::explicit::{DifferentiatedStart, VectorWithDerivatives};
 use super::{DifferentiableStep, Transition, projected};
 use crate::Real;
 use crate::blocks::{NearlyIdentity, add_multiple, add_product, add_product_of_some, is_zero, scale, zeros};
@@ -46,9 +46,9 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
     /// derivatives of a vector.
     fn add_mapped<T: Real, const NU: usize>(
         &self,
-        sum: &mut Sensitive<T, NV, NU>,
+        sum: &mut VectorWithDerivatives<T, NV, NU>,
         by: &SMatrix<T, NV, NV>,
-        of: &Sensitive<T, NV, NU>,
+        of: &VectorWithDerivatives<T, NV, NU>,
     ) {
         let places = self.rotating_indices();
         add_product_of_some(&mut sum.by_q, places, by, &of.by_q);
@@ -63,7 +63,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
     fn multiply_from_left<T: Real, const NU: usize>(
         &self,
         by: &SMatrix<T, NV, NV>,
-        of: &mut Sensitive<T, NV, NU>,
+        of: &mut VectorWithDerivatives<T, NV, NU>,
     ) {
         let by = NearlyIdentity::with_range(by, self.rotating);
         by.lead(&mut of.by_q);
@@ -91,9 +91,9 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
     /// configuration before the displacement.
     pub(crate) fn displaced_configuration<T: Real, const NQ: usize, const NU: usize>(
         &self,
-        (q, motion): (&SVector<T, NQ>, &Sensitive<T, NV, NU>),
-        by: &Sensitive<T, NV, NU>,
-    ) -> (SVector<T, NQ>, Sensitive<T, NV, NU>)
+        (q, motion): (&SVector<T, NQ>, &VectorWithDerivatives<T, NV, NU>),
+        by: &VectorWithDerivatives<T, NV, NU>,
+    ) -> (SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>)
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
@@ -114,9 +114,9 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         &self,
         t: T,
         q: &SVector<T, NQ>,
-        by: &Sensitive<T, NV, NU>,
-        v: &Sensitive<T, NV, NU>,
-    ) -> Sensitive<T, NV, NU>
+        by: &VectorWithDerivatives<T, NV, NU>,
+        v: &VectorWithDerivatives<T, NV, NU>,
+    ) -> VectorWithDerivatives<T, NV, NU>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
@@ -135,9 +135,9 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         &self,
         t: T,
         q: &SVector<T, NQ>,
-        (dv, end): (&SVector<T, NV>, &Sensitive<T, NV, NU>),
-        v: &Sensitive<T, NV, NU>,
-    ) -> Sensitive<T, NV, NU>
+        (dv, end): (&SVector<T, NV>, &VectorWithDerivatives<T, NV, NU>),
+        v: &VectorWithDerivatives<T, NV, NU>,
+    ) -> VectorWithDerivatives<T, NV, NU>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
@@ -146,7 +146,7 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         }
         let m = self.mechanism;
         let value = m.carry(t, q, dv, &v.value);
-        let mut carried = Sensitive { value, ..*v };
+        let mut carried = VectorWithDerivatives { value, ..*v };
         let unit =
             |k: usize, length: T| SVector::<T, NV>::from_fn(|i, _| if i == k { length } else { T::zero() });
         let (mut axes, mut rotation) = (SMatrix::<T, NV, NV>::identity(), SMatrix::<T, NV, NV>::zeros());
@@ -174,9 +174,9 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
     pub(crate) fn transport_between<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
-        (from, v): (&SVector<T, NQ>, &Sensitive<T, NV, NU>),
-        (to, motion): (&SVector<T, NQ>, &Sensitive<T, NV, NU>),
-    ) -> Sensitive<T, NV, NU>
+        (from, v): (&SVector<T, NQ>, &VectorWithDerivatives<T, NV, NU>),
+        (to, motion): (&SVector<T, NQ>, &VectorWithDerivatives<T, NV, NU>),
+    ) -> VectorWithDerivatives<T, NV, NU>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
@@ -185,45 +185,45 @@ impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
         }
         let way = self.mechanism.difference(from, to);
         let (by_q, _) = self.mechanism.integrate_derivatives_at(from, &way);
-        let relative = Sensitive { by_q: motion.by_q - by_q, ..*motion };
+        let relative = VectorWithDerivatives { by_q: motion.by_q - by_q, ..*motion };
         self.transport_to_end(t, from, (&way, &relative), v)
     }
 }
 
 /// End of a step before the impulses of its contacts, with derivatives.
 pub(crate) struct SmoothMotion<T, const NQ: usize, const NV: usize, const NU: usize> {
-    pub(crate) q: (SVector<T, NQ>, Sensitive<T, NV, NU>),
+    pub(crate) q: (SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>),
     /// Velocity at the end of the step, including the contribution of the assumed contact forces.
-    pub(crate) v: Sensitive<T, NV, NU>,
+    pub(crate) v: VectorWithDerivatives<T, NV, NU>,
     /// Contribution of the assumed contact forces to the velocity.
-    pub(crate) given: Option<Sensitive<T, NV, NU>>,
+    pub(crate) given: Option<VectorWithDerivatives<T, NV, NU>>,
 }
 
 /// Returns the motion in a step with the accelerations `before` at its start, under contact forces that add
 /// `rate` to the velocity per second.
 pub(crate) fn smooth_motion<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     method: &TimeStepping<T>,
-    start: &Start<'_, M, T, NQ, NV, NU>,
-    v: &Sensitive<T, NV, NU>,
-    before: &Sensitive<T, NV, NU>,
-    rate: Option<&Sensitive<T, NV, NU>>,
+    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
+    v: &VectorWithDerivatives<T, NV, NU>,
+    before: &VectorWithDerivatives<T, NV, NU>,
+    rate: Option<&VectorWithDerivatives<T, NV, NU>>,
 ) -> SmoothMotion<T, NQ, NV, NU>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     match method.has_four_stages() {
-        true => four_stage_motion(start, method.length(), v, before, rate),
-        false => midpoint_motion(start, method.length(), v, before, rate),
+        true => four_stage_motion(start, method.nominal_step_length(), v, before, rate),
+        false => midpoint_motion(start, method.nominal_step_length(), v, before, rate),
     }
 }
 
 fn midpoint_motion<M, T, const NQ: usize, const NV: usize, const NU: usize>(
-    start: &Start<'_, M, T, NQ, NV, NU>,
+    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
     h: T,
-    v: &Sensitive<T, NV, NU>,
-    before: &Sensitive<T, NV, NU>,
-    rate: Option<&Sensitive<T, NV, NU>>,
+    v: &VectorWithDerivatives<T, NV, NU>,
+    before: &VectorWithDerivatives<T, NV, NU>,
+    rate: Option<&VectorWithDerivatives<T, NV, NU>>,
 ) -> SmoothMotion<T, NQ, NV, NU>
 where
     T: Real,
@@ -238,7 +238,7 @@ where
     scale(&mut by_velocity, half);
     // Only the configuration and the velocity at the start move the middle.
     let (mut by_q, mut by_way) = (by_place, by_place);
-    let mut motion = Sensitive { value: way, by_q: zeros(), by_v: zeros(), by_u: zeros() };
+    let mut motion = VectorWithDerivatives { value: way, by_q: zeros(), by_v: zeros(), by_u: zeros() };
     (motion.by_q, motion.by_v) = manifold.displacement_derivatives(start.q, &way);
     if !manifold.has_fixed_axes() {
         NearlyIdentity::with_range(&motion.by_q, manifold.rotating).follow(&mut by_q);
@@ -262,17 +262,18 @@ where
 }
 
 fn four_stage_motion<M, T, const NQ: usize, const NV: usize, const NU: usize>(
-    start: &Start<'_, M, T, NQ, NV, NU>,
+    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
     h: T,
-    v: &Sensitive<T, NV, NU>,
-    before: &Sensitive<T, NV, NU>,
-    rate: Option<&Sensitive<T, NV, NU>>,
+    v: &VectorWithDerivatives<T, NV, NU>,
+    before: &VectorWithDerivatives<T, NV, NU>,
+    rate: Option<&VectorWithDerivatives<T, NV, NU>>,
 ) -> SmoothMotion<T, NQ, NV, NU>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
-    type StageRates<T, const NV: usize, const NU: usize> = (Sensitive<T, NV, NU>, Sensitive<T, NV, NU>);
+    type StageRates<T, const NV: usize, const NU: usize> =
+        (VectorWithDerivatives<T, NV, NU>, VectorWithDerivatives<T, NV, NU>);
     let (half, manifold) = (h * constant(0.5), ConfigurationManifold::new(start.mechanism));
     let is_plain = start.mechanism.features().is_plain();
     let stage_state = |after: T, (rates, acceleration): &StageRates<T, NV, NU>| {
@@ -287,7 +288,10 @@ where
         }
         let (_, by_dv, by_v) = start.mechanism.displacement_rate_derivatives(start.q, &way.value, &v.value);
         let value = start.mechanism.displacement_rate(start.q, &way.value, &v.value);
-        ((Sensitive::compose_derivatives(value, (&by_dv, &way), (&by_v, &v)), acceleration), carried)
+        (
+            (VectorWithDerivatives::compose_derivatives(value, (&by_dv, &way), (&by_v, &v)), acceleration),
+            carried,
+        )
     };
     let k1 = (*v, rate.map_or(*before, |rate| before.plus_scaled(T::one(), rate)));
     let (k2, _) = stage_state(half, &k1);
@@ -340,7 +344,7 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, 
 impl<T: Real> DifferentiableStep<T> for TimeStepping<T> {
     const IN_MOMENTA: [bool; 2] = [false; 2];
 
-    fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
+    fn differentiate_step<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
         t: T,
@@ -372,7 +376,8 @@ impl<T: Real> DifferentiableStep<T> for TimeStepping<T> {
         if let Some(done) = mechanism.visit_contacts(step) {
             return done;
         }
-        let (start, v) = (Start { mechanism, t, q, u }, Sensitive::start_velocity(v));
+        let (start, v) =
+            (DifferentiatedStart { mechanism, t, q, u }, VectorWithDerivatives::start_velocity(v));
         let before = start.acceleration_in_state(T::zero(), (q, &v.value));
         let motion = smooth_motion(self, &start, &v, &before, None);
         *into = Transition::from_sensitive(&motion.q, &motion.v);
@@ -397,6 +402,10 @@ impl<T: Real> DifferentiableStep<T> for TimeStepping<T> {
     where
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        projected::project_step(mechanism, t + self.length(), self.differentiate(mechanism, t, q, v, u)?)
+        projected::project_step(
+            mechanism,
+            t + self.nominal_step_length(),
+            self.differentiate_step(mechanism, t, q, v, u)?,
+        )
     }
 }

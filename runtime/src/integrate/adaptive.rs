@@ -8,7 +8,7 @@ use nalgebra::SVector;
 
 /// Settings of an adaptive method: tolerances, limits of the step length, and maximum number of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Settings<T> {
+pub(super) struct AdaptiveSettings<T> {
     pub relative: T,
     pub absolute: T,
     pub first: Option<T>,
@@ -48,7 +48,7 @@ impl<T: Real, const NV: usize> AdaptiveMemory<T, NV> {
     /// # Errors
     ///
     /// [`Error::TooManySteps`] above the maximum number of trials.
-    pub(super) fn count_trial(&mut self, settings: &Settings<T>, t: T) -> Result<(), Error> {
+    pub(super) fn count_trial(&mut self, settings: &AdaptiveSettings<T>, t: T) -> Result<(), Error> {
         self.trials += 1;
         if self.trials > settings.most_steps { Err(Error::TooManySteps { t: to_f64(t) }) } else { Ok(()) }
     }
@@ -65,7 +65,7 @@ pub(super) struct StepTrial<T, const NQ: usize, const NV: usize> {
 }
 
 /// Start, length and end of a trial step.
-pub(super) struct Attempt<'a, T, const NQ: usize, const NV: usize> {
+pub(super) struct TrialStep<'a, T, const NQ: usize, const NV: usize> {
     pub start: &'a State<T, NQ, NV>,
     pub acceleration: &'a SVector<T, NV>,
     pub scale: &'a ErrorScale<T>,
@@ -73,7 +73,7 @@ pub(super) struct Attempt<'a, T, const NQ: usize, const NV: usize> {
     pub t: T,
 }
 
-impl<T: Real> Settings<T> {
+impl<T: Real> AdaptiveSettings<T> {
     pub fn new() -> Self {
         let tolerance = constant::<T>(1e-9).max(constant::<T>(64.0) * epsilon());
         Self {
@@ -147,7 +147,7 @@ impl<T: Real> Settings<T> {
         system: &mut D,
         start: &State<T, NQ, NV>,
         until: Option<T>,
-        mut attempt: impl FnMut(&mut D, &Attempt<'_, T, NQ, NV>) -> Result<StepTrial<T, NQ, NV>, Error>,
+        mut attempt: impl FnMut(&mut D, &TrialStep<'_, T, NQ, NV>) -> Result<StepTrial<T, NQ, NV>, Error>,
     ) -> Result<Step<T, NQ, NV>, Error> {
         let known = memory.acceleration.take();
         let acceleration = known.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
@@ -164,7 +164,7 @@ impl<T: Real> Settings<T> {
             self.check_step_size([start.t, t], h, wanted, finite, system.time(start.t))?;
             memory.count_trial(self, start.t)?;
             let trial =
-                attempt(system, &Attempt { start, acceleration: &acceleration, scale: &scale, h, t })?;
+                attempt(system, &TrialStep { start, acceleration: &acceleration, scale: &scale, h, t })?;
             let error = trial.error;
             finite = error.is_finite() && is_finite(&trial.step.end.q);
             let (larger, smaller) = Self::next_steps(control, h, error, memory.error);
@@ -191,35 +191,35 @@ macro_rules! adaptive {
             /// Returns the method with relative and absolute tolerance 1e-9 (or 64 machine epsilons of a less
             /// precise `T`) and at most ten million steps.
             pub fn new() -> Self {
-                Self { settings: Settings::new() }
+                Self { settings: AdaptiveSettings::new() }
             }
 
             /// Sets the error allowed per step: relative to the magnitude of each coordinate and velocity,
             /// and absolute in SI units.
             pub fn tolerance(self, relative: T, absolute: T) -> Self {
-                Self { settings: Settings { relative, absolute, ..self.settings } }
+                Self { settings: AdaptiveSettings { relative, absolute, ..self.settings } }
             }
 
             /// Sets the first trial step, s; without this setting the method estimates it.
             pub fn initial_step(self, step: T) -> Self {
-                Self { settings: Settings { first: Some(step), ..self.settings } }
+                Self { settings: AdaptiveSettings { first: Some(step), ..self.settings } }
             }
 
             /// Sets the longest step, s; without this setting there is no limit. Set it below the duration of
             /// the shortest event that must not be stepped over.
             pub fn max_step(self, step: T) -> Self {
-                Self { settings: Settings { longest: Some(step), ..self.settings } }
+                Self { settings: AdaptiveSettings { longest: Some(step), ..self.settings } }
             }
 
             /// Sets the minimum length of a step, s. If the tolerance requires a shorter step, the run ends
             /// with [`Error::StepTooSmall`].
             pub fn min_step(self, step: T) -> Self {
-                Self { settings: Settings { least: Some(step), ..self.settings } }
+                Self { settings: AdaptiveSettings { least: Some(step), ..self.settings } }
             }
 
             /// Sets the maximum number of trial steps in one run, counting both accepted and rejected ones.
             pub fn max_steps(self, steps: u64) -> Self {
-                Self { settings: Settings { most_steps: steps, ..self.settings } }
+                Self { settings: AdaptiveSettings { most_steps: steps, ..self.settings } }
             }
         }
 

@@ -1,6 +1,6 @@
 //! Norm of the error, and estimate of the first step.
 
-use super::stages::Rates;
+use super::stages::RungeKuttaRates;
 use super::{Dynamics, State, Step};
 use crate::Real;
 use crate::private::constant;
@@ -45,7 +45,7 @@ impl<T: Real> ErrorScale<T> {
         &self,
         step: &Step<T, NQ, NV>,
         displacement: &SVector<T, NV>,
-        error: &Rates<T, NV>,
+        error: &RungeKuttaRates<T, NV>,
     ) -> T {
         let (start, end) = (&step.start, &step.end);
         let moved = displacement.abs();

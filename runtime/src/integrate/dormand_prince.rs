@@ -1,6 +1,6 @@
 //! The Dormand–Prince pair of orders 5 and 4 with adaptive steps.
 
-use super::adaptive::{AdaptiveMemory, Settings, StepControl, adaptive};
+use super::adaptive::{AdaptiveMemory, AdaptiveSettings, StepControl, adaptive};
 use super::{Dynamics, Error, Jump, Method, State, Step};
 use crate::Real;
 
@@ -29,7 +29,7 @@ const CONTROL: StepControl = StepControl { exponent: 0.2 - 0.75 * 0.04, beta: 0.
 /// DOPRI5.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DormandPrince<T> {
-    settings: Settings<T>,
+    settings: AdaptiveSettings<T>,
 }
 
 adaptive!(DormandPrince);

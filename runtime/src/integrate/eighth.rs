@@ -1,7 +1,7 @@
 //! The method of Dormand and Prince of order 8 with adaptive steps.
 
-use super::adaptive::{AdaptiveMemory, Attempt, Settings, StepControl, StepTrial, adaptive};
-use super::stages::{Rates, rates_at_stage, weighted_stage_rates};
+use super::adaptive::{AdaptiveMemory, AdaptiveSettings, StepControl, StepTrial, TrialStep, adaptive};
+use super::stages::{RungeKuttaRates, rates_at_stage, weighted_stage_rates};
 use super::{Dynamics, Error, Jump, Method, State, Step};
 use crate::Real;
 use crate::private::constant;
@@ -35,7 +35,7 @@ const END: usize = 12;
 /// program DOP853.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DormandPrince8<T> {
-    settings: Settings<T>,
+    settings: AdaptiveSettings<T>,
 }
 
 adaptive!(DormandPrince8);
@@ -74,12 +74,12 @@ impl<T: Real> Method<T> for DormandPrince8<T> {
 /// Returns a step, with its interpolating polynomial if `dense`.
 pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
-    attempt: &Attempt<'_, T, NQ, NV>,
+    attempt: &TrialStep<'_, T, NQ, NV>,
     dense: bool,
 ) -> StepTrial<T, NQ, NV> {
-    let Attempt { start, acceleration, scale, h, t } = *attempt;
-    let mut k = [Rates { displacement: start.v, velocity: *acceleration }; 16];
-    let mut reach = |k: &mut [Rates<T, NV>; 16], stages: core::ops::Range<usize>| {
+    let TrialStep { start, acceleration, scale, h, t } = *attempt;
+    let mut k = [RungeKuttaRates { displacement: start.v, velocity: *acceleration }; 16];
+    let mut reach = |k: &mut [RungeKuttaRates<T, NV>; 16], stages: core::ops::Range<usize>| {
         let mut end = *start;
         let weights = STAGES.iter().skip(stages.start - 1);
         for ((index, weights), part) in stages.clone().zip(weights).zip(TIMES.iter().skip(stages.start)) {

@@ -1,6 +1,6 @@
 //! Motion with contacts in which every event is located.
 
-use super::adaptive::{AdaptiveMemory, Attempt, Settings, adaptive};
+use super::adaptive::{AdaptiveMemory, AdaptiveSettings, TrialStep, adaptive};
 use super::control::ErrorScale;
 use super::eighth::{CONTROL, trial_step};
 use super::local::ShiftedSystem;
@@ -64,7 +64,7 @@ use nalgebra::SVector;
 /// Source: Acary and Brogliato, *Numerical Methods for Nonsmooth Dynamical Systems* (2008), ch. 8.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EventDriven<T> {
-    settings: Settings<T>,
+    settings: AdaptiveSettings<T>,
 }
 
 adaptive!(EventDriven);
@@ -172,7 +172,7 @@ impl<T: Real> Method<T> for EventDriven<T> {
 /// Arguments of a step: settings, memory, start and latest end.
 #[derive(Debug)]
 pub struct Section<'a, T, const NQ: usize, const NV: usize> {
-    settings: Settings<T>,
+    settings: AdaptiveSettings<T>,
     memory: &'a mut EventMemory<T, NV>,
     start: &'a State<T, NQ, NV>,
     until: Option<T>,
@@ -280,7 +280,7 @@ where
     /// of the step.
     fn advance_in_phase<const NU: usize>(
         &mut self,
-        settings: &Settings<T>,
+        settings: &AdaptiveSettings<T>,
         memory: &mut AdaptiveMemory<T, NV>,
         until: Option<T>,
     ) -> Option<Result<Step<T, NQ, NV>, Error>>
@@ -323,7 +323,7 @@ where
     /// `least`.
     fn step_to_event<const NU: usize>(
         &mut self,
-        settings: &Settings<T>,
+        settings: &AdaptiveSettings<T>,
         h: T,
         least: T,
     ) -> Option<Step<T, NQ, NV>>
@@ -359,7 +359,12 @@ where
     }
 
     /// Returns a trial step of `h` seconds with the current contact modes, without a search for events.
-    fn try_step<const NU: usize>(&mut self, settings: &Settings<T>, h: T, dense: bool) -> Step<T, NQ, NV>
+    fn try_step<const NU: usize>(
+        &mut self,
+        settings: &AdaptiveSettings<T>,
+        h: T,
+        dense: bool,
+    ) -> Step<T, NQ, NV>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
         I: Inputs<T, NQ, NV, NU>,
@@ -371,7 +376,7 @@ where
         let dimensions = phased.mechanism.features().dimensions;
         let scale = ErrorScale { relative: settings.relative, absolute: settings.absolute, dimensions };
         let attempt =
-            Attempt { start: &begin, acceleration: &self.acceleration, scale: &scale, h, t: begin.t + h };
+            TrialStep { start: &begin, acceleration: &self.acceleration, scale: &scale, h, t: begin.t + h };
         trial_step(&mut local, &attempt, dense).step
     }
 

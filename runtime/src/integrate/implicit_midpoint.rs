@@ -50,7 +50,7 @@ pub struct MidpointMemory<T, const NV: usize> {
 }
 
 /// Solution of the midpoint: configuration, then displacement to it, velocity, rate of the momentum.
-type Midpoint<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, [SVector<T, NV>; 3]);
+type SolvedMidpoint<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, [SVector<T, NV>; 3]);
 
 impl<T: Real> ImplicitMidpoint<T> {
     /// Returns the implicit midpoint rule with steps of `step` seconds. Steps are slightly shorter where they
@@ -60,7 +60,7 @@ impl<T: Real> ImplicitMidpoint<T> {
     }
 
     /// Returns the nominal length of a step, s.
-    pub(crate) fn length(&self) -> T {
+    pub(crate) fn nominal_step_length(&self) -> T {
         self.step
     }
 }
@@ -84,7 +84,7 @@ fn iterate_midpoint_equations<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, 
     p: &SVector<T, NV>,
     half: T,
     mut v: SVector<T, NV>,
-) -> Result<Midpoint<T, NQ, NV>, Error> {
+) -> Result<SolvedMidpoint<T, NQ, NV>, Error> {
     let mut settling = VelocityConvergence::new(half);
     let mut way = v * half;
     for iterations in 0..MOST_ITERATIONS {

@@ -1,8 +1,8 @@
 //! A linearly implicit method of order 4 for stiff mechanisms, with adaptive steps.
 
-use super::adaptive::{AdaptiveMemory, Attempt, Settings, StepControl, StepTrial, adaptive};
+use super::adaptive::{AdaptiveMemory, AdaptiveSettings, StepControl, StepTrial, TrialStep, adaptive};
 use super::rosenbrock::{JacobianDirections, Slopes, elapsed_time, sampling_delay, slopes_at_start};
-use super::stages::Rates;
+use super::stages::RungeKuttaRates;
 use super::{Dynamics, Error, Jump, Method, State, Step};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
@@ -82,7 +82,7 @@ const TERMS: [[f64; 5]; 2] = [
 /// program RODAS.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rodas<T> {
-    settings: Settings<T>,
+    settings: AdaptiveSettings<T>,
 }
 
 adaptive!(Rodas);
@@ -147,13 +147,13 @@ struct LinearisedStep<T, const NV: usize> {
 
 fn linearize_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
-    attempt: &Attempt<'_, T, NQ, NV>,
+    attempt: &TrialStep<'_, T, NQ, NV>,
     before: Option<Slopes<T, NV>>,
 ) -> LinearisedStep<T, NV> {
-    let Attempt { start, acceleration, h, .. } = *attempt;
+    let TrialStep { start, acceleration, h, .. } = *attempt;
     let mut slopes = slopes_at_start(system, start, acceleration, h, JacobianDirections::All)
         .or(before)
-        .unwrap_or(Slopes::zero());
+        .unwrap_or(Slopes::zero_slopes());
     // Order 4 requires a better time derivative than a forward difference; inputs may jump at the start.
     let later = sampling_delay(system, start.t, h);
     let [first, second] = [later, later * constant(2.0)].map(|later| {
@@ -180,9 +180,9 @@ fn linearize_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: us
 /// Returns the weighted sum of the displacement and velocity increments of six stages.
 fn weighted_sum_of_stages<T: Real, const NV: usize>(
     weights: &[f64],
-    stages: &[Rates<T, NV>; 6],
-) -> Rates<T, NV> {
-    let mut total = Rates { displacement: SVector::zeros(), velocity: SVector::zeros() };
+    stages: &[RungeKuttaRates<T, NV>; 6],
+) -> RungeKuttaRates<T, NV> {
+    let mut total = RungeKuttaRates { displacement: SVector::zeros(), velocity: SVector::zeros() };
     for (weight, stage) in weights.iter().zip(stages) {
         total.displacement += stage.displacement * constant::<T>(*weight);
         total.velocity += stage.velocity * constant::<T>(*weight);
@@ -193,17 +193,17 @@ fn weighted_sum_of_stages<T: Real, const NV: usize>(
 /// Returns a trial step of RODAS; `None` if the matrix of the step is singular.
 fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
-    attempt: &Attempt<'_, T, NQ, NV>,
+    attempt: &TrialStep<'_, T, NQ, NV>,
     linear: &LinearisedStep<T, NV>,
 ) -> Option<StepTrial<T, NQ, NV>> {
-    let Attempt { start, acceleration, scale, h, t } = *attempt;
+    let TrialStep { start, acceleration, scale, h, t } = *attempt;
     let LinearisedStep { slopes, turn } = linear;
     // (c − P) a − b = r and (c − Fv) b − Fφ a = s are reduced to one system for a.
     let c = T::one() / (h * constant(GAMMA));
     let scaled = SMatrix::<T, NV, NV>::identity() * c;
     let (of_a, of_b) = (scaled - turn, scaled - slopes.by_v);
     let matrix = LuFactors::new(of_b * of_a - slopes.by_q)?;
-    let mut u = [Rates { displacement: SVector::zeros(), velocity: SVector::zeros() }; 6];
+    let mut u = [RungeKuttaRates { displacement: SVector::zeros(), velocity: SVector::zeros() }; 6];
     let mut change = u[0];
     for (k, part) in TIMES.iter().enumerate() {
         let (Some(starts), Some(added), Some(in_time)) = (STARTS.get(k), ADDED.get(k), IN_TIME.get(k)) else {
@@ -226,7 +226,7 @@ fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>
         let s = force + added.velocity / h + slopes.by_t * (h * constant(*in_time));
         let a = matrix.solve_factorised(s + of_b * r);
         if let Some(place) = u.get_mut(k) {
-            *place = Rates { displacement: a, velocity: of_a * a - r };
+            *place = RungeKuttaRates { displacement: a, velocity: of_a * a - r };
         }
     }
     let error = u[5];

@@ -41,7 +41,7 @@ pub struct Slopes<T, const NV: usize> {
 }
 
 impl<T: Real, const NV: usize> Slopes<T, NV> {
-    pub(super) fn zero() -> Self {
+    pub(super) fn zero_slopes() -> Self {
         Self { by_q: SMatrix::zeros(), by_v: SMatrix::zeros(), by_t: SVector::zeros() }
     }
 }
@@ -70,7 +70,7 @@ pub(super) fn slopes_at_start<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, 
     if system.is_nearly_singular(*t, q, &(v * h)) {
         return None;
     }
-    let mut out = Slopes::<T, NV>::zero();
+    let mut out = Slopes::<T, NV>::zero_slopes();
     let known = system.acceleration_derivatives(*t, q, v);
     let is_part = along == JacobianDirections::Allowed && system.is_constrained();
     if let Some((by_q, by_v)) = known
@@ -189,7 +189,7 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
         let before = system.acceleration(start.t, &start.q, &start.v);
         let mut slopes = slopes_at_start(system, start, &before, h, JacobianDirections::Allowed)
             .or(*memory)
-            .unwrap_or(Slopes::zero());
+            .unwrap_or(Slopes::zero_slopes());
         let later = sampling_delay(system, start.t, h);
         let passed = elapsed_time(system, start.t, later);
         if passed > T::zero() {

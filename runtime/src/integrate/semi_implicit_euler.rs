@@ -36,7 +36,7 @@ impl<T: Real> SemiImplicitEuler<T> {
     }
 
     /// Returns the nominal length of a step, s.
-    pub(crate) fn length(&self) -> T {
+    pub(crate) fn nominal_step_length(&self) -> T {
         self.step
     }
 }

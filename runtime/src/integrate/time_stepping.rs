@@ -151,7 +151,7 @@ impl<T: Real> TimeStepping<T> {
     }
 
     /// Returns the length of a step, s.
-    pub(crate) fn length(&self) -> T {
+    pub(crate) fn nominal_step_length(&self) -> T {
         self.step
     }
 

@@ -3,7 +3,7 @@
 use super::registers::Registers;
 use crate::Real;
 use crate::arithmetic::Vector;
-use crate::trigonometry::{Aligned, reduced_sine_and_cosine, same_type_reference};
+use crate::trigonometry::{CacheAligned, reduced_sine_and_cosine, same_type_reference};
 use core::any::Any;
 
 /// Returns sines and cosines of angles, rad, that are within the range of the fast argument reduction.
@@ -23,7 +23,7 @@ fn replace_by_sines<A: Registers, const L: usize, const N: usize>(
     if !A::are_small(&x.map(|x| *x.numbers_of_lanes())) {
         for (x, c) in x.iter_mut().zip(&mut c) {
             // A copy, so that the angles themselves need not be stored in memory.
-            let angles = Aligned(*x.numbers_of_lanes());
+            let angles = CacheAligned(*x.numbers_of_lanes());
             let (sines, cosines) = A::sin_cos_of_large(&angles.0);
             (*x, *c) = (Vector::from_array(sines), Vector::from_array(cosines));
         }

@@ -175,10 +175,10 @@ fn check_vector_operations<R: Registers, const N: usize>() {
         let sum = R::mul_sub(s, c, R::neg_mul_add(a, large, -b)) / (R::abs(b) + X::constant(0.1));
         R::sqrt(R::mul_add(sum, sum, a * a)) - R::atan2(a, b)
     }
-    let several_in_lanes = |a: Lanes<f64, N>, b: Lanes<f64, N>, c: Lanes<f64, N>| {
+    let several_operations_in_lanes = |a: Lanes<f64, N>, b: Lanes<f64, N>, c: Lanes<f64, N>| {
         several_operations::<R, _>(R::lanes(a.0), R::lanes(b.0), R::lanes(c.0)).lanes()
     };
-    check_lanes::<N>(several_in_lanes, several_operations::<R, f64>);
+    check_lanes::<N>(several_operations_in_lanes, several_operations::<R, f64>);
     let several_in_single_precision = |a, b, c| several_operations::<R, f32>(a, b, c);
     let [a, b, c] = [3, 4, 5].map(|seed| sample_lanes::<N>(seed).map(|x| x as f32));
     let found = several_operations::<R, _>(R::lanes(a.0), R::lanes(b.0), R::lanes(c.0)).lanes();

@@ -11,7 +11,7 @@ use crate::arithmetic::{Arithmetic, Compiled};
 use crate::private::constant;
 
 /// Square matrix as an array of columns.
-type Block<T, const N: usize> = [[T; N]; N];
+type SquareBlock<T, const N: usize> = [[T; N]; N];
 
 /// Returns the second derivatives with respect to `θ²` of the factors of `ad²` and `ad⁴` in the inverse
 /// Jacobian of SE(3).
@@ -57,7 +57,7 @@ fn bracket_curvature<T: Real, const N: usize>(
     lambda: [T; N],
     bracket: impl Fn([T; N], [T; N]) -> [T; N],
     factors: [FactorDerivatives<T>; 2],
-) -> Block<T, N> {
+) -> SquareBlock<T, N> {
     let two = constant::<T>(2.0);
     let weighted_sum = |x: &[T; N]| lambda.iter().zip(x).fold(T::zero(), |sum, (l, x)| sum + *l * *x);
     let unit_vector = |j: usize| core::array::from_fn(|i| if i == j { T::one() } else { T::zero() });
@@ -111,8 +111,8 @@ fn bracket_curvature<T: Real, const N: usize>(
 /// velocity `v`.
 fn contracted_derivatives<T: Real, const N: usize>(
     lambda: [T; N],
-    by_dv: impl Fn([T; N]) -> Block<T, N>,
-) -> Block<T, N> {
+    by_dv: impl Fn([T; N]) -> SquareBlock<T, N>,
+) -> SquareBlock<T, N> {
     core::array::from_fn(|j| {
         let columns = by_dv(core::array::from_fn(|i| if i == j { T::one() } else { T::zero() }));
         columns.map(|column| column.iter().zip(&lambda).fold(T::zero(), |sum, (x, l)| sum + *x * *l))
@@ -125,7 +125,7 @@ pub fn ball_tangent_rate_second_derivatives<T: Real>(
     dv: [T; 3],
     v: [T; 3],
     lambda: [T; 3],
-) -> (Block<T, 3>, Block<T, 3>) {
+) -> (SquareBlock<T, 3>, SquareBlock<T, 3>) {
     let square = dot(dv, dv);
     // The derivative of the factor with respect to θ² is the negative factor of the fourth bracket of SE(3).
     let ([_, fall], [_, slope]) = (even_bracket_factors(square), even_factor_slopes(square));
@@ -142,7 +142,7 @@ pub fn free_tangent_rate_second_derivatives<T: Real>(
     dv: [T; 6],
     v: [T; 6],
     lambda: [T; 6],
-) -> (Block<T, 6>, Block<T, 6>) {
+) -> (SquareBlock<T, 6>, SquareBlock<T, 6>) {
     let [_, _, _, x, y, z] = dv;
     let square = dot([x, y, z], [x, y, z]);
     let ([f, g], [f1, g1], [f2, g2]) =
@@ -166,8 +166,8 @@ mod tests {
     /// by column.
     fn difference_columns<const N: usize>(
         lambda: [f64; N],
-        f: impl Fn([f64; N]) -> Block<f64, N>,
-    ) -> Block<f64, N> {
+        f: impl Fn([f64; N]) -> SquareBlock<f64, N>,
+    ) -> SquareBlock<f64, N> {
         let h = 1e-3;
         core::array::from_fn(|j| {
             let columns_times_lambda = |x: f64| {
@@ -188,7 +188,11 @@ mod tests {
         core::array::from_fn(|k| a[k] + b[k])
     }
 
-    fn assert_blocks_agree<const N: usize>(found: Block<f64, N>, expected: Block<f64, N>, what: &str) {
+    fn assert_blocks_agree<const N: usize>(
+        found: SquareBlock<f64, N>,
+        expected: SquareBlock<f64, N>,
+        what: &str,
+    ) {
         for (a, b) in found.iter().flatten().zip(expected.iter().flatten()) {
             assert!((a - b).abs() < 1e-9, "{what}: {found:?} instead of {expected:?}");
         }

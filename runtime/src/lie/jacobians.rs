@@ -11,12 +11,12 @@ use crate::arithmetic::{Arithmetic, Compiled};
 use crate::private::constant;
 
 /// Square matrix as an array of columns.
-type Block<T, const N: usize> = [[T; N]; N];
+type SquareBlock<T, const N: usize> = [[T; N]; N];
 
 /// Returns the matrix of a linear function as columns. The standard library's `map` is not used, because it
 /// is not always inlined.
 #[inline(always)]
-fn columns_of_function<T: Real, const N: usize>(f: impl Fn([T; N]) -> [T; N]) -> Block<T, N> {
+fn columns_of_function<T: Real, const N: usize>(f: impl Fn([T; N]) -> [T; N]) -> SquareBlock<T, N> {
     let mut all = [[T::zero(); N]; N];
     for (j, column) in all.iter_mut().enumerate() {
         let mut unit = [T::zero(); N];
@@ -30,7 +30,7 @@ fn columns_of_function<T: Real, const N: usize>(f: impl Fn([T; N]) -> [T; N]) ->
 /// columns follow from the angular ones, because motions of SE(3) are rotations with dual numbers (Selig,
 /// *Geometric Fundamentals of Robotics*, § 7.5).
 #[inline(always)]
-fn dual_columns<T: Real>(f: impl Fn([T; 6]) -> [T; 6]) -> Block<T, 6> {
+fn dual_columns<T: Real>(f: impl Fn([T; 6]) -> [T; 6]) -> SquareBlock<T, 6> {
     let mut all = [[T::zero(); 6]; 6];
     let (linear, angular) = all.split_at_mut(3);
     for (j, (linear, angular)) in linear.iter_mut().zip(angular).enumerate() {
@@ -46,7 +46,7 @@ fn dual_columns<T: Real>(f: impl Fn([T; 6]) -> [T; 6]) -> Block<T, 6> {
 /// Returns the derivatives of `q ⊕ dv` of a ball joint, in body axes, with respect to displacements of `q`
 /// and to `dv`: `exp(−dv)` and the right Jacobian of SO(3) (Chirikjian, *Stochastic Models, Information
 /// Theory, and Lie Groups*, vol. 2, 2012, § 10.6).
-pub fn ball_integrate_derivatives<T: Real>(dv: [T; 3]) -> (Block<T, 3>, Block<T, 3>) {
+pub fn ball_integrate_derivatives<T: Real>(dv: [T; 3]) -> (SquareBlock<T, 3>, SquareBlock<T, 3>) {
     let back = quaternion_exponential(dv.map(|x| -x));
     let [a, b] = left_jacobian_factors(dot(dv, dv));
     let right_jacobian_column = |e: [T; 3]| {
@@ -57,7 +57,10 @@ pub fn ball_integrate_derivatives<T: Real>(dv: [T; 3]) -> (Block<T, 3>, Block<T,
 }
 
 /// Returns the derivatives of `tangent_rate(dv, v)` of a ball joint with respect to `dv` and to `v`.
-pub fn ball_tangent_rate_derivatives<T: Real>(dv: [T; 3], v: [T; 3]) -> (Block<T, 3>, Block<T, 3>) {
+pub fn ball_tangent_rate_derivatives<T: Real>(
+    dv: [T; 3],
+    v: [T; 3],
+) -> (SquareBlock<T, 3>, SquareBlock<T, 3>) {
     let square = dot(dv, dv);
     let second = second_bracket_factor(square);
     // The derivative of the second bracket's factor with respect to θ² is the negative factor of the fourth.
@@ -122,7 +125,7 @@ fn jacobian_factors<T: Real>(square: T) -> [T; 4] {
 
 /// Returns the derivatives of `q ⊕ dv` of a free joint, in body axes, with respect to displacements of `q`
 /// and to `dv`: the adjoint of `exp(−dv)` and the right Jacobian of SE(3); linear parts first.
-pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (Block<T, 6>, Block<T, 6>) {
+pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (SquareBlock<T, 6>, SquareBlock<T, 6>) {
     let [_, _, _, rx, ry, rz] = dv;
     let turn = [rx, ry, rz];
     let (o, i) = (T::zero(), T::one());
@@ -178,7 +181,10 @@ pub(super) fn even_factor_slopes<T: Real>(square: T) -> [T; 2] {
 
 /// Returns the derivatives of `tangent_rate(dv, v)` of a free joint with respect to `dv` and to `v`; linear
 /// parts first.
-pub fn free_tangent_rate_derivatives<T: Real>(dv: [T; 6], v: [T; 6]) -> (Block<T, 6>, Block<T, 6>) {
+pub fn free_tangent_rate_derivatives<T: Real>(
+    dv: [T; 6],
+    v: [T; 6],
+) -> (SquareBlock<T, 6>, SquareBlock<T, 6>) {
     let [_, _, _, rx, ry, rz] = dv;
     let turn = [rx, ry, rz];
     let square = dot(turn, turn);

@@ -54,7 +54,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Sou
     const COUNT: usize = K;
 
     #[inline(always)]
-    fn column(&self, k: usize) -> Column<A, T, E, F> {
+    fn column_in_registers(&self, k: usize) -> Column<A, T, E, F> {
         match (self.eights.get(k), self.fours.get(k)) {
             (Some(eights), Some(fours)) => Column { eights: *eights, fours: *fours },
             _ => Column::zero(),
@@ -190,7 +190,7 @@ pub trait Source<A, T, const E: usize, const F: usize> {
     const COUNT: usize;
 
     /// Returns column `k` of the list, in registers; zeros if `k` is out of range.
-    fn column(&self, k: usize) -> Column<A, T, E, F>;
+    fn column_in_registers(&self, k: usize) -> Column<A, T, E, F>;
 }
 
 impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const N: usize, const W: usize>
@@ -199,7 +199,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const N: usize, con
     const COUNT: usize = W;
 
     #[inline(always)]
-    fn column(&self, k: usize) -> Column<A, T, E, F> {
+    fn column_in_registers(&self, k: usize) -> Column<A, T, E, F> {
         match self.get(k) {
             Some(column) => Column::read(column),
             None => Column::zero(),

@@ -3,7 +3,7 @@
 //! rate.
 
 use super::column::Column;
-use super::{Range, Run, Tiling, is_long};
+use super::{IndexRange, Run, Tiling, is_long};
 use crate::Real;
 use crate::arithmetic::Arithmetic;
 use crate::lanes::VectorLoop;
@@ -21,10 +21,10 @@ pub fn complete<A: Arithmetic, T: Real, P: Tiling<T, N>, const N: usize, const K
     factors: &[[T; K]; M],
     runs: &[Run],
 ) {
-    A::run_loop(Completion::<T, P, N, K, M> { matrix, trunk, factors, runs, parts: PhantomData });
+    A::run_loop(CompletionLoop::<T, P, N, K, M> { matrix, trunk, factors, runs, parts: PhantomData });
 }
 
-struct Completion<'a, T, P, const N: usize, const K: usize, const M: usize> {
+struct CompletionLoop<'a, T, P, const N: usize, const K: usize, const M: usize> {
     matrix: &'a mut SMatrix<T, N, N>,
     trunk: [usize; K],
     factors: &'a [[T; K]; M],
@@ -33,13 +33,13 @@ struct Completion<'a, T, P, const N: usize, const K: usize, const M: usize> {
 }
 
 impl<T: Real, P: Tiling<T, N>, const N: usize, const K: usize, const M: usize> VectorLoop
-    for Completion<'_, T, P, N, K, M>
+    for CompletionLoop<'_, T, P, N, K, M>
 {
     const IS_LONG: bool = is_long(N);
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
-        P::complete::<A, K, K>(self.matrix, self.trunk, self.factors, self.runs);
+        P::complete_inverse::<A, K, K>(self.matrix, self.trunk, self.factors, self.runs);
     }
 }
 
@@ -49,7 +49,7 @@ impl<T: Real, P: Tiling<T, N>, const N: usize, const K: usize, const M: usize> V
 struct AlignedColumns<X>(X);
 
 /// Half-open ranges of the velocities that belong to one limb.
-pub type Limb<'a> = &'a [Range];
+pub type Limb<'a> = &'a [IndexRange];
 
 /// Inverts a mass matrix `M = [A B; Bᵀ C]`. On entry, the matrix contains `C⁻¹` in the columns of the limbs;
 /// those of the trunk are ignored. `borders` are the rows of the trunk in `M` by column, padded with zeros;
@@ -74,10 +74,10 @@ pub fn invert<
     solved: &mut [[T; N]; S],
 ) {
     let parts = PhantomData;
-    A::run_loop(Inversion::<T, P, Q, N, K, L, S> { matrix, trunk, borders, limbs, runs, solved, parts });
+    A::run_loop(InversionLoop::<T, P, Q, N, K, L, S> { matrix, trunk, borders, limbs, runs, solved, parts });
 }
 
-struct Inversion<'a, T, P, Q, const N: usize, const K: usize, const L: usize, const S: usize> {
+struct InversionLoop<'a, T, P, Q, const N: usize, const K: usize, const L: usize, const S: usize> {
     matrix: &'a mut SMatrix<T, N, N>,
     trunk: [usize; K],
     borders: &'a [[T; L]; N],
@@ -95,13 +95,13 @@ impl<
     const K: usize,
     const L: usize,
     const S: usize,
-> VectorLoop for Inversion<'_, T, P, Q, N, K, L, S>
+> VectorLoop for InversionLoop<'_, T, P, Q, N, K, L, S>
 {
     const IS_LONG: bool = is_long(N);
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
-        let Inversion { matrix, trunk, borders, limbs, runs, solved, .. } = self;
+        let InversionLoop { matrix, trunk, borders, limbs, runs, solved, .. } = self;
         // Gᵀ = −B C⁻¹ by columns, and the Schur complement S = A + B G, which is initialised with A.
         let mut g = AlignedColumns([[T::zero(); L]; N]);
         let mut inner = AlignedColumns([[T::zero(); L]; L]);
@@ -120,7 +120,7 @@ impl<
                 Q::add_products::<A, N>(&mut inner.0, borders, &g.0, (*first, *end));
             }
         }
-        Q::invert::<A, K>(&mut inner.0);
+        Q::invert_leading_block::<A, K>(&mut inner.0);
         // H = G S⁻¹, with the identity in the rows of the trunk.
         let mut outer = [[T::zero(); N]; K];
         if limbs.is_empty() {
@@ -141,7 +141,7 @@ impl<
                 *place = *column;
             }
         }
-        P::complete::<A, K, L>(matrix, trunk, &g.0, runs);
+        P::complete_inverse::<A, K, L>(matrix, trunk, &g.0, runs);
         for column in solved {
             let mut x = [[T::zero(); N]];
             P::add_multiples::<A, N, N, false>(&mut x, &matrix.data.0, from_ref(column), (0, N));

@@ -1,6 +1,6 @@
 //! Sums of products over the rows of a tile, for several columns at a time.
 
-use super::Range;
+use super::IndexRange;
 use super::column::{Column, Source};
 use crate::Real;
 use crate::arithmetic::Arithmetic;
@@ -135,7 +135,7 @@ pub fn add_all_multiples<
     sums: &mut [[T; N]],
     source: &S,
     factors: &[[T; V]],
-    range: Range,
+    range: IndexRange,
 ) {
     let (sums, factors) =
         add_multiples_to_columns::<A, T, S, E, F, N, V, MINUS, 4>(sums, source, factors, range);
@@ -165,7 +165,7 @@ pub fn add_multiples_to_columns<
     columns: &'a mut [[T; N]],
     source: &S,
     factors: &'b [[T; V]],
-    (first, end): Range,
+    (first, end): IndexRange,
 ) -> (&'a mut [[T; N]], &'b [[T; V]]) {
     if C > 1 && C * (E + F) > sum_register_count(A::WIDE) {
         return (columns, factors);
@@ -177,7 +177,7 @@ pub fn add_multiples_to_columns<
         factors_left = left;
         let mut sums = read_columns::<A, T, E, F, N, C>(columns);
         for k in first..end.min(V).min(S::COUNT) {
-            let from = source.column(k);
+            let from = source.column_in_registers(k);
             for (sums, factors) in sums.iter_mut().zip(factors) {
                 let Some(factor) = factors.get(k) else { continue };
                 sums.add_multiple::<MINUS>(*factor, &from);
@@ -202,7 +202,7 @@ pub fn add_products<
     sums: &mut [[T; N]; N],
     vectors: &[[T; N]; W],
     factors: &[[T; N]; W],
-    (first, end): Range,
+    (first, end): IndexRange,
 ) {
     for (place, columns) in sums.as_chunks_mut::<C>().0.iter_mut().enumerate() {
         let mut sums = read_columns::<A, T, E, F, N, C>(columns);

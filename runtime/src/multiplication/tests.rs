@@ -8,7 +8,7 @@ use crate::arithmetic::Compiled;
 fn check_negated_product<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
     a: &SMatrix<f64, N, N>,
     b: &SMatrix<f64, N, M>,
-    groups: &[(Range, &[usize])],
+    groups: &[(IndexRange, &[usize])],
     expected: &SMatrix<f64, N, M>,
 ) {
     let (mut found, mut other) = (*b, *b);
@@ -59,7 +59,7 @@ fn unlisted_rows_are_skipped() {
 fn listed_entries_become_zero() {
     let (a, b) = (pseudorandom_matrix::<7, 7>(2.0), pseudorandom_matrix::<7, 3>(3.0));
     let (mut found, mut given) = (b, b);
-    let groups: [(Range, &[usize]); 1] = [((0, 3), &[0, 1, 2, 3, 4, 5, 6])];
+    let groups: [(IndexRange, &[usize]); 1] = [((0, 3), &[0, 1, 2, 3, 4, 5, 6])];
     minus_products::<Compiled, _, (rows_of!(7, true), rows_of!(7, false)), 7, 3, 1>(
         &a,
         [(&mut found, &[(1, 4), (2, 0)], &groups)],

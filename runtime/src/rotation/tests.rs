@@ -10,9 +10,9 @@ use crate::Real;
 use nalgebra::{Matrix3, Quaternion, Rotation3, SMatrix, UnitQuaternion, Vector3};
 
 /// SplitMix64 generator (Steele, Lea and Flood), with the same numbers on every run.
-struct Random(u64);
+struct RandomNumbers(u64);
 
-impl Random {
+impl RandomNumbers {
     /// Returns a pseudorandom number uniform in [−1, 1).
     fn random_number(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);

@@ -12,7 +12,7 @@ const MOST_PARTS: u32 = 64;
 
 /// Times of samples and control instants of a run, in seconds after its start.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Clock {
+pub(super) struct RunTimes {
     end: Option<f64>,
     every: Option<f64>,
     period: Option<f64>,
@@ -27,7 +27,7 @@ pub(super) struct Clock {
 /// Returns the quotient `a / b` as numerator and denominator, if it equals a ratio of small integers up to
 /// rounding; otherwise `None`.
 fn integer_ratio(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
-    let small_ratio = |x: f64| {
+    let small_integer_ratio = |x: f64| {
         (1..=MOST_PARTS).find_map(|parts| {
             let scaled = x * f64::from(parts);
             // Rounded to the nearest integer; for very large values, neighbouring integers cannot be
@@ -37,10 +37,14 @@ fn integer_ratio(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
             exact.then_some([whole, u64::from(parts)])
         })
     };
-    if a >= b { small_ratio(a / b) } else { small_ratio(b / a).map(|[whole, parts]| [parts, whole]) }
+    if a >= b {
+        small_integer_ratio(a / b)
+    } else {
+        small_integer_ratio(b / a).map(|[whole, parts]| [parts, whole])
+    }
 }
 
-impl Clock {
+impl RunTimes {
     /// Creates the clock of a run with this duration and these intervals of samples and control instants.
     pub(super) fn new<T: Real>(duration: Option<T>, every: Option<T>, period: Option<T>) -> Self {
         let rounding = 8.0 * to_f64(epsilon::<T>());
@@ -98,7 +102,7 @@ mod tests {
     /// or repeated.
     #[test]
     fn sample_instants_are_complete() {
-        let clock = Clock::new::<f32>(Some(10_000.0), Some(1e-3), Some(1e-3));
+        let clock = RunTimes::new::<f32>(Some(10_000.0), Some(1e-3), Some(1e-3));
         let mut last = -1.0;
         let mut count = 0;
         loop {
@@ -115,18 +119,18 @@ mod tests {
 
     #[test]
     fn coinciding_instants_are_equal() {
-        let clock = Clock::new(Some(0.9), Some(0.1), Some(0.3));
+        let clock = RunTimes::new(Some(0.9), Some(0.1), Some(0.3));
         assert_eq!(
             [clock.control_instant(1), clock.control_instant(2), clock.control_instant(3)],
             [clock.sample_instant(3), clock.sample_instant(6), Some(0.9)]
         );
-        let clock = Clock::new(Some(10.0), Some(0.05), Some(0.02));
+        let clock = RunTimes::new(Some(10.0), Some(0.05), Some(0.02));
         assert_eq!(
             (clock.control_instant(5), clock.control_instant(1)),
             (clock.sample_instant(2), Some(0.02))
         );
         // Periods without a rational ratio are not adjusted.
-        let clock = Clock::new(None, Some(1.0), Some(core::f64::consts::SQRT_2));
+        let clock = RunTimes::new(None, Some(1.0), Some(core::f64::consts::SQRT_2));
         assert_eq!(clock.control_instant(3), Some(3.0 * core::f64::consts::SQRT_2));
     }
 }

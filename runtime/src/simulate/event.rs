@@ -120,7 +120,7 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
     ///
     /// # Errors
     ///
-    /// [`Undefined::Value`] if a function is NaN.
+    /// [`EventSearchError::Value`] if a function is NaN.
     fn begin(&mut self, state: &State<T, NQ, NV>) -> Result<(), EventSearchError>;
 
     /// Returns the first event between `from` and `to` on a step. Every event that is not later than the
@@ -128,7 +128,7 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
     ///
     /// # Errors
     ///
-    /// [`Undefined`] if a function is NaN, or if an impact has not separated the colliding bodies.
+    /// [`EventSearchError`] if a function is NaN, or if an impact has not separated the colliding bodies.
     fn locate<P: Fn(T) -> State<T, NQ, NV>>(
         &mut self,
         path: &P,

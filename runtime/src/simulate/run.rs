@@ -1,9 +1,9 @@
 //! Execution of a run: steps of the integrator, samples, control instants and events in the order of time.
 
-use super::clock::{Clock, time_after};
+use super::clock::{RunTimes, time_after};
 use super::event::coincidence_threshold;
 use super::{
-    EventHit, EventOutcome, EventSearchError, Events, Overlaps, Sample, Samples, Simulation,
+    EventHit, EventOutcome, EventSearchError, Events, Overlaps, Sample, SampleTimes, Simulation,
     check_not_negative, check_positive,
 };
 use crate::integrate::{Error, Inputs, Jump, Method, State, Step, project_end_of_step};
@@ -76,8 +76,8 @@ struct SimultaneousEvents<T, const NQ: usize, const NV: usize> {
 
 /// Progress of a simulation between two samples.
 #[derive(Clone, Debug)]
-pub(super) struct Progress<T, Memory, const NQ: usize, const NV: usize> {
-    clock: Clock,
+pub(super) struct RunProgress<T, Memory, const NQ: usize, const NV: usize> {
+    clock: RunTimes,
     /// State at the start of the current step, or of the next one if no step is current. The field `elapsed`
     /// is its time after the start of the run, s.
     node: State<T, NQ, NV>,
@@ -132,7 +132,7 @@ where
 {
     /// Returns the progress with which a simulation continues: that of an interrupted run, otherwise the
     /// initial progress, after checks of all settings.
-    pub(super) fn begin_run(&mut self) -> Result<Progress<T, Memory<T, S, NV>, NQ, NV>, Error> {
+    pub(super) fn begin_run(&mut self) -> Result<RunProgress<T, Memory<T, S, NV>, NQ, NV>, Error> {
         if let Some(run) = self.progress.take() {
             return Ok(run);
         }
@@ -157,7 +157,7 @@ where
             return Err(Error::OffConstraints { t, entry, by });
         }
         self.events.begin(&node).map_err(|reason| event_search_error(reason, t))?;
-        Ok(Progress {
+        Ok(RunProgress {
             clock: self.clock_of_run(),
             node,
             elapsed: 0.0,
@@ -195,7 +195,7 @@ where
     /// Returns the next sample; `None` at the end of the run.
     pub(super) fn next_sample(
         &mut self,
-        run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
+        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
     ) -> DueSample<T, NQ, NV, NU> {
         loop {
             let sample = match (run.step, run.firing.is_some()) {
@@ -210,15 +210,15 @@ where
         }
     }
 
-    fn has_reached_end(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> bool {
+    fn has_reached_end(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>) -> bool {
         run.stopped || run.clock.end_time().is_some_and(|end| run.elapsed >= end)
     }
 
     fn check_samples(&self) -> Result<(), Error> {
         match self.samples {
-            Samples::Steps => Ok(()),
-            Samples::Every(interval) => check_positive("the sampling interval", interval),
-            Samples::At(times) => {
+            SampleTimes::Steps => Ok(()),
+            SampleTimes::Every(interval) => check_positive("the sampling interval", interval),
+            SampleTimes::At(times) => {
                 let Some(first) = times.first() else {
                     return self.duration.map_or(Err(Error::Endless), |_| Ok(()));
                 };
@@ -229,13 +229,13 @@ where
         }
     }
 
-    fn clock_of_run(&self) -> Clock {
+    fn clock_of_run(&self) -> RunTimes {
         let (every, last) = match self.samples {
-            Samples::Steps => (None, None),
-            Samples::Every(interval) => (Some(interval), None),
-            Samples::At(times) => (None, times.last().map(|last| *last - self.start.t)),
+            SampleTimes::Steps => (None, None),
+            SampleTimes::Every(interval) => (Some(interval), None),
+            SampleTimes::At(times) => (None, times.last().map(|last| *last - self.start.t)),
         };
-        Clock::new(self.duration.or(last), every, self.system.inputs.period())
+        RunTimes::new(self.duration.or(last), every, self.system.inputs.period())
     }
 
     /// Returns the time between the start of the run and a requested sample time, s.
@@ -245,16 +245,16 @@ where
 
     /// Returns the instant of the next sample; `None` if every step is a sample. After the last requested
     /// time, the instant is the end of the run.
-    fn next_sample_instant(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
-        let Samples::At(times) = self.samples else { return run.clock.sample_instant(run.sample) };
+    fn next_sample_instant(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
+        let SampleTimes::At(times) = self.samples else { return run.clock.sample_instant(run.sample) };
         let end = run.clock.end_time().unwrap_or(f64::INFINITY);
         let due = usize::try_from(run.sample).ok().and_then(|k| times.get(k));
         Some(due.map_or(end, |t| self.time_since_start(t).min(end)))
     }
 
     /// Returns the time of the run at an instant.
-    fn run_time_at(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>, elapsed: f64) -> T {
-        if let Samples::At(times) = self.samples
+    fn run_time_at(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>, elapsed: f64) -> T {
+        if let SampleTimes::At(times) = self.samples
             && let Some(asked) = usize::try_from(run.sample).ok().and_then(|k| times.get(k))
             && self.time_since_start(asked) == elapsed
         {
@@ -265,7 +265,7 @@ where
     }
 
     /// Returns the latest instant at which the next step must end.
-    fn next_step_limit(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
+    fn next_step_limit(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
         let sample = self.next_sample_instant(run).filter(|_| S::FIXED);
         let stops = [run.clock.end_time(), run.clock.control_instant(run.control), sample];
         stops.into_iter().flatten().reduce(f64::min)
@@ -275,7 +275,7 @@ where
     /// takes a step.
     fn continue_at_node(
         &mut self,
-        run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
+        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
     ) -> DueSample<T, NQ, NV, NU> {
         self.renew_control_period(run);
         let due = self.next_sample_instant(run).map_or(!run.shown, |sample| run.elapsed >= sample);
@@ -313,7 +313,7 @@ where
     }
 
     /// Moves the progress of the run to the end of the step.
-    fn move_to_step_end(&self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>, step: &Step<T, NQ, NV>) {
+    fn move_to_step_end(&self, run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>, step: &Step<T, NQ, NV>) {
         let (elapsed, t) = run.ahead;
         (run.node, run.elapsed, run.step, run.shown) = (step.end.state_with_time(t), elapsed, None, false);
     }
@@ -327,7 +327,7 @@ where
     /// Continues within a step: emits the next sample or event, otherwise advances to the end of the step.
     fn advance_within(
         &mut self,
-        run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
+        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
         step: &Step<T, NQ, NV>,
     ) -> DueSample<T, NQ, NV, NU> {
         if run.hit.is_none() {
@@ -367,7 +367,7 @@ where
     /// Searches for the first event after the current position on the step.
     fn search_next_event(
         &mut self,
-        run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
+        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
         step: &Step<T, NQ, NV>,
     ) -> Result<(), Error> {
         if E::COUNT == 0 {
@@ -400,7 +400,7 @@ where
     /// Applies the effect of the next event of an instant; after the last event, continues the run.
     fn fire_next_event(
         &mut self,
-        run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
+        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
         step: &Step<T, NQ, NV>,
     ) -> DueSample<T, NQ, NV, NU> {
         let Some(mut firing) = run.firing.take() else { return Ok(None) };
@@ -455,7 +455,7 @@ where
     }
 
     /// Starts a new control period of the inputs if one is due.
-    fn renew_control_period(&mut self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>) {
+    fn renew_control_period(&mut self, run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>) {
         let State { t, q, v } = run.node;
         if run.clock.control_instant(run.control).is_some_and(|control| run.elapsed >= control) {
             run.control += 1;
@@ -466,7 +466,7 @@ where
 
     fn make_sample(
         &mut self,
-        run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
+        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
         State { t, q, v }: State<T, NQ, NV>,
         event: Option<usize>,
     ) -> Sample<T, NQ, NV, NU> {

@@ -1,7 +1,7 @@
 use super::*;
 use crate::Mechanism;
 use crate::integrate::{ImplicitMidpoint, Rk4, SemiImplicitEuler};
-use crate::testing::{FreeBody, OneDof, falling_ball, oscillator, pendulum, pendulum_period};
+use crate::testing::{FreeBody, OneDof, falling_ball, harmonic_oscillator, pendulum_period, unit_pendulum};
 use core::cell::Cell;
 use nalgebra::Vector3;
 use std::vec::Vec;
@@ -10,7 +10,7 @@ const TIGHT: fn() -> DormandPrince<f64> = || DormandPrince::new().tolerance(1e-1
 
 /// Returns the times of the samples in a simulation of the oscillator.
 fn sample_times<S: Method<f64>>(method: S, duration: f64, interval: f64) -> Vec<f64> {
-    let oscillator = oscillator::<f64>();
+    let oscillator = harmonic_oscillator::<f64>();
     let run = simulate(&oscillator).from([1.0], [0.0]).duration(duration).sample_every(interval);
     run.method(method).map(|sample| sample.unwrap().t).collect()
 }
@@ -32,7 +32,7 @@ fn samples_are_at_requested_times() {
 
 #[test]
 fn without_an_interval_every_step_is_a_sample() {
-    let oscillator = oscillator::<f64>();
+    let oscillator = harmonic_oscillator::<f64>();
     let run = simulate(&oscillator).from([1.0], [0.0]).duration(1.0);
     assert_eq!(run.clone().method(Rk4::step(0.01)).count(), 101);
     assert_eq!(run.clone().method(Rk4::step(0.3)).count(), 5);
@@ -45,7 +45,7 @@ fn without_an_interval_every_step_is_a_sample() {
 
 #[test]
 fn interpolated_samples_are_accurate() {
-    let oscillator = oscillator::<f64>();
+    let oscillator = harmonic_oscillator::<f64>();
     let run = simulate(&oscillator).from([1.0], [0.0]).duration(10.0).sample_every(0.01).method(TIGHT());
     for sample in run {
         let sample = sample.unwrap();
@@ -69,7 +69,7 @@ fn mechanism_reference_is_simulated() {
     struct Controller<P> {
         plant: P,
     }
-    let oscillator = oscillator::<f64>();
+    let oscillator = harmonic_oscillator::<f64>();
     let controller = Controller { plant: &oscillator };
     let end = simulate(&controller.plant).from([1.0], [0.5]).duration(2.0).finish();
     assert_eq!(end, simulate(&oscillator).from([1.0], [0.5]).duration(2.0).finish());
@@ -78,7 +78,7 @@ fn mechanism_reference_is_simulated() {
 #[test]
 fn run_starts_at_given_time() {
     let simulate_pushed_from = |start| {
-        let oscillator = oscillator::<f64>();
+        let oscillator = harmonic_oscillator::<f64>();
         let run = simulate(&oscillator).start_at(start).inputs(|t, _, _| SVector::from([t]));
         run.duration(1.0).finish().map(|end| (end.t, end.q[0])).unwrap()
     };
@@ -91,7 +91,7 @@ fn run_starts_at_given_time() {
 /// Simulates a free mass with forces of alternating sign for periods of 0.1 s. The closed-form solution is a
 /// sum.
 fn simulate_controlled_mass<S: Method<f64>>(method: S) -> (f64, Vec<f64>) {
-    let mass = OneDof { force: |_| 0.0, ..oscillator::<f64>() };
+    let mass = OneDof { force: |_| 0.0, ..harmonic_oscillator::<f64>() };
     let calls = Cell::new(0);
     let instants = core::cell::RefCell::new(Vec::new());
     let run = simulate(&mass).control_every(0.1, |t, _, _| {
@@ -119,7 +119,7 @@ fn digital_control_is_constant_within_period() {
 
 /// Returns the inputs at samples every 0.1 s of a controller that counts its periods of 0.3 s.
 fn sampled_inputs<S: Method<f64>>(method: S) -> Vec<f64> {
-    let oscillator = oscillator::<f64>();
+    let oscillator = harmonic_oscillator::<f64>();
     let mut count = -1.0;
     let run = simulate(&oscillator).control_every(0.3, |_, _, _| {
         count += 1.0;
@@ -134,14 +134,14 @@ fn samples_contain_held_inputs() {
     assert_eq!(sampled_inputs(Rk4::step(0.1)), wanted);
     assert_eq!(sampled_inputs(ImplicitMidpoint::step(0.03)), wanted);
     assert_eq!(sampled_inputs(DormandPrince::new()), wanted);
-    let oscillator = oscillator::<f64>();
+    let oscillator = harmonic_oscillator::<f64>();
     let run = simulate(&oscillator).inputs(|t, _, _| SVector::from([2.0 * t])).duration(1.0);
     assert!(run.sample_every(0.1).all(|sample| sample.is_ok_and(|s| s.u[0] == 2.0 * s.t)));
 }
 
 #[test]
 fn pendulum_crossings_are_periodic() {
-    let pendulum = pendulum();
+    let pendulum = unit_pendulum();
     let period = pendulum_period(2.5);
     let run = simulate(&pendulum).from([2.5], [0.0]).duration(5.0 * period).sample_every(100.0);
     let run =
@@ -189,7 +189,7 @@ fn run_ends_at_stopping_event() {
 
 #[test]
 fn several_events_are_in_time_order() {
-    let mass = OneDof { force: |_| 0.0, ..oscillator::<f64>() };
+    let mass = OneDof { force: |_| 0.0, ..harmonic_oscillator::<f64>() };
     let run = simulate(&mass).from([0.0], [1.0]).duration(1.0).method(Rk4::step(1.0));
     let run = run
         .event(Crossing::Rising, |_, q, _| q[0] - 0.9)
@@ -280,7 +280,8 @@ fn impact_coincides_with_control_instant() {
 
 #[test]
 fn iteration_ends_after_an_error() {
-    let broken = OneDof { force: |q: f64| if q > 0.5 { f64::NAN } else { 1.0 }, ..oscillator::<f64>() };
+    let broken =
+        OneDof { force: |q: f64| if q > 0.5 { f64::NAN } else { 1.0 }, ..harmonic_oscillator::<f64>() };
     let mut run = simulate(&broken).duration(2.0).method(Rk4::step(0.125));
     let failed = run.by_ref().find(Result::is_err);
     assert!(matches!(failed, Some(Err(Error::NotFinite { t })) if t > 0.8 && t < 1.01), "{failed:?}");
@@ -289,7 +290,7 @@ fn iteration_ends_after_an_error() {
 
 #[test]
 fn changed_setting_restarts_the_run() {
-    let oscillator = oscillator::<f64>();
+    let oscillator = harmonic_oscillator::<f64>();
     let mut run = simulate(&oscillator).from([1.0], [0.0]).duration(1.0).sample_every(0.1);
     assert_eq!(run.by_ref().count(), 11);
     assert!(run.next().is_none());
@@ -310,8 +311,10 @@ fn energy_gain<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const
 
 #[test]
 fn generic_code_simulates_mechanisms() {
-    assert!(energy_gain(&pendulum(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-8);
-    assert!(energy_gain(&oscillator::<f32>(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-4);
+    assert!(energy_gain(&unit_pendulum(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-8);
+    assert!(
+        energy_gain(&harmonic_oscillator::<f32>(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-4
+    );
     let body = FreeBody { mass: 1.0, inertia: Vector3::new(1.0, 2.0, 2.5), gravity: 1.0 };
     assert!(
         energy_gain(&body, Mechanism::neutral(&body), SVector::from([1.0, 0.0, 2.0, 0.3, 1.0, -0.5])).abs()
@@ -342,7 +345,7 @@ fn plastic_impact_is_an_error() {
     }
     // Without forces the ball remains on the surface; and the motion continues if the impact does not stop
     // it.
-    let free = OneDof { force: |_| 0.0, ..oscillator::<f64>() };
+    let free = OneDof { force: |_| 0.0, ..harmonic_oscillator::<f64>() };
     let run = simulate(&free).from([0.5], [-1.0]).duration(3.0);
     let end = run.clone().impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| v * 0.0).finish().unwrap();
     assert!(end.q[0].abs() < 1e-14 && end.v[0] == 0.0, "{end:?}");
@@ -399,7 +402,7 @@ fn initial_quaternion_must_be_unit() {
 /// Checks that a run of zero duration yields only the initial state.
 #[test]
 fn zero_duration_yields_initial_state() {
-    let oscillator = oscillator::<f64>();
+    let oscillator = harmonic_oscillator::<f64>();
     let run = simulate(&oscillator).from([1.0], [2.0]).start_at(3.0).duration(0.0);
     let end = run.clone().finish().unwrap();
     assert_eq!((end.t, end.q[0], end.v[0]), (3.0, 1.0, 2.0));
@@ -411,7 +414,7 @@ fn zero_duration_yields_initial_state() {
 /// precision.
 #[test]
 fn control_periods_stay_exact_in_single_precision() {
-    let mass = OneDof { force: |_| 0.0, ..oscillator::<f32>() };
+    let mass = OneDof { force: |_| 0.0, ..harmonic_oscillator::<f32>() };
     let start = 8192.0;
     let calls = Cell::new(0);
     let count_control_calls = |_: f32, _: &_, _: &_| {
@@ -441,7 +444,7 @@ fn control_periods_stay_exact_in_single_precision() {
 /// method.
 fn check_listed_sample_times<S: Method<f64> + Clone>(method: S, tolerance: f64) {
     let (start, looked) = (2.0, [2.0, 2.013, 2.5, 2.500_000_1, 5.75]);
-    let mass = oscillator::<f64>();
+    let mass = harmonic_oscillator::<f64>();
     let run = simulate(&mass).from([1.0], [0.0]).start_at(start).method(method);
     let error_of_sample = |sample: &Sample<f64, 1, 1, 1>| (sample.q[0] - (sample.t - start).cos()).abs();
     let samples: Vec<_> = run.clone().sample_at(&looked).map(Result::unwrap).collect();
@@ -469,7 +472,7 @@ fn samples_at_listed_times() {
 
 #[test]
 fn sample_times_must_increase() {
-    let mass = oscillator::<f64>();
+    let mass = harmonic_oscillator::<f64>();
     let simulation_error =
         |times: &[f64]| simulate(&mass).start_at(1.0).sample_at(times).finish().unwrap_err();
     let simulation_error_message = |times: &[f64]| std::string::ToString::to_string(&simulation_error(times));

@@ -96,14 +96,14 @@ impl<T: Real> ContactBlock<T> {
 
 impl<T: Real, const NR: usize> BasisRows<T, NR> {
     /// Returns `B` without columns, which is not computed yet.
-    pub(in super::super) fn none() -> Self {
+    pub(in super::super) fn without_columns() -> Self {
         let rows = RowMatrix::repeat_entry(RowList::repeat_entry(T::zero()));
         let (reach, columns) = (TotalArray::repeat_entry((0, 0)), TotalArray::repeat_entry(0));
         Self { rows, reach, size: 0, columns, rank: 0, is_exact: false }
     }
 
     /// Begins `B` with columns, and without rows; false if the columns are more than the arrays have.
-    pub(in super::super) fn begin<const N: usize>(&mut self, columns: &UsedColumns<N>) -> bool {
+    pub(in super::super) fn begin_columns<const N: usize>(&mut self, columns: &UsedColumns<N>) -> bool {
         (self.size, self.rank, self.is_exact) = (0, 0, false);
         if columns.count == 0 || columns.count > NR {
             return false;
@@ -114,7 +114,7 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
         true
     }
 
-    /// Adds a row with the entries of `w` from `first` on, zeros elsewhere.
+    /// Appends a row to `B`: the entries `w` from column `first` of the mechanism on, zeros before them.
     pub(in super::super) fn push_row<const N: usize>(
         &mut self,
         columns: &UsedColumns<N>,
@@ -140,13 +140,16 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
             return;
         }
         let mut is_used = [false; N];
-        for (first, row) in chosen.iter().map(|i| from.row(*i)) {
+        for (first, row) in chosen.iter().map(|i| from.nonzero_part_of_row(*i)) {
             let entries = is_used.iter_mut().skip(first).zip(row);
             entries.for_each(|(is_used, entry)| *is_used |= *entry != T::zero());
         }
         let columns = UsedColumns::of_used_entries(is_used);
-        if self.begin(&columns) {
-            chosen.iter().map(|i| from.row(*i)).for_each(|(first, row)| self.push_row(&columns, first, row));
+        if self.begin_columns(&columns) {
+            chosen
+                .iter()
+                .map(|i| from.nonzero_part_of_row(*i))
+                .for_each(|(first, row)| self.push_row(&columns, first, row));
             self.columns.iter_mut().take(self.rank).for_each(|column| *column = from.columns[*column]);
             self.is_exact = from.is_exact;
         }
@@ -169,12 +172,12 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
     }
 
     /// Returns the number of columns.
-    pub(super) fn rank(&self) -> usize {
+    pub(super) fn column_count(&self) -> usize {
         self.rank
     }
 
     /// Returns the first column of a row that has an entry, and the entries from there to the last.
-    pub(super) fn row(&self, i: usize) -> (usize, &[T]) {
+    pub(super) fn nonzero_part_of_row(&self, i: usize) -> (usize, &[T]) {
         let (first, last) = self.reach[i];
         (first, self.rows[i].get(first..last).unwrap_or_default())
     }
@@ -189,7 +192,7 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
         let ContactBlock { rows, count, entries } = block;
         let (mut first, mut last) = (NR, 0);
         for i in rows.iter().take(*count) {
-            let (start, row) = self.row(*i);
+            let (start, row) = self.nonzero_part_of_row(*i);
             if !row.is_empty() {
                 (first, last) = (first.min(start), last.max(start + row.len()));
             }
@@ -230,7 +233,7 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
     pub(super) fn rates_of_velocity(&self, w: &RowList<T, NR>) -> RowList<T, NR> {
         let mut rates = RowList::repeat_entry(T::zero());
         for (i, rate) in rates.iter_mut().enumerate().take(self.size) {
-            let (first, row) = self.row(i);
+            let (first, row) = self.nonzero_part_of_row(i);
             *rate = dot(row, w.get(first..first + row.len()).unwrap_or_default());
         }
         rates
@@ -241,7 +244,7 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
         let mut w = RowList::repeat_entry(T::zero());
         for (i, impulse) in impulses.iter().enumerate().take(self.size) {
             if *impulse != T::zero() {
-                let (first, row) = self.row(i);
+                let (first, row) = self.nonzero_part_of_row(i);
                 add_multiple(w.get_mut(first..first + row.len()).unwrap_or_default(), *impulse, row);
             }
         }
@@ -250,11 +253,14 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
 
     /// Writes the entries of `w` that impulses change.
     pub(in super::super) fn write_velocity<const N: usize>(&self, impulses: &SVector<T, NR>, w: &mut [T; N]) {
-        self.scatter(&self.velocity_of_impulses(&RowList::new(impulses.data.0[0], T::zero())), w);
+        self.write_all_velocities(
+            &self.velocity_of_impulses(&RowList::new(impulses.data.0[0], T::zero())),
+            w,
+        );
     }
 
     /// Writes the entries of `w` of all columns.
-    pub(super) fn scatter<const N: usize>(&self, own: &RowList<T, NR>, w: &mut [T; N]) {
+    pub(super) fn write_all_velocities<const N: usize>(&self, own: &RowList<T, NR>, w: &mut [T; N]) {
         for (column, value) in self.columns.iter().zip(own.iter()).take(self.rank) {
             if let Some(entry) = w.get_mut(*column) {
                 *entry = *value;
@@ -263,7 +269,7 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
     }
 
     /// Returns the values of `w` for all columns.
-    pub(super) fn gather<const N: usize>(&self, w: &[T; N]) -> RowList<T, NR> {
+    pub(super) fn velocities_of_columns<const N: usize>(&self, w: &[T; N]) -> RowList<T, NR> {
         let mut own = RowList::repeat_entry(T::zero());
         for (value, column) in own.iter_mut().zip(self.columns.iter()).take(self.rank) {
             *value = w.get(*column).copied().unwrap_or(T::zero());
@@ -273,7 +279,7 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
 
     /// Returns the entry of `B Bᵀ` for two rows.
     pub(super) fn row_product(&self, i: usize, j: usize) -> T {
-        let ((first, row), (start, other)) = (self.row(i), self.row(j));
+        let ((first, row), (start, other)) = (self.nonzero_part_of_row(i), self.nonzero_part_of_row(j));
         let from = first.max(start);
         let (row, other) = (row.get(from - first..), other.get(from - start..));
         dot(row.unwrap_or_default(), other.unwrap_or_default())
@@ -283,7 +289,7 @@ impl<T: Real, const NR: usize> BasisRows<T, NR> {
     /// on.
     pub(super) fn largest_magnitude(&self, free: &RowList<T, NR>, impulses: &RowList<T, NR>) -> T {
         let mut w = RowList::<T, NR>::repeat_entry(T::zero());
-        let stored_rows = || (0..self.size).map(|i| self.row(i));
+        let stored_rows = || (0..self.size).map(|i| self.nonzero_part_of_row(i));
         for ((first, row), impulse) in stored_rows().zip(impulses.iter()) {
             if *impulse != T::zero() {
                 w.iter_mut().skip(first).zip(row).for_each(|(w, entry)| *w += (*impulse * *entry).abs());

@@ -60,7 +60,7 @@ struct FrictionCone<T> {
     parts: [TangentRows<T>; PARTS],
     /// Normal impulse that acts in addition and bounds friction as well.
     floor: T,
-    /// Smallest normal rate.
+    /// Smallest permitted normal velocity of the contact after the impulses.
     least: T,
     /// Increase `s` of the normal velocity that makes the contact problem convex.
     raised: T,
@@ -163,7 +163,7 @@ impl<T: Real> FrictionCone<T> {
 
 /// Factorises a symmetric positive definite matrix of `size` rows in place, of which the lower half is read:
 /// `L` with the reciprocals of its diagonal.
-pub(super) fn cholesky<T: Real, const NR: usize>(matrix: &mut RowMatrix<T, NR>, size: usize) {
+pub(super) fn cholesky_in_place<T: Real, const NR: usize>(matrix: &mut RowMatrix<T, NR>, size: usize) {
     for i in 0..size {
         let (done, rest) = matrix.split_at_mut_checked(i).unwrap_or_default();
         let Some(own) = rest.first_mut() else { return };
@@ -212,29 +212,29 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
     /// Returns the first problem of a sequence, which begins without impulses.
     fn new(problem: &'a ContactProblem<T, NK, NR>) -> Self {
         let zeros = RowList::repeat_entry(T::zero());
-        let (cones, count) = problem.cones();
+        let (cones, count) = problem.list_friction_cones();
         let weights = problem.cone_weights(&cones, count);
         Self { problem, cones, count, weights, center: zeros, w: zeros, rates: zeros, impulses: zeros }
     }
 
-    fn cones(&self) -> impl Iterator<Item = &FrictionCone<T>> {
+    fn friction_cones(&self) -> impl Iterator<Item = &FrictionCone<T>> {
         self.cones.iter().take(self.count)
     }
 
     /// Writes the impulses before their projection for contact velocities `rates`.
     fn predict_impulses(&self, cone: &FrictionCone<T>, rates: &RowList<T, NR>, wanted: &mut RowList<T, NR>) {
-        let prediction = |i: usize, rate: T| self.center[i] - rate / self.weights[i];
+        let predicted_impulse = |i: usize, rate: T| self.center[i] - rate / self.weights[i];
         let n = cone.normal;
-        wanted[n] = prediction(n, rates[n] + cone.raised - cone.least);
+        wanted[n] = predicted_impulse(n, rates[n] + cone.raised - cone.least);
         for (_, part) in cone.friction_parts() {
-            (part.first..part.first + part.count).for_each(|i| wanted[i] = prediction(i, rates[i]));
+            (part.first..part.first + part.count).for_each(|i| wanted[i] = predicted_impulse(i, rates[i]));
         }
     }
 
     /// Returns the impulses for contact velocities `rates`.
     fn impulses_at(&self, rates: &RowList<T, NR>) -> RowList<T, NR> {
         let (mut wanted, mut impulses) = (RowList::repeat_entry(T::zero()), RowList::repeat_entry(T::zero()));
-        for cone in self.cones() {
+        for cone in self.friction_cones() {
             self.predict_impulses(cone, rates, &mut wanted);
             cone.write_impulses(&cone.project_impulse(&wanted, &self.weights), &wanted, &mut impulses);
         }
@@ -242,7 +242,7 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
     }
 
     /// Begins at given impulses `Λ`: `Λ̄ = Λ` and `w = Bᵀ Λ`.
-    fn begin(&mut self, impulses: &RowList<T, NR>) {
+    fn begin_at_impulses(&mut self, impulses: &RowList<T, NR>) {
         (self.center, self.w) = (*impulses, self.problem.basis.velocity_of_impulses(impulses));
     }
 
@@ -260,18 +260,19 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
         self.impulses = self.impulses_at(&self.rates);
     }
 
-    /// Makes `matrix` the derivative of the gradient by `w`: `1 + Bᵀ H B`.
+    /// Writes `1 + Bᵀ H B` to `matrix`, the derivative of the gradient with respect to `w`.
     fn write_curvature(&self, matrix: &mut RowMatrix<T, NR>) {
-        let mut ends = set_unit_rows(matrix, self.problem.basis.rank());
+        let mut ends = set_unit_rows(matrix, self.problem.basis.column_count());
         let mut wanted = RowList::repeat_entry(T::zero());
-        for cone in self.cones() {
+        for cone in self.friction_cones() {
             self.predict_impulses(cone, &self.rates, &mut wanted);
             let block = self.cone_block(cone, &wanted);
             self.problem.basis.add_block(&block, matrix, &mut ends);
         }
     }
 
-    /// Returns the block of `H` of a cone, with the impulses `wanted` before their projection.
+    /// Returns the block of the matrix `H` that belongs to one friction cone. `wanted` are the impulses
+    /// before their projection onto the cone.
     fn cone_block(&self, cone: &FrictionCone<T>, wanted: &RowList<T, NR>) -> ContactBlock<T> {
         let (found, one, none) = (cone.project_impulse(wanted, &self.weights), T::one(), T::zero());
         let mut block = ContactBlock::new(cone.normal);
@@ -319,7 +320,7 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
     /// Takes steps of Newton's method, at most this number, until the gradient is below a part of `w`;
     /// returns their number.
     fn minimise_by_newton(&mut self, matrix: &mut RowMatrix<T, NR>, most: usize, enough: T) -> usize {
-        let (rank, size) = (self.problem.basis.rank(), self.problem.size);
+        let (rank, size) = (self.problem.basis.column_count(), self.problem.size);
         let little = epsilon::<T>().powf(constant(0.72));
         let largest_magnitude = |x: &RowList<T, NR>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
         for step in 0..most {
@@ -331,7 +332,7 @@ impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR>
             self.problem.count_iteration();
             let mut change = gradient;
             self.write_curvature(matrix);
-            cholesky(matrix, rank);
+            cholesky_in_place(matrix, rank);
             substitute_factor(matrix, rank, &mut change);
             let rates = self.problem.basis.rates_of_velocity(&change);
             let slope_at = |part: T| {
@@ -379,7 +380,7 @@ fn step_by_slope<T: Real>(start: T, slope: impl Fn(T) -> T) -> T {
 
 impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns the friction cones, and their number.
-    fn cones(&self) -> (TotalArray<FrictionCone<T>, NK>, usize) {
+    fn list_friction_cones(&self) -> (TotalArray<FrictionCone<T>, NK>, usize) {
         let none = TangentRows { first: 0, count: 0, friction: T::zero() };
         let cone = FrictionCone {
             normal: 0,
@@ -434,7 +435,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let mut convex = ConvexProblem::new(self);
         let weights = convex.weights;
         let mut best = self.tried_impulses(*start);
-        convex.begin(start);
+        convex.begin_at_impulses(start);
         if (0..self.size).any(|i| start[i] != T::zero()) {
             convex.raise_normal_rates(&best.rates);
         }

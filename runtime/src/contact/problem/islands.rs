@@ -54,7 +54,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         for k in 0..self.count {
             let mut known = if self.is_gap(k) { None } else { Some(own[self.pressed_by[k]]) };
             for i in self.all_rows_of(k) {
-                let (start, row) = self.basis.row(i);
+                let (start, row) = self.basis.nonzero_part_of_row(i);
                 for (column, _) in (start..).zip(row).filter(|(_, entry)| **entry != T::zero()) {
                     let known = known.get_or_insert(column);
                     if earlier[column] == *known {
@@ -116,7 +116,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         start: Option<&RowList<T, NR>>,
         impulses: &mut RowList<T, NR>,
     ) {
-        let mut own = ContactProblem::<T, GK, GR>::empty(self.is_relaxed);
+        let mut own = ContactProblem::<T, GK, GR>::without_contacts(self.is_relaxed);
         for k in (0..self.count).filter(|k| group[*k] == g) {
             let (c, first, Rows { count, .. }) = (own.count, own.size, self.rows[k]);
             let by = (0..c).find(|c| own.contacts[*c].0 == self.pressed_by[k]).unwrap_or(c);

@@ -4,7 +4,7 @@ use super::super::Touch;
 use super::super::total::TotalArray;
 use super::banded::set_unit_rows;
 use super::basis::ContactBlock;
-use super::{ContactProblem, ROUNDINGS, RowList, RowMatrix, entry};
+use super::{ContactProblem, ROUNDINGS, RowList, RowMatrix, entry_or_zero};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use core::ops::Range;
@@ -38,7 +38,7 @@ enum MatrixContent {
 }
 
 impl<T: Real, const NR: usize> ImpulseEquations<T, NR> {
-    /// Returns workspace without content.
+    /// Returns a workspace that contains no matrix yet.
     pub(in super::super) fn new() -> Self {
         Self { matrix: None, content: MatrixContent::Other }
     }
@@ -57,7 +57,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         self.impulses_closing_with(kept, &mut ImpulseEquations::new())
     }
 
-    /// Computes the impulses of [`together`](Self::together) with a given workspace.
+    /// Computes the impulses of [`impulses_closing`](Self::impulses_closing) with a given workspace.
     pub(super) fn impulses_closing_with(
         &self,
         kept: &TotalArray<bool, NK>,
@@ -81,7 +81,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let (held, size) = self.held_rows(&TotalArray::repeat_entry(true));
         let mut wanted = RowList::repeat_entry(T::zero());
         for (wanted, place) in wanted.iter_mut().zip(self.places.iter()).take(self.size) {
-            *wanted = entry(changes, *place);
+            *wanted = entry_or_zero(changes, *place);
         }
         self.impulses_reaching((&held, size), (&RowList::repeat_entry(T::zero()), &wanted), equations, 2)
     }
@@ -284,7 +284,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let _ = set_unit_rows(&mut system, self.size);
         for k in 0..self.count {
             let (n, tangents) = self.rows_of_contact(k);
-            let slip_at = |i: usize| entry(rates, places[i]);
+            let slip_at = |i: usize| entry_or_zero(rates, places[i]);
             let speed = tangents.clone().fold(T::zero(), |sum, i| sum + slip_at(i) * slip_at(i)).sqrt();
             for i in self.all_rows_of(k) {
                 if i == n || !slips[k] {
@@ -315,8 +315,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         system
     }
 
-    /// Returns the derivatives of the contact forces of [`hold`](Self::hold) with respect to the contact
-    /// accelerations without forces.
+    /// Returns the derivatives of the contact forces of [`forces_in_modes`](Self::forces_in_modes) with
+    /// respect to the contact accelerations without forces.
     pub(in super::super) fn force_derivatives(
         &self,
         touches: &[Touch; NK],
@@ -363,8 +363,8 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         all
     }
 
-    /// Returns the derivatives of [`answers`](Self::answers) if no contact slides and the rows are
-    /// independent: `−W⁻¹`; otherwise `None`.
+    /// Returns the derivatives of [`force_derivatives`](Self::force_derivatives) if no contact slides and the
+    /// rows are independent: `−W⁻¹`; otherwise `None`.
     fn independent_force_derivatives(&self, slips: &TotalArray<bool, NK>) -> Option<SMatrix<T, NR, NR>> {
         let is_regular_sticking = |k: usize| !slips[k] && self.step[k] > T::zero();
         let mut system = zero_matrix();
@@ -405,7 +405,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Writes `1 + Bᵀ R⁻¹ B` into `matrix`, with the regularisation `R` of nearly dependent rows.
     pub(super) fn fill_regularised(&self, matrix: &mut RowMatrix<T, NR>) {
-        let mut ends = set_unit_rows(matrix, self.basis.rank());
+        let mut ends = set_unit_rows(matrix, self.basis.column_count());
         let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weight_entry(i, i)));
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
             let (n, _) = self.rows_of_contact(k);
@@ -425,7 +425,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         epsilon::<T>().sqrt()
     }
 
-    /// Solves equations among all rows in place, as [`eliminate`] does.
+    /// Solves equations among all rows in place, as [`eliminate_with_pivots`] does.
     fn eliminate_all_rows<const N: usize>(
         &self,
         system: &mut RowMatrix<T, NR>,
@@ -527,7 +527,7 @@ fn factorise_symmetric<T: Real, const NR: usize>(
     true
 }
 
-/// Replaces `p` by the solution `x` of `Uᵀ D U x = p`, with the factors of [`factorise`].
+/// Replaces `p` by the solution `x` of `Uᵀ D U x = p`, with the factors of [`factorise_symmetric`].
 fn substitute_factors<T: Real, const NR: usize>(u: &RowMatrix<T, NR>, size: usize, x: &mut RowList<T, NR>) {
     for j in 0..size {
         let value = x[j] * u[j][j];

@@ -16,7 +16,7 @@ use super::{ContactProblem, RowList, RowMatrix};
 use crate::Real;
 use crate::private::{constant, epsilon};
 
-/// Maximum number of iterations.
+/// Maximum number of iterations of Newton's method.
 const STEPS: usize = 16;
 /// Maximum number of iterations that increase the residual.
 const RISES: usize = 3;
@@ -78,8 +78,9 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         self.tried_impulses(best.1)
     }
 
-    /// Returns the result of [`newton`](Self::newton) from impulses that satisfy the contact conditions for
-    /// the coefficients of friction `before`: the first step assumes the contact modes of these impulses.
+    /// Returns the result of [`newton_impulses`](Self::newton_impulses) from impulses that satisfy the
+    /// contact conditions for the coefficients of friction `before`: the first step assumes the contact modes
+    /// of these impulses.
     pub(super) fn follow_modes(
         &self,
         start: RowList<T, NR>,
@@ -117,24 +118,25 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let constant_part = self.impulse_changes(trial, &RowList::repeat_entry(T::zero()));
         let mut change = self.basis.velocity_of_impulses(&constant_part);
         let mut ends = self.fill_derivative(trial, matrix);
-        eliminate_banded(matrix, (&mut change, &mut ends), self.basis.rank());
+        eliminate_banded(matrix, (&mut change, &mut ends), self.basis.column_count());
         self.impulse_changes(trial, &self.basis.rates_of_velocity(&change))
     }
 
-    /// Makes `matrix` `1 + Bᵀ H B`, and returns the index behind the last entry of each row.
+    /// Writes `1 + Bᵀ H B` to `matrix`, and returns the index behind the last entry of each row.
     fn fill_derivative(
         &self,
         trial: &ImpulseTrial<T, NK, NR>,
         matrix: &mut RowMatrix<T, NR>,
     ) -> RowList<usize, NR> {
-        let mut ends = set_unit_rows(matrix, self.basis.rank());
+        let mut ends = set_unit_rows(matrix, self.basis.column_count());
         for k in (0..self.count).filter(|k| self.is_gap(*k)) {
             self.basis.add_block(&self.derivative_block(trial, k), matrix, &mut ends);
         }
         ends
     }
 
-    /// Returns the block of `H` of a contact.
+    /// Returns one contact's block of the matrix `H` in `ΔΛ = c − H B Δw`: changes of its impulses by changes
+    /// of its contact velocities.
     fn derivative_block(&self, trial: &ImpulseTrial<T, NK, NR>, k: usize) -> ContactBlock<T> {
         let presses = self.is_pressed(trial, k);
         let pressed = if presses { self.impulse_stiffness(k) } else { T::zero() };
@@ -156,7 +158,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                     for (i, d) in (first..first + tangents.len()).zip(direction) {
                         block.add_entry(i, 0, pressed * self.friction[part] * d);
                     }
-                    let (bound, factor) = self.across_slip(trial, part, size);
+                    let (bound, factor) = self.sliding_bound_and_factor(trial, part, size);
                     if tangents.len() == 2 && bound > T::zero() {
                         let [x, y] = direction;
                         block.add_product(first, bound / size * factor, [-y, x]);
@@ -189,7 +191,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                     let along = normal * self.friction[k];
                     let i = tangents.start;
                     if tangents.len() == 2 {
-                        let (bound, factor) = self.across_slip(trial, k, size);
+                        let (bound, factor) = self.sliding_bound_and_factor(trial, k, size);
                         let cross_component = |list: &RowList<T, NR>| x * list[i + 1] - y * list[i];
                         let across = cross_component(impulses)
                             - (cross_component(now) + bound / size * cross_component(rates)) * factor;
@@ -209,14 +211,15 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         trial.modes[k].0 > T::zero() && self.step[k] > T::zero()
     }
 
-    /// Returns `1/ε` of a contact.
+    /// Returns `1/ε` of a contact: the impulse per contact velocity in the regularised equation
+    /// `u + ε ΔΛ = 0`.
     fn impulse_stiffness(&self, k: usize) -> T {
         self.step[k] * self.scale / self.impulse_regularisation()
     }
 
     /// Returns the friction bound of a sliding contact, whose tangential impulse before the projection has
     /// the magnitude `size`, and the factor of the slip velocity across its direction.
-    fn across_slip(&self, trial: &ImpulseTrial<T, NK, NR>, k: usize, size: T) -> (T, T) {
+    fn sliding_bound_and_factor(&self, trial: &ImpulseTrial<T, NK, NR>, k: usize, size: T) -> (T, T) {
         let bound = self.friction[k] * self.bearing_impulse(k, trial.modes[k].0);
         (bound, self.step[k] * self.scale / (T::one() - bound / size + self.impulse_regularisation()))
     }

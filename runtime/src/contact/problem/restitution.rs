@@ -1,7 +1,7 @@
 //! Restitution phase of an impact after its compression phase, and the energy of both.
 
 use super::super::{Law, Restitution, Rows};
-use super::{ContactProblem, ROUNDINGS, RowList, entry};
+use super::{ContactProblem, ROUNDINGS, RowList, entry_or_zero};
 use crate::Real;
 use crate::private::{constant, epsilon, positive_part};
 use nalgebra::SVector;
@@ -22,16 +22,16 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             let (contact, Rows { first, .. }) = self.contacts[k];
             let poisson =
                 |law: &Law<T>| law.hypothesis == Restitution::Poisson && law.restitution > T::zero();
-            laws.get(contact).is_some_and(poisson) && entry(before, first) < T::zero()
+            laws.get(contact).is_some_and(poisson) && entry_or_zero(before, first) < T::zero()
         };
         if !(0..self.count).any(|k| self.is_gap(k) && bounces_by_impulse(k)) {
             return Ok(());
         }
         let places = self.places;
         for i in 0..self.size {
-            self.free[i] = entry(before, places[i]);
+            self.free[i] = entry_or_zero(before, places[i]);
         }
-        let found = self.solve();
+        let found = self.solve_impulses();
         self.free = self.given;
         self.compression = self.accept_if_relaxed(found)?;
         self.is_compressed = true;
@@ -56,7 +56,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 .map_or((none, Restitution::Newton), |law| (law.restitution, law.hypothesis));
             let n = self.rows[k].first;
             (self.least[k], self.floor[k]) = match law {
-                (e, Restitution::Newton) => ((-(e * part * entry(before, first))).max(none), none),
+                (e, Restitution::Newton) => ((-(e * part * entry_or_zero(before, first))).max(none), none),
                 (e, Restitution::Poisson) => (none, e * part * self.compression[n]),
             };
             self.base[n] += self.floor[k];

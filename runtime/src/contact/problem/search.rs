@@ -54,7 +54,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     ///
     /// The contact of the mechanism whose conditions are violated most, if by more than half of the digits;
     /// [`closest`](Self::closest) then has the impulses that violate them least of all that were found.
-    pub(in super::super) fn solve(&mut self) -> Result<RowList<T, NR>, usize> {
+    pub(in super::super) fn solve_impulses(&mut self) -> Result<RowList<T, NR>, usize> {
         self.solve_from(None, &mut ImpulseEquations::new())
     }
 

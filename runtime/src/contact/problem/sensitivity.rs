@@ -8,7 +8,7 @@ use super::super::total::TotalArray;
 use super::banded::set_unit_rows;
 use super::linear::{independence_threshold, zero_matrix};
 use super::trial::ContactMode;
-use super::{ContactProblem, RowList, RowMatrix, entry};
+use super::{ContactProblem, RowList, RowMatrix, entry_or_zero};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
@@ -66,7 +66,7 @@ impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
 
     /// Factorises the system by Gaussian elimination with pivots of the columns, and stores the inverses of
     /// the pivots. Impulses without a pivot stay constant. Returns false if rows depend on each other.
-    fn factorise(&mut self) -> bool {
+    fn factorise_with_pivots(&mut self) -> bool {
         let Self { system, factors, pivots: exchanges, size, .. } = self;
         let mut is_regular = true;
         for column in 0..*size {
@@ -181,7 +181,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
 
     /// Returns the linearised equations of impulses, and true if no contact slides or separates. A contact
     /// at the edge of two modes has that of sticking, or of separation.
-    pub(in super::super) fn linearised(
+    pub(in super::super) fn linearised_impulse_equations(
         &self,
         impulses: &RowList<T, NR>,
     ) -> (LinearisedImpulses<T, NR>, bool) {
@@ -257,14 +257,14 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     pub(in super::super) fn diagonal_of_rows(&self, held: &ChosenRows<NR>) -> SMatrix<T, NR, NR> {
         let mut chosen = SVector::<T, NR>::zeros();
         for i in (0..self.size).filter(|i| held[*i]) {
-            super::put(&mut chosen, self.places[i], T::one());
+            super::set_entry(&mut chosen, self.places[i], T::one());
         }
         SMatrix::from_diagonal(&chosen)
     }
 
     /// Returns impulses, without those of compression, at the rows of the mechanism.
     pub(in super::super) fn spread_without_compression(&self, impulses: &RowList<T, NR>) -> SVector<T, NR> {
-        self.scatter(impulses)
+        self.spread_to_mechanism_rows(impulses)
     }
 
     /// Adds the equations `W δΛ = −δE` at the rows `held`, and factorises the system.
@@ -276,14 +276,14 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
             count += 1;
         }
         equations.factors = equations.system;
-        equations.is_dependent = count > self.velocities || !equations.factorise();
+        equations.is_dependent = count > self.velocities || !equations.factorise_with_pivots();
         if equations.is_dependent {
             equations.factors = equations.system;
             let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weight_entry(i, i)));
             for i in (0..self.size).filter(|i| held[*i]) {
                 equations.factors[i][i] += reach * constant(LIFT);
             }
-            equations.factorise();
+            equations.factorise_with_pivots();
         }
     }
 
@@ -326,7 +326,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 }
             }
             for i in tangents {
-                super::put(&mut found.impulses, self.places[i], difference_across(i) * half);
+                super::set_entry(&mut found.impulses, self.places[i], difference_across(i) * half);
             }
         }
         found
@@ -338,7 +338,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let mut factors = SVector::zeros();
         for k in (0..self.count).filter(|k| self.is_gap(*k) && self.least[*k] > T::zero()) {
             let row = self.places[self.rows[k].first];
-            super::put(&mut factors, row, self.least[k] / entry(before, row));
+            super::set_entry(&mut factors, row, self.least[k] / entry_or_zero(before, row));
         }
         factors
     }
@@ -358,7 +358,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let moved = pushes.map(|pushes| self.velocity_changes(&pushes));
         let (mut closed, mut kept) = (ChosenRows::repeat_entry(false), ChosenRows::repeat_entry(false));
         for k in (0..self.count).filter(|k| self.is_gap(*k) && self.step[*k] > T::zero()) {
-            let (n, gap) = (self.rows[k].first, entry(gaps, self.contacts[k].0));
+            let (n, gap) = (self.rows[k].first, entry_or_zero(gaps, self.contacts[k].0));
             let push = pushes.map_or(T::zero(), |pushes| pushes[n]);
             let left = gap + moved.map_or(T::zero(), |moved| moved[n]);
             let is_shut = left.abs() <= enough.max(gap.abs() * constant(0.5));

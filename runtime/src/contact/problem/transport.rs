@@ -1,9 +1,9 @@
 //! Contact forces that rotate in a step: corrections that make the impulses of a step of second order.
 
 use super::super::response::{CholeskyFactor, ImpulseEffects};
-use super::convex::{cholesky, substitute_factor};
+use super::convex::{cholesky_in_place, substitute_factor};
 use super::linear::{ImpulseEquations, zero_matrix};
-use super::{ContactProblem, RowList, entry};
+use super::{ContactProblem, RowList, entry_or_zero};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
@@ -36,7 +36,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         let half = constant::<T>(0.5);
         let mut impulses = None;
         let sliding = recorded.filter(|recorded| self.slip_correction(recorded, rates).is_some());
-        let is_redundant = self.size > self.basis.rank();
+        let is_redundant = self.size > self.basis.column_count();
         let (mut correction, changes) = match effects {
             ImpulseEffects::Factor(factor) if recorded.is_some() && sliding.is_none() && is_redundant => {
                 self.unreached_velocity(given, factor)
@@ -45,13 +45,13 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
                 let (found, is_regular) = self.impulses_for(rates, equations);
                 impulses = Some(found);
                 let velocity_by_impulses =
-                    |impulses| effects.velocity_change(&self.basis, &self.scatter(impulses));
+                    |impulses| effects.velocity_change(&self.basis, &self.spread_to_mechanism_rows(impulses));
                 let mut correction = (given - velocity_by_impulses(&found)) * half;
                 let mut changes = RowList::<T, NR>::repeat_entry(T::zero());
                 if !is_regular {
                     let changed = self.velocity_changes(&found);
                     for i in 0..self.size {
-                        changes[i] = (entry(rates, self.places[i]) - changed[i]) * half;
+                        changes[i] = (entry_or_zero(rates, self.places[i]) - changed[i]) * half;
                     }
                 }
                 let at_start = match is_regular {
@@ -87,17 +87,17 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         v: &SVector<T, NV>,
         factor: &CholeskyFactor<T, NV>,
     ) -> (SVector<T, NV>, RowList<T, NR>) {
-        let (rank, half) = (self.basis.rank(), constant::<T>(0.5));
+        let (rank, half) = (self.basis.column_count(), constant::<T>(0.5));
         let mut matrix = zero_matrix();
         self.fill_regularised(&mut matrix);
-        cholesky(&mut matrix, rank);
+        cholesky_in_place(&mut matrix, rank);
         let mut all = factor.multiply_upper(&v.data.0[0]);
-        let mut rest = self.basis.gather(&all);
+        let mut rest = self.basis.velocities_of_columns(&all);
         substitute_factor(&matrix, rank, &mut rest);
         substitute_factor(&matrix, rank, &mut rest);
         rest.iter_mut().take(rank).for_each(|x| *x *= half);
         all.iter_mut().for_each(|x| *x *= half);
-        self.basis.scatter(&rest, &mut all);
+        self.basis.write_all_velocities(&rest, &mut all);
         (SVector::from(factor.solve_upper(all)), self.basis.rates_of_velocity(&rest))
     }
 
@@ -108,7 +108,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         rates: &SVector<T, NR>,
         equations: &mut ImpulseEquations<T, NR>,
     ) -> RowList<T, NR> {
-        let missing = rates - self.scatter(&self.velocity_changes(others));
+        let missing = rates - self.spread_to_mechanism_rows(&self.velocity_changes(others));
         let (mut all, _) = self.impulses_for(&missing, equations);
         all.iter_mut().zip(others.iter()).for_each(|(impulse, other)| *impulse += *other);
         all
@@ -117,13 +117,17 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns values at the rows of the mechanism at the rows of closed contacts.
     pub(in super::super) fn gather_closed_rows(&self, all: &SVector<T, NR>) -> RowList<T, NR> {
         let mut gathered = RowList::repeat_entry(T::zero());
-        gathered.iter_mut().zip(self.places.iter()).take(self.size).for_each(|(to, i)| *to = entry(all, *i));
+        gathered
+            .iter_mut()
+            .zip(self.places.iter())
+            .take(self.size)
+            .for_each(|(to, i)| *to = entry_or_zero(all, *i));
         gathered
     }
 
     /// Impulses that change the rates of the mechanism by `changes`.
     pub(in super::super) fn impulses_for_changes(&self, changes: &SVector<T, NR>) -> SVector<T, NR> {
-        self.scatter(&self.impulses_for(changes, &mut ImpulseEquations::new()).0)
+        self.spread_to_mechanism_rows(&self.impulses_for(changes, &mut ImpulseEquations::new()).0)
     }
 
     /// Half of the difference of friction impulses from those against the slip at the end of the step, for
@@ -133,7 +137,7 @@ impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
         for k in (0..self.count).filter(|k| self.friction[*k] > T::zero()) {
             let (n, tangents) = self.rows_of_contact(k);
             let largest = self.friction[k] * impulses[n];
-            let slip_at_end = |i: usize| self.free[i] + entry(rates, self.places[i]);
+            let slip_at_end = |i: usize| self.free[i] + entry_or_zero(rates, self.places[i]);
             let speed =
                 tangents.clone().fold(T::zero(), |sum, i| sum + slip_at_end(i) * slip_at_end(i)).sqrt();
             // Friction of a step stops what is slower.

@@ -77,7 +77,7 @@ fn table_lists_every_euler_sequence() {
 
 #[test]
 fn sequence_is_product_of_axis_rotations() {
-    let mut random = Random(1);
+    let mut random = RandomNumbers(1);
     for sequence in EulerSequence::ALL {
         for _ in 0..50 {
             let [a, b, c] = random.random_numbers().map(|x: f64| 4.0 * x);
@@ -102,7 +102,7 @@ fn sequence_is_product_of_axis_rotations() {
 
 #[test]
 fn euler_angles_reproduce_random_rotations() {
-    let mut random = Random(2);
+    let mut random = RandomNumbers(2);
     for sequence in EulerSequence::ALL {
         for _ in 0..500 {
             let rotation = random.random_rotation();
@@ -137,7 +137,7 @@ fn nearly_singular_angles(sequence: EulerSequence) -> impl Iterator<Item = f64> 
 
 #[test]
 fn angles_near_gimbal_lock_reproduce_rotation() {
-    let mut random = Random(3);
+    let mut random = RandomNumbers(3);
     for sequence in EulerSequence::ALL {
         for middle in nearly_singular_angles(sequence) {
             for _ in 0..20 {
@@ -168,7 +168,7 @@ fn angles_near_gimbal_lock_reproduce_rotation() {
 
 #[test]
 fn noisy_rotations_at_gimbal_lock_convert_back() {
-    let mut random = Random(4);
+    let mut random = RandomNumbers(4);
     for sequence in EulerSequence::ALL {
         for middle in nearly_singular_angles(sequence) {
             let rotation = sequence.rotation([0.7, middle, -0.4]);
@@ -200,7 +200,7 @@ fn gimbal_lock_uses_first_angle_alone() {
 
 #[test]
 fn single_precision_angles_convert_back() {
-    let mut random = Random(5);
+    let mut random = RandomNumbers(5);
     for sequence in EulerSequence::ALL {
         let singular = if sequence.is_symmetric() { 0.0 } else { FRAC_PI_2 };
         for offset in [0.0, 1e-8, 1e-6, 1e-3, 1.0] {

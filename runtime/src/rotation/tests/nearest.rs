@@ -3,7 +3,7 @@ use crate::rotation::*;
 
 #[test]
 fn rotation_is_its_own_nearest_rotation() {
-    let mut random = Random(31);
+    let mut random = RandomNumbers(31);
     for _ in 0..500 {
         let rotation = random.random_rotation();
         for scale in [1e-300, 1e-3, 1.0, 7.0, 1e300] {
@@ -16,7 +16,7 @@ fn rotation_is_its_own_nearest_rotation() {
 
 #[test]
 fn nearest_rotation_minimises_distance() {
-    let mut random = Random(32);
+    let mut random = RandomNumbers(32);
     for noise in [1e-12, 1e-6, 1e-2, 0.3, 2.0] {
         for _ in 0..100 {
             let rotation = random.random_rotation();
@@ -41,7 +41,7 @@ fn nearest_rotation_minimises_distance() {
 
 #[test]
 fn nearest_rotation_removes_symmetric_noise() {
-    let mut random = Random(33);
+    let mut random = RandomNumbers(33);
     let rotation = random.random_rotation();
     let noise = Matrix3::from_fn(|_, _| 1e-8 * random.random_number());
     let found = nearest_rotation(&(rotation.matrix() + rotation.matrix() * noise)).unwrap();
@@ -51,7 +51,7 @@ fn nearest_rotation_removes_symmetric_noise() {
 
 #[test]
 fn nearest_rotation_requires_rank_two() {
-    let mut random = Random(34);
+    let mut random = RandomNumbers(34);
     let (r, s) = (random.random_rotation(), random.random_rotation());
     let matrix_with_singular_values =
         |values: [f64; 3]| r.matrix() * Matrix3::from_diagonal(&values.into()) * s.matrix();

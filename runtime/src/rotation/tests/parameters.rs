@@ -28,7 +28,7 @@ const ANGLES: [f64; 19] = [
 
 #[test]
 fn exponential_equals_rodrigues_formula() {
-    let mut random = Random(21);
+    let mut random = RandomNumbers(21);
     for angle in ANGLES.into_iter().chain([4.0, TAU, 7.0, 100.0]) {
         for _ in 0..20 {
             let axis = Unit::new_normalize(random.random_axis());
@@ -62,7 +62,7 @@ fn exponential_equals_rodrigues_formula() {
 
 #[test]
 fn logarithm_inverts_the_exponential() {
-    let mut random = Random(22);
+    let mut random = RandomNumbers(22);
     for angle in ANGLES {
         for _ in 0..50 {
             let axis = random.random_axis();
@@ -89,7 +89,7 @@ fn logarithm_inverts_the_exponential() {
 
 #[test]
 fn eigenaxis_is_found_for_all_angles() {
-    let mut random = Random(23);
+    let mut random = RandomNumbers(23);
     for angle in ANGLES.into_iter().filter(|angle| *angle > 0.0) {
         for _ in 0..50 {
             let axis = Unit::new_normalize(random.random_axis());
@@ -136,7 +136,7 @@ fn half_turns_about_all_axes_are_found() {
 
 #[test]
 fn all_parameters_represent_the_same_rotation() {
-    let mut random = Random(24);
+    let mut random = RandomNumbers(24);
     let turns = ANGLES.into_iter().flat_map(|angle| [(); 20].map(|()| angle));
     for angle in turns {
         let vector = RotationVector(random.random_axis() * angle);
@@ -204,7 +204,7 @@ fn shadow_of_zero_vector_is_an_error() {
 
 #[test]
 fn cayley_transform_is_matrix_quotient() {
-    let mut random = Random(25);
+    let mut random = RandomNumbers(25);
     for _ in 0..100 {
         let skew = random.random_vector().cross_matrix() * 2.0;
         let quotient = (Matrix3::identity() + skew) * (Matrix3::identity() - skew).try_inverse().unwrap();
@@ -223,7 +223,7 @@ fn cayley_transform_is_matrix_quotient() {
 
 #[test]
 fn vector_composition_matches_rotations() {
-    let mut random = Random(26);
+    let mut random = RandomNumbers(26);
     for _ in 0..500 {
         let (p, q) = (random.random_quaternion(), random.random_quaternion());
         let product = (p * q).to_rotation_matrix();

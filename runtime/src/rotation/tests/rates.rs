@@ -9,7 +9,7 @@ const LENGTHS: [f64; 15] =
 
 #[test]
 fn euler_angle_rates_give_angular_velocity() {
-    let mut random = Random(11);
+    let mut random = RandomNumbers(11);
     for sequence in EulerSequence::ALL {
         for _ in 0..20 {
             let (angles, rates) = (random.random_vector() * 3.0, random.random_vector());
@@ -34,7 +34,7 @@ fn euler_angle_rates_give_angular_velocity() {
 
 #[test]
 fn euler_rates_invert_angular_velocity() {
-    let mut random = Random(12);
+    let mut random = RandomNumbers(12);
     for sequence in EulerSequence::ALL {
         for offset in [1e-14, 1e-10, 1e-6, 1e-3, 0.3, 1.0] {
             for _ in 0..20 {
@@ -91,7 +91,7 @@ fn gimbal_lock_is_reported() {
 
 #[test]
 fn matrix_and_quaternion_rates_match_motion() {
-    let mut random = Random(13);
+    let mut random = RandomNumbers(13);
     for _ in 0..200 {
         let (q, omega) = (random.random_quaternion(), random.random_vector());
         let rotation = q.to_rotation_matrix();
@@ -142,7 +142,7 @@ fn angular_velocity_of_motion(f: impl Fn(f64) -> UnitQuaternion<f64>) -> Vector3
 
 #[test]
 fn rotation_vector_rates_match_motion() {
-    let mut random = Random(14);
+    let mut random = RandomNumbers(14);
     for length in LENGTHS {
         for _ in 0..20 {
             let vector = RotationVector(random.random_axis() * length);
@@ -185,7 +185,7 @@ fn rotation_vector_rates_match_motion() {
 
 #[test]
 fn gibbs_vector_rates_match_motion() {
-    let mut random = Random(15);
+    let mut random = RandomNumbers(15);
     for size in [0.0, 1e-200, 1e-9, 0.1, 1.0, 3.0, 1e3, 1e8] {
         for _ in 0..20 {
             let g = Gibbs(random.random_axis() * size);
@@ -215,7 +215,7 @@ fn gibbs_vector_rates_match_motion() {
 
 #[test]
 fn modified_rodrigues_rates_match_motion() {
-    let mut random = Random(16);
+    let mut random = RandomNumbers(16);
     for size in [0.0, 1e-200, 1e-9, 0.1, 0.9, 1.0, 1.1, 3.0, 1e3, 1e6] {
         for _ in 0..20 {
             let sigma = Mrp(random.random_axis() * size);
