@@ -16,7 +16,7 @@ pub struct Section {
     pub equations: &'static str,
     /// Tables of results of the section.
     pub tables: Vec<Table>,
-    /// Checks of the section's results.
+    /// Comparisons of the results in a section of the report with expected values.
     pub checks: Vec<Check>,
     /// Animated scenes of the section.
     pub scenes: Vec<Scene>,

@@ -26,7 +26,7 @@ pub(crate) struct DoubleDouble {
 }
 
 impl DoubleDouble {
-    /// Normalises the sum of a number and a smaller one.
+    /// Returns the sum of a number and a smaller one as a double-double number.
     fn from_sum(high: f64, low: f64) -> Self {
         let sum = high + low;
         Self { high: sum, low: low - (sum - high) }

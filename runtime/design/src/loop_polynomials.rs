@@ -28,15 +28,15 @@ impl ErrorBoundedCoefficient {
         Self { value: value.into(), error: 0.0 }
     }
 
-    fn plus(self, other: Self) -> Self {
+    fn plus_coefficient(self, other: Self) -> Self {
         Self { value: self.value + other.value, error: self.error + other.error }
     }
 
-    fn minus(self, other: Self) -> Self {
+    fn minus_coefficient(self, other: Self) -> Self {
         Self { value: self.value - other.value, error: self.error + other.error }
     }
 
-    fn times(self, other: Self) -> Self {
+    fn times_coefficient(self, other: Self) -> Self {
         let [one, two] = [self, other].map(|c| c.value.value().abs());
         let error = one * other.error + self.error * (two + other.error);
         Self { value: self.value * other.value, error }
@@ -80,20 +80,20 @@ impl PolynomialTerms {
         )
     }
 
-    fn plus(&self, other: &Self) -> Self {
-        self.combine_terms(other, ErrorBoundedCoefficient::plus)
+    fn plus_polynomial(&self, other: &Self) -> Self {
+        self.combine_terms(other, ErrorBoundedCoefficient::plus_coefficient)
     }
 
-    fn minus(&self, other: &Self) -> Self {
-        self.combine_terms(other, ErrorBoundedCoefficient::minus)
+    fn minus_polynomial(&self, other: &Self) -> Self {
+        self.combine_terms(other, ErrorBoundedCoefficient::minus_coefficient)
     }
 
-    fn times(&self, other: &Self) -> Self {
+    fn times_polynomial(&self, other: &Self) -> Self {
         let mut product =
             vec![ErrorBoundedCoefficient::default(); (self.0.len() + other.0.len()).saturating_sub(1)];
         for (i, a) in self.0.iter().enumerate() {
             for (j, b) in other.0.iter().enumerate() {
-                product[i + j] = product[i + j].plus(a.times(*b));
+                product[i + j] = product[i + j].plus_coefficient(a.times_coefficient(*b));
             }
         }
         Self(product)
@@ -103,14 +103,18 @@ impl PolynomialTerms {
         Self(std::iter::once(ErrorBoundedCoefficient::default()).chain(self.0.iter().copied()).collect())
     }
 
-    fn derivative(&self) -> Self {
+    fn derivative_of_polynomial(&self) -> Self {
         let terms = self.0.iter().enumerate().skip(1);
-        Self(terms.map(|(k, c)| c.times(ErrorBoundedCoefficient::exact_coefficient(k as f64))).collect())
+        Self(
+            terms
+                .map(|(k, c)| c.times_coefficient(ErrorBoundedCoefficient::exact_coefficient(k as f64)))
+                .collect(),
+        )
     }
 
     /// Returns the value of the polynomial at `x`. If `x` is above one, the value is divided by `x` to the
     /// power `degree`, to avoid overflow.
-    fn evaluate(&self, x: f64, degree: usize) -> ErrorBoundedCoefficient {
+    fn evaluate_scaled(&self, x: f64, degree: usize) -> ErrorBoundedCoefficient {
         let start = ErrorBoundedCoefficient::default();
         let horner_step = |sum: ErrorBoundedCoefficient, (c, by): (ErrorBoundedCoefficient, DoubleDouble)| {
             ErrorBoundedCoefficient {
@@ -131,7 +135,7 @@ impl PolynomialTerms {
 
     /// Returns the value of the polynomial at `x` up to a positive factor, to determine its sign.
     fn sign_at(&self, x: f64) -> f64 {
-        self.evaluate(x, self.0.len().saturating_sub(1)).value.value()
+        self.evaluate_scaled(x, self.0.len().saturating_sub(1)).value.value()
     }
 
     /// Returns points between which the polynomial is monotonic, ascending: bounds of all positive roots, and
@@ -156,7 +160,7 @@ impl PolynomialTerms {
         let (low, high) = (0.4 * low.exp(), 2.5 * high.exp());
         // One change of sign is one root.
         let changes = signs.windows(2).filter(|pair| pair[0] * pair[1].signum() < 0.0).count();
-        let inner = if changes == 1 { Vec::new() } else { self.derivative().positive_roots() };
+        let inner = if changes == 1 { Vec::new() } else { self.derivative_of_polynomial().positive_roots() };
         let inner = inner.into_iter().filter(|x| *x > low && *x < high);
         std::iter::once(low).chain(inner).chain([high]).collect()
     }
@@ -170,7 +174,8 @@ impl PolynomialTerms {
     /// the coefficients.
     fn certain_roots(&self) -> Vec<f64> {
         let has_certain_sign_change = |x: &f64| {
-            let ErrorBoundedCoefficient { value, error } = self.evaluate(*x, self.0.len().saturating_sub(1));
+            let ErrorBoundedCoefficient { value, error } =
+                self.evaluate_scaled(*x, self.0.len().saturating_sub(1));
             value.value().abs() > error
         };
         let points: Vec<f64> =
@@ -219,11 +224,13 @@ impl EvenAndOddParts {
 
     /// Returns the squared magnitude of the polynomial at `s = iω`, as a polynomial in `ω²`.
     fn squared_magnitude(&self) -> PolynomialTerms {
-        self.even.times(&self.even).plus(&self.odd.times(&self.odd).times_x())
+        self.even
+            .times_polynomial(&self.even)
+            .plus_polynomial(&self.odd.times_polynomial(&self.odd).times_x())
     }
 
-    fn plus(&self, other: &Self) -> Self {
-        Self { even: self.even.plus(&other.even), odd: self.odd.plus(&other.odd) }
+    fn plus_parts(&self, other: &Self) -> Self {
+        Self { even: self.even.plus_polynomial(&other.even), odd: self.odd.plus_polynomial(&other.odd) }
     }
 }
 
@@ -272,14 +279,14 @@ impl LoopPolynomials {
                 let mut term = PolynomialTerms(vec![ErrorBoundedCoefficient::rounded_coefficient(*a)]);
                 for i in 0..n {
                     let sign = if i < k { 1.0 } else { -1.0 };
-                    term = term.times(&PolynomialTerms(vec![
+                    term = term.times_polynomial(&PolynomialTerms(vec![
                         ErrorBoundedCoefficient::exact_coefficient(1.0),
                         ErrorBoundedCoefficient::exact_coefficient(sign),
                     ]));
                 }
                 // The binomial coefficients are exact.
                 term.0.iter_mut().for_each(|c| c.error = ROUNDING * c.value.value().abs());
-                sum = sum.plus(&term);
+                sum = sum.plus_polynomial(&term);
             }
             sum.0
         };
@@ -343,7 +350,9 @@ impl LoopPolynomials {
             nonzero.iter().map(|(k, size)| size + unit * *k as f64).fold(f64::MIN, f64::max).round();
         for all in &mut both {
             for (k, c) in all.iter_mut().enumerate() {
-                *c = c.times(ErrorBoundedCoefficient::exact_coefficient((unit * k as f64 - largest).exp2()));
+                *c = c.times_coefficient(ErrorBoundedCoefficient::exact_coefficient(
+                    (unit * k as f64 - largest).exp2(),
+                ));
             }
             if all.iter().any(|c| !(c.value.value() * c.value.value()).is_finite()) {
                 return Err(Error::NotFinite { what: "the squared magnitude of the loop" });
@@ -363,19 +372,26 @@ impl LoopPolynomials {
         let degree = self.coefficients.iter().map(|all| all.len() / 2).max().unwrap_or(0);
         let root = x.sqrt();
         let parts = [&self.numerator, &self.denominator]
-            .map(|p| [p.even.evaluate(x, degree), p.odd.evaluate(x, degree)]);
+            .map(|p| [p.even.evaluate_scaled(x, degree), p.odd.evaluate_scaled(x, degree)]);
         let [[ne, no], [de, d_o]] = parts;
         let x = ErrorBoundedCoefficient::exact_coefficient(x);
         let square = |[even, odd]: [ErrorBoundedCoefficient; 2]| {
-            even.times(even).plus(odd.times(odd).times(x)).value.value()
+            even.times_coefficient(even)
+                .plus_coefficient(odd.times_coefficient(odd).times_coefficient(x))
+                .value
+                .value()
         };
         let squares = parts.map(square);
         let is_certain_value = |k: usize| {
             let [even, odd] = parts[k];
             even.error + root * odd.error <= CERTAIN * squares[k].sqrt()
         };
-        let real = ne.times(de).plus(no.times(d_o).times(x)).value.value();
-        let imaginary = no.times(de).minus(ne.times(d_o)).value.value();
+        let real = ne
+            .times_coefficient(de)
+            .plus_coefficient(no.times_coefficient(d_o).times_coefficient(x))
+            .value
+            .value();
+        let imaginary = no.times_coefficient(de).minus_coefficient(ne.times_coefficient(d_o)).value.value();
         LoopValue {
             product: C::new(real, root * imaginary),
             squares,
@@ -387,7 +403,10 @@ impl LoopPolynomials {
     /// frequencies at which the loop is real.
     fn imaginary_part_terms(&self) -> PolynomialTerms {
         let (n, d) = (&self.numerator, &self.denominator);
-        n.odd.times(&d.even).minus(&n.even.times(&d.odd)).without_rounding_errors()
+        n.odd
+            .times_polynomial(&d.even)
+            .minus_polynomial(&n.even.times_polynomial(&d.odd))
+            .without_rounding_errors()
     }
 
     /// Returns the difference of the squared magnitudes of numerator `N` and denominator `D`. Its roots are
@@ -395,7 +414,7 @@ impl LoopPolynomials {
     fn magnitude_difference_terms(&self) -> PolynomialTerms {
         self.numerator
             .squared_magnitude()
-            .minus(&self.denominator.squared_magnitude())
+            .minus_polynomial(&self.denominator.squared_magnitude())
             .without_rounding_errors()
     }
 
@@ -403,10 +422,13 @@ impl LoopPolynomials {
     /// power of `|D|`.
     fn distance_slope_terms(&self) -> PolynomialTerms {
         let (p, r) = (
-            self.numerator.plus(&self.denominator).squared_magnitude(),
+            self.numerator.plus_parts(&self.denominator).squared_magnitude(),
             self.denominator.squared_magnitude(),
         );
-        p.derivative().times(&r).minus(&p.times(&r.derivative())).without_rounding_errors()
+        p.derivative_of_polynomial()
+            .times_polynomial(&r)
+            .minus_polynomial(&p.times_polynomial(&r.derivative_of_polynomial()))
+            .without_rounding_errors()
     }
 
     /// Returns the value of the loop at zero frequency, or at infinite `s` or `w`.

@@ -2,7 +2,7 @@
 
 use crate::figure::to_double;
 use crate::motion::placement_in_double;
-use crate::server::Server;
+use crate::server::PageServer;
 use crate::{Error, Figure, Motion, Page};
 use linkwork::nalgebra::UnitQuaternion;
 use linkwork::simulate::Sample;
@@ -43,7 +43,7 @@ pub struct Live<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
     frames: Vec<usize>,
     /// Number of coordinates that the live view plots.
     plotted: usize,
-    server: Server,
+    server: PageServer,
     /// Newest message of the live view: the time in eight bytes, then for each frame its position and its
     /// quaternion x y z w, then the plotted coordinates, then the inputs, each in four bytes.
     message: Vec<u8>,
@@ -85,7 +85,7 @@ where
         let motion = Motion::of("", mechanism, &[neutral])?.figure(figure)?.mark_as_live();
         let frames = motion.used_frames();
         let [plotted, _] = motion.curve_counts();
-        let server = Server::open_server(port, Page::new(name).motion(motion).html())?;
+        let server = PageServer::open_server(port, Page::new(name).motion(motion).html())?;
         Ok(Live { mechanism, frames, plotted, server, message: Vec::new(), samples: 0 })
     }
 

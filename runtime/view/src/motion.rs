@@ -1,8 +1,8 @@
 //! Motions that a page shows: placements of the frames of a drawing at each instant, with plots.
 
 use crate::encode::{Stream, base64};
-use crate::figure::{Figure, Shape, to_double};
-use crate::scene::Scene;
+use crate::figure::{DrawnShape, Figure, to_double};
+use crate::scene::CameraView;
 use crate::{Error, text};
 use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 use linkwork::simulate::Sample;
@@ -36,26 +36,26 @@ pub struct Motion {
     placements: Vec<Vec<IsometryMatrix3<f64>>>,
     /// Inputs of the mechanism, indexed by sample.
     inputs: Vec<Vec<f64>>,
-    plots: Vec<Plot>,
+    plots: Vec<PagePlot>,
     trails: Vec<(usize, [f64; 3], f64)>,
-    arrows: Vec<Arrow>,
+    arrows: Vec<PageArrow>,
     captions: Vec<(f64, String)>,
     live: bool,
     /// Data of the mechanism if the page simulates it.
-    simulated: Option<Simulated>,
+    simulated: Option<SimulatedMechanism>,
 }
 
 /// Mechanism that the page simulates in the browser: its data as JSON, and its functions as a WebAssembly
 /// module.
 #[derive(Clone, Debug)]
-struct Simulated {
+struct SimulatedMechanism {
     data: String,
     module: Vec<u8>,
 }
 
 /// Vector over time, such as a force, that the page draws as an arrow.
 #[derive(Clone, Debug)]
-struct Arrow {
+struct PageArrow {
     kind: &'static str,
     frame: Option<usize>,
     point: [f64; 3],
@@ -65,7 +65,7 @@ struct Arrow {
 
 /// Plot of a page, with several curves over time.
 #[derive(Clone, Debug)]
-struct Plot {
+struct PagePlot {
     title: String,
     unit: String,
     curves: Vec<(String, Vec<f64>)>,
@@ -183,7 +183,7 @@ impl Motion {
     /// terrain with this index at a position along its first two axes. Terrains whose height is not finite
     /// everywhere in the region are omitted.
     pub fn terrain(mut self, height: impl Fn(usize, [f64; 2]) -> Option<f64>) -> Motion {
-        let size = Scene::new(&self.figure, &self.placements, &self.shown_samples()).size;
+        let size = CameraView::new(&self.figure, &self.placements, &self.shown_samples()).size;
         self.figure.raise_terrains(&self.placements, size, height);
         self
     }
@@ -205,7 +205,7 @@ impl Motion {
         for (name, values) in &curves {
             check_count(&format!("the curve `{name}` of `{title}`"), self.times.len(), values.len())?;
         }
-        self.plots.push(Plot { title: title.to_string(), unit: unit.to_string(), curves });
+        self.plots.push(PagePlot { title: title.to_string(), unit: unit.to_string(), curves });
         Ok(self)
     }
 
@@ -219,15 +219,15 @@ impl Motion {
         title: &str,
         curves: impl IntoIterator<Item = (U, N, Vec<f64>)>,
     ) -> Result<Motion, Error> {
-        let mut plots: Vec<Plot> = Vec::new();
+        let mut plots: Vec<PagePlot> = Vec::new();
         for (unit, name, values) in curves {
             let (unit, curve) = (unit.into(), (name.into(), values));
             match plots.iter_mut().find(|plot| plot.unit == unit) {
                 Some(plot) => plot.curves.push(curve),
-                None => plots.push(Plot { title: title.to_string(), unit, curves: vec![curve] }),
+                None => plots.push(PagePlot { title: title.to_string(), unit, curves: vec![curve] }),
             }
         }
-        for Plot { title, unit, curves } in plots {
+        for PagePlot { title, unit, curves } in plots {
             self = self.plot(&title, &unit, curves)?;
         }
         Ok(self)
@@ -311,7 +311,7 @@ impl Motion {
     ) -> Result<Motion, Error> {
         let frame = frame.map(|frame| self.figure.frame_index(frame)).transpose()?;
         check_count(&format!("the arrows of a {}", kind.to_lowercase()), self.times.len(), values.len())?;
-        self.arrows.push(Arrow { kind, frame, point, values });
+        self.arrows.push(PageArrow { kind, frame, point, values });
         Ok(self)
     }
 
@@ -369,7 +369,7 @@ impl Motion {
     /// module of its functions, both as the command `linkwork view --live` writes them.
     #[doc(hidden)]
     pub fn simulated(mut self, data: String, module: Vec<u8>) -> Motion {
-        self.simulated = Some(Simulated { data, module });
+        self.simulated = Some(SimulatedMechanism { data, module });
         self.mark_as_live()
     }
 
@@ -380,7 +380,7 @@ impl Motion {
 
     /// Returns a still picture of the motion's first sample as SVG.
     pub(crate) fn still_picture(&self) -> String {
-        let scene = Scene::new(&self.figure, &self.placements, &[0]);
+        let scene = CameraView::new(&self.figure, &self.placements, &[0]);
         crate::picture::figure_svg(&self.figure, &self.placements[0], &scene)
     }
 
@@ -389,7 +389,7 @@ impl Motion {
         let used = self.used_frames();
         let index_of_used_frame = |k: usize| used.iter().position(|known| *known == k).unwrap_or(0);
         let shown = self.shown_samples();
-        let scene = Scene::new(&self.figure, &self.placements, &shown);
+        let scene = CameraView::new(&self.figure, &self.placements, &shown);
         let quantum = scene.size / PARTS;
         let mut stream = Stream::default();
         let start = self.times[0];
@@ -441,11 +441,11 @@ impl Motion {
             ("live", self.live.to_string()),
             ("data", text::json(&stream.text())),
         ];
-        let source_range_json = |shape: &Shape| match shape.source_range() {
+        let source_range_json = |shape: &DrawnShape| match shape.source_range() {
             Some([first, count]) => format!("[{first},{count}]"),
             None => "null".to_string(),
         };
-        let simulated = self.simulated.iter().flat_map(|Simulated { data, module }| {
+        let simulated = self.simulated.iter().flat_map(|SimulatedMechanism { data, module }| {
             [
                 ("simulated", data.clone()),
                 ("module", text::json(&base64(module))),
@@ -462,7 +462,7 @@ impl Motion {
     }
 }
 
-impl Arrow {
+impl PageArrow {
     fn arrow_json(&self, shown: &[usize], renumber: impl Fn(usize) -> usize, stream: &mut Stream) -> String {
         let frame = self.frame.map_or("-1".to_string(), |frame| renumber(frame).to_string());
         let curves: Vec<String> =
@@ -471,7 +471,7 @@ impl Arrow {
     }
 }
 
-impl Plot {
+impl PagePlot {
     fn plot_json(&self, shown: &[usize], stream: &mut Stream) -> String {
         let curves = self
             .curves

@@ -1,7 +1,7 @@
 //! Still pictures of a drawing as SVG, for readers without scripts.
 
-use crate::figure::{Figure, Shape};
-use crate::scene::Scene;
+use crate::figure::{DrawnShape, Figure};
+use crate::scene::CameraView;
 use linkwork::drawing::{Kind, Role};
 use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Point3, Vector3};
 use std::f64::consts::TAU;
@@ -20,7 +20,7 @@ const COLOURS: [&str; 8] =
     ["#407ac9", "#de803d", "#54a173", "#a16ebd", "#cc616e", "#4da1b3", "#b59c47", "#80859e"];
 
 /// Outline of a shape in the still picture, in picture coordinates.
-struct Outline {
+struct SolidOutline {
     points: Vec<[f64; 2]>,
     /// Distance of the shape towards the viewer, by which outlines are sorted before they are drawn.
     depth: f64,
@@ -30,10 +30,10 @@ struct Outline {
 }
 
 /// Returns a still picture of the drawing as SVG, with its frames at these placements.
-pub(crate) fn figure_svg(figure: &Figure, placements: &[IsometryMatrix3<f64>], scene: &Scene) -> String {
+pub(crate) fn figure_svg(figure: &Figure, placements: &[IsometryMatrix3<f64>], scene: &CameraView) -> String {
     let [right, up, back] = scene.view_axes();
     let mut bodies: Vec<String> = Vec::new();
-    let mut outlines: Vec<Outline> = Vec::new();
+    let mut outlines: Vec<SolidOutline> = Vec::new();
     for shape in figure.drawn_shapes() {
         let place_in_world = |frame: Option<usize>, p: Vector3<f64>| {
             frame.map_or(p, |k| (placements[k] * Point3::from(p)).coords)
@@ -46,14 +46,14 @@ pub(crate) fn figure_svg(figure: &Figure, placements: &[IsometryMatrix3<f64>], s
             continue;
         }
         let depth = seen.iter().map(|p| p.dot(&back)).sum::<f64>() / seen.len() as f64;
-        outlines.push(Outline { points, depth, colour: colour_of_shape(shape, &mut bodies), line });
+        outlines.push(SolidOutline { points, depth, colour: colour_of_shape(shape, &mut bodies), line });
     }
     outlines.sort_by(|a, b| a.depth.total_cmp(&b.depth));
     draw_outlines(&outlines)
 }
 
 /// Returns the colour in which a shape is drawn. All shapes of one body have the same colour.
-fn colour_of_shape(shape: &Shape, bodies: &mut Vec<String>) -> &'static str {
+fn colour_of_shape(shape: &DrawnShape, bodies: &mut Vec<String>) -> &'static str {
     match shape.role {
         Role::Link => "#8f99a8",
         Role::Joint => "#454d59",
@@ -76,7 +76,7 @@ fn colour_of_shape(shape: &Shape, bodies: &mut Vec<String>) -> &'static str {
 }
 
 /// Returns the outlines as an SVG picture, in which later outlines cover earlier ones.
-fn draw_outlines(outlines: &[Outline]) -> String {
+fn draw_outlines(outlines: &[SolidOutline]) -> String {
     let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for point in outlines.iter().flat_map(|outline| &outline.points) {
         for k in 0..2 {
@@ -93,7 +93,7 @@ fn draw_outlines(outlines: &[Outline]) -> String {
         format!("{x:.1},{y:.1}")
     };
     let mut out = format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"drawing\">");
-    for Outline { points, colour, line, .. } in outlines {
+    for SolidOutline { points, colour, line, .. } in outlines {
         let points = points.iter().map(pixel_coordinates).collect::<Vec<_>>().join(" ");
         let _ = match *line > 0.0 {
             true => write!(
@@ -118,7 +118,7 @@ type FramePoint = (Option<usize>, Vector3<f64>);
 
 /// Returns points whose convex hull is the outline of the shape, each with its frame, or the ends of a line
 /// and its width. `size` is the size of the mechanism.
-fn shape_outline_points(shape: &Shape, size: f64) -> (Vec<FramePoint>, f64) {
+fn shape_outline_points(shape: &DrawnShape, size: f64) -> (Vec<FramePoint>, f64) {
     let n = &shape.numbers;
     let vector_from_numbers = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
     let [a, b] = shape.frames;

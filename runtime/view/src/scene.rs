@@ -1,12 +1,12 @@
 //! Scene of a motion for the camera: position, extent and viewing direction.
 
-use crate::figure::{Figure, Shape};
+use crate::figure::{DrawnShape, Figure};
 use crate::text;
 use linkwork::drawing::{Kind, Role};
 use linkwork::nalgebra::{IsometryMatrix3, Point3, Vector3};
 
 /// Scene of a motion: the data that determine the initial view of the camera.
-pub(crate) struct Scene {
+pub(crate) struct CameraView {
     /// Extent of the mechanism in the first sample, m.
     pub(crate) size: f64,
     /// Centre of the region through which the mechanism moves.
@@ -24,14 +24,18 @@ pub(crate) struct Scene {
     floor: Option<f64>,
 }
 
-impl Scene {
+impl CameraView {
     /// Computes the scene of a motion from the drawing and the placements of its frames in each sample.
     /// `shown` has the indices of the samples that are shown, including the first one.
-    pub(crate) fn new(figure: &Figure, placements: &[Vec<IsometryMatrix3<f64>>], shown: &[usize]) -> Scene {
+    pub(crate) fn new(
+        figure: &Figure,
+        placements: &[Vec<IsometryMatrix3<f64>>],
+        shown: &[usize],
+    ) -> CameraView {
         let first = &placements[0];
         let gravity = Vector3::from(figure.gravity);
         let up = gravity.try_normalize(0.0).map_or(Vector3::z(), |g| -g);
-        let pieces: Vec<&Shape> = figure.drawn_shapes().collect();
+        let pieces: Vec<&DrawnShape> = figure.drawn_shapes().collect();
         let place_in_world = |k: usize, frame: Option<usize>, point: Vector3<f64>| {
             frame.map_or(point, |f| (placements[k][f] * Point3::from(point)).coords)
         };
@@ -56,11 +60,11 @@ impl Scene {
             |frame: Option<usize>, v: Vector3<f64>| frame.map_or(v, |f| first[f].rotation * v);
         let normal = figure.common_axis_direction(rotate_to_world).filter(|n| n.dot(&up).abs() < 1e-6);
         let is_fixed_terrain =
-            |s: &&Shape| s.role == Role::Surface && s.mesh.is_some() && s.frames[0].is_none();
+            |s: &&DrawnShape| s.role == Role::Surface && s.mesh.is_some() && s.frames[0].is_none();
         let hills = pieces.iter().any(is_fixed_terrain);
         let floor = gravity.norm() > 0.0 && !hills;
         let plane = figure.ground_along(&up);
-        Scene {
+        CameraView {
             size,
             centre: whole.middle_of_bounds(),
             radius: (whole.size_of_bounds() / 2.0).max(size / 2.0),
@@ -97,13 +101,13 @@ impl Figure {
     /// Returns the height of the lowest horizontal contact plane of the ground that faces upward.
     fn ground_along(&self, up: &Vector3<f64>) -> Option<f64> {
         let planes = self.shapes.iter().filter(|s| s.kind == Kind::Plane && s.frames[0].is_none());
-        let vector_from_numbers = |s: &Shape, k: usize| Vector3::from_column_slice(&s.numbers[k..k + 3]);
+        let vector_from_numbers = |s: &DrawnShape, k: usize| Vector3::from_column_slice(&s.numbers[k..k + 3]);
         let level = planes.filter(|s| vector_from_numbers(s, 3).dot(up) > 1.0 - 1e-9);
         level.map(|s| vector_from_numbers(s, 0).dot(up)).reduce(f64::min)
     }
 }
 
-impl Shape {
+impl DrawnShape {
     /// Whether the shape can be drawn: the files of meshes may not have been read, and terrains not have been
     /// computed.
     pub(crate) fn is_visible(&self) -> bool {

@@ -30,7 +30,7 @@ const PING: u8 = 0x89;
 
 /// Server with its thread, which ends when the server is dropped.
 #[derive(Debug)]
-pub(crate) struct Server {
+pub(crate) struct PageServer {
     address: SocketAddr,
     shared: Arc<SharedState>,
     thread: Option<JoinHandle<()>>,
@@ -53,9 +53,9 @@ struct NewestMessage {
     closed: bool,
 }
 
-impl Server {
+impl PageServer {
     /// Serves a page at a port of this machine, or at any free port for port 0.
-    pub(crate) fn open_server(port: u16, page: String) -> Result<Server, Error> {
+    pub(crate) fn open_server(port: u16, page: String) -> Result<PageServer, Error> {
         let port_error = |cause| Error::Port { port, cause };
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(port_error)?;
         let address = listener.local_addr().map_err(port_error)?;
@@ -69,7 +69,7 @@ impl Server {
         let guests = shared.clone();
         let thread = thread::Builder::new().name("linkwork-view".to_string());
         let thread = thread.spawn(move || accept_connections(&listener, &guests)).map_err(port_error)?;
-        Ok(Server { address, shared, thread: Some(thread) })
+        Ok(PageServer { address, shared, thread: Some(thread) })
     }
 
     pub(crate) fn server_address(&self) -> SocketAddr {
@@ -88,7 +88,7 @@ impl Server {
     }
 }
 
-impl Drop for Server {
+impl Drop for PageServer {
     fn drop(&mut self) {
         self.shared.lock_newest().closed = true;
         self.shared.news.notify_all();

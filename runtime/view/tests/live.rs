@@ -8,7 +8,7 @@ use std::net::TcpStream;
 use std::time::Duration;
 
 #[mechanism(gravity = -9.81 * y, drawing)]
-struct PlanarArm {
+struct Arm {
     #[body(mass = 1, com = x / 2, inertia = rod(1, 1, x))]
     upper: Body,
     #[body(mass = 1, com = x / 2, inertia = rod(1, 1, x))]
@@ -90,7 +90,7 @@ fn read_frame(stream: &mut TcpStream) -> (u8, Vec<u8>) {
 
 #[test]
 fn browser_receives_page_and_samples() {
-    let mut live = Live::open(&PlanarArm {}, 0).unwrap();
+    let mut live = Live::open(&Arm {}, 0).unwrap();
     let page = response_text(send_request(&live.url(), "/", ""));
     assert!(page.starts_with("HTTP/1.1 200 OK\r\n") && page.contains("<title>Arm</title>"));
     let (_, data) = page.split_once("<script type=\"application/json\">").unwrap();
@@ -110,8 +110,8 @@ fn browser_receives_page_and_samples() {
     let frames = motion["frames"].as_array().unwrap();
     assert_eq!(numbers.len(), 7 * frames.len() + 2 + 1);
     for (name, n) in frames.iter().zip(numbers.chunks(7)) {
-        let k = PlanarArm::FRAMES.iter().position(|known| name == known).unwrap();
-        let placement = PlanarArm {}.frame_placements(&sample.q)[k];
+        let k = Arm::FRAMES.iter().position(|known| name == known).unwrap();
+        let placement = Arm {}.frame_placements(&sample.q)[k];
         assert!((0..3).all(|k| (n[k] - placement.translation.vector[k]).abs() < 1e-6));
         // Rotated about z by the sum of the angles.
         let angle = if name == "upper" { 0.75 } else { -0.25_f64 };
@@ -129,7 +129,7 @@ fn browser_receives_page_and_samples() {
 /// client receives the newest sample.
 #[test]
 fn slow_client_does_not_block_the_loop() {
-    let mut live = Live::open(&PlanarArm {}, 0).unwrap();
+    let mut live = Live::open(&Arm {}, 0).unwrap();
     let (_idle, mut busy) = (open_web_socket(&live.url()), open_web_socket(&live.url()));
     for k in 0..20_000 {
         live.show(&sample_at_time(f64::from(k) * 1e-3)).unwrap();
@@ -148,7 +148,7 @@ fn slow_client_does_not_block_the_loop() {
 
 #[test]
 fn foreign_requests_are_rejected() {
-    let live = Live::open(&PlanarArm {}, 0).unwrap();
+    let live = Live::open(&Arm {}, 0).unwrap();
     let url = live.url();
     let port = url.trim_end_matches('/').rsplit(':').next().unwrap();
     let response_status =
@@ -166,9 +166,9 @@ fn foreign_requests_are_rejected() {
 
 #[test]
 fn invalid_live_views_are_errors() {
-    let mut live = Live::open(&PlanarArm {}, 0).unwrap();
+    let mut live = Live::open(&Arm {}, 0).unwrap();
     let port = live.url().trim_end_matches('/').rsplit(':').next().unwrap().parse().unwrap();
-    let second = Live::open(&PlanarArm {}, port);
+    let second = Live::open(&Arm {}, port);
     let error = second.err().unwrap();
     assert!(
         matches!(&error, Error::Port { port: known, cause } if *known == port && cause.kind() == std::io::ErrorKind::AddrInUse)
@@ -180,5 +180,5 @@ fn invalid_live_views_are_errors() {
     assert!(matches!(live.show(&broken), Err(Error::NotFinite { frame, .. }) if frame == "lower"));
     // The port is free again after the view is dropped.
     drop(live);
-    assert!(Live::open(&PlanarArm {}, port).is_ok());
+    assert!(Live::open(&Arm {}, port).is_ok());
 }
