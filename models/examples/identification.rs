@@ -15,8 +15,8 @@ use linkwork::nalgebra::{Cholesky, SMatrix, SVector};
 use linkwork::prelude::*;
 use linkwork::{Inertial, ParameterError};
 
-/// Arm from a file, whose values are parameters. The inertias of the motors' rotors, which the file does not
-/// contain, are parameters, too.
+/// Robot arm whose values from its file are parameters. The inertias of the motors' rotors, which the file
+/// does not contain, are parameters, too.
 #[mechanism(
     urdf = "urdf/panda.urdf",
     lock = ["panda_finger_joint1", "panda_finger_joint2"],
@@ -24,7 +24,7 @@ use linkwork::{Inertial, ParameterError};
     regressor
 )]
 #[derive(Clone, Copy, Debug)]
-struct Arm {
+struct IdentifiedArm {
     rotor1: f64,
     rotor2: f64,
     rotor3: f64,
@@ -48,8 +48,8 @@ struct Arm {
     motor7: Inerter,
 }
 
-type Joints = SVector<f64, 7>;
-const BASE: usize = Arm::BASE_PARAMETERS.len();
+type JointVector = SVector<f64, 7>;
+const BASE: usize = IdentifiedArm::BASE_PARAMETERS.len();
 /// Number of regressed parameters: the base parameters, then damping and dry friction of every joint, and the
 /// rotor inertias of all joints except the first two. The rotors of the first two joints cannot be
 /// distinguished from the inertias of their links about the same axes.
@@ -57,9 +57,9 @@ const COLUMNS: usize = BASE + 7 + 7 + 5;
 /// Velocity below which dry friction is smooth, rad/s: the default `friction_speed` of the mechanism.
 const SMOOTH: f64 = 0.01;
 
-impl Arm {
-    /// Returns damping, friction and rotor inertias of the joints.
-    fn joint_parameters(&self) -> [Joints; 3] {
+impl IdentifiedArm {
+    /// Returns the coefficients of damping and friction, and the rotor inertias, of all joints.
+    fn joint_parameters(&self) -> [JointVector; 3] {
         let damping = [
             self.panda_joint1_damping,
             self.panda_joint2_damping,
@@ -80,11 +80,11 @@ impl Arm {
         ];
         let rotors =
             [self.rotor1, self.rotor2, self.rotor3, self.rotor4, self.rotor5, self.rotor6, self.rotor7];
-        [damping, friction, rotors].map(Joints::from)
+        [damping, friction, rotors].map(JointVector::from)
     }
 
-    fn with_joints(self, [damping, friction, rotors]: [Joints; 3]) -> Arm {
-        Arm {
+    fn with_joints(self, [damping, friction, rotors]: [JointVector; 3]) -> IdentifiedArm {
+        IdentifiedArm {
             panda_joint1_damping: damping[0],
             panda_joint2_damping: damping[1],
             panda_joint3_damping: damping[2],
@@ -112,10 +112,10 @@ impl Arm {
 }
 
 /// Reproducible random numbers between −1 and 1 (SplitMix64).
-struct Random(u64);
+struct RandomNumbers(u64);
 
-impl Random {
-    fn next(&mut self) -> f64 {
+impl RandomNumbers {
+    fn next_number(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -125,18 +125,21 @@ impl Random {
 
 /// Periodic trajectory: a sum of sines for each joint and harmonic, with exact position, velocity and
 /// acceleration.
-struct Fourier([[[f64; 2]; 5]; 7]);
+struct FourierTrajectory([[[f64; 2]; 5]; 7]);
 
-impl Fourier {
+impl FourierTrajectory {
     /// Returns a random trajectory of moderate amplitude about a posture with a bent elbow.
-    fn new(random: &mut Random) -> Fourier {
-        Fourier([[(); 5]; 7].map(|joint| joint.map(|()| [0.8 * random.next(), 0.8 * random.next()])))
+    fn new(random: &mut RandomNumbers) -> FourierTrajectory {
+        FourierTrajectory(
+            [[(); 5]; 7]
+                .map(|joint| joint.map(|()| [0.8 * random.next_number(), 0.8 * random.next_number()])),
+        )
     }
 
-    fn evaluate_trajectory(&self, t: f64) -> [Joints; 3] {
+    fn evaluate_trajectory(&self, t: f64) -> [JointVector; 3] {
         const RATE: f64 = 0.6;
-        let mut q = Joints::from([0.0, 0.3, 0.0, -1.6, 0.0, 1.8, 0.0]);
-        let (mut v, mut a) = (Joints::zeros(), Joints::zeros());
+        let mut q = JointVector::from([0.0, 0.3, 0.0, -1.6, 0.0, 1.8, 0.0]);
+        let (mut v, mut a) = (JointVector::zeros(), JointVector::zeros());
         for (j, harmonics) in self.0.iter().enumerate() {
             for (k, [sine, cosine]) in harmonics.iter().enumerate() {
                 let rate = RATE * (k + 1) as f64;
@@ -150,13 +153,13 @@ impl Fourier {
     }
 }
 
-/// Returns the real robot: its links differ from the file's, and it has a load in the hand, friction and
-/// rotors.
-fn robot_as_it_is() -> Arm {
-    let mut random = Random(7);
-    let mut arm = Arm::from_file(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+/// Returns the robot that is identified: its links differ from those of the file, and it has a load in the
+/// hand, friction and rotors.
+fn perturbed_robot() -> IdentifiedArm {
+    let mut random = RandomNumbers(7);
+    let mut arm = IdentifiedArm::from_file(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     let perturbed_inertial = |link: Inertial<f64>| {
-        let off = [(); 3].map(|()| 0.04 * random.next());
+        let off = [(); 3].map(|()| 0.04 * random.next_number());
         let at = [0, 1, 2].map(|k| link.com[k] + off[k]);
         link.scaled(0.9).plus(&Inertial::point(0.15 * link.mass, at))
     };
@@ -169,8 +172,9 @@ fn robot_as_it_is() -> Arm {
     ])
 }
 
-/// Returns the regressor: the torques are its product with the parameters.
-fn regressor_columns(arm: &Arm, [q, v, a]: &[Joints; 3]) -> SMatrix<f64, 7, COLUMNS> {
+/// Returns the regressor matrix of the arm: its product with the vector of parameters is the vector of
+/// torques.
+fn regressor_columns(arm: &IdentifiedArm, [q, v, a]: &[JointVector; 3]) -> SMatrix<f64, 7, COLUMNS> {
     let mut all = SMatrix::<f64, 7, COLUMNS>::zeros();
     all.fixed_view_mut::<7, BASE>(0, 0).copy_from(&arm.base_regressor(q, v, a));
     for j in 0..7 {
@@ -184,7 +188,7 @@ fn regressor_columns(arm: &Arm, [q, v, a]: &[Joints; 3]) -> SMatrix<f64, 7, COLU
 }
 
 /// Returns the root mean square of the difference between two robots' torques on a trajectory, N·m.
-fn difference(one: &Arm, other: &Arm, trajectory: &Fourier) -> f64 {
+fn rms_torque_difference(one: &IdentifiedArm, other: &IdentifiedArm, trajectory: &FourierTrajectory) -> f64 {
     let squared_torque_difference = |k: usize| {
         let [q, v, a] = trajectory.evaluate_trajectory(0.02 * k as f64);
         (one.inverse_dynamics(&q, &v, &a) - other.inverse_dynamics(&q, &v, &a)).norm_squared()
@@ -193,19 +197,20 @@ fn difference(one: &Arm, other: &Arm, trajectory: &Fourier) -> f64 {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let (truth, mut random) = (robot_as_it_is(), Random(42));
+    let (truth, mut random) = (perturbed_robot(), RandomNumbers(42));
     truth.validate()?;
-    let mut arm = Arm::from_file(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    let mut arm = IdentifiedArm::from_file(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
 
     // Excitation: torques are measured with noise and accumulated in the normal equations of the regression.
     let (mut normal, mut right) =
         (SMatrix::<f64, COLUMNS, COLUMNS>::zeros(), SVector::<f64, COLUMNS>::zeros());
     for _ in 0..6 {
-        let trajectory = Fourier::new(&mut random);
+        let trajectory = FourierTrajectory::new(&mut random);
         for k in 0..400 {
             let state = trajectory.evaluate_trajectory(0.025 * k as f64);
             let [q, v, a] = &state;
-            let torque = truth.inverse_dynamics(q, v, a) + Joints::from_fn(|_, _| 0.05 * random.next());
+            let torque =
+                truth.inverse_dynamics(q, v, a) + JointVector::from_fn(|_, _| 0.05 * random.next_number());
             let y = regressor_columns(&arm, &state);
             normal += y.transpose() * y;
             right += y.transpose() * torque;
@@ -215,8 +220,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // Conversion: the parameters of the joints, then the bodies nearest to the file's that reproduce the
     // measurements. Because of the noise, no consistent bodies may reproduce them exactly.
-    let joint_values_from = |first: usize| Joints::from_fn(|j, _| found[first + j]);
-    let rotors = Joints::from_fn(|j, _| if j > 1 { found[BASE + 14 + j - 2] } else { 0.0 });
+    let joint_values_from = |first: usize| JointVector::from_fn(|j, _| found[first + j]);
+    let rotors = JointVector::from_fn(|j, _| if j > 1 { found[BASE + 14 + j - 2] } else { 0.0 });
     arm = arm.with_joints([joint_values_from(BASE), joint_values_from(BASE + 7), rotors]);
     let base = found.fixed_rows::<BASE>(0).into_owned();
     approach(&mut arm, &base, 1e-6)?;
@@ -242,26 +247,27 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The base parameters equal those of the robot, which include the first two rotors.
     let expected = truth.base_parameters(&truth.standard_parameters());
     let mut got = arm.base_parameters(&arm.standard_parameters());
-    got[index!(Arm::BASE_PARAMETERS, "panda_link1.zz")] -= truth.rotor1;
-    got[index!(Arm::BASE_PARAMETERS, "panda_link2.zz")] -= truth.rotor2;
+    got[index!(IdentifiedArm::BASE_PARAMETERS, "panda_link1.zz")] -= truth.rotor1;
+    got[index!(IdentifiedArm::BASE_PARAMETERS, "panda_link2.zz")] -= truth.rotor2;
     println!("base parameters: {:.3} off at most, of {:.1}", (got - expected).amax(), expected.amax());
     assert!((got - expected).amax() < 0.05);
 
     // On a new trajectory the identified model predicts the robot's torques, and the file's model does not.
-    let fresh = Fourier::new(&mut random);
-    let file = Arm::from_file(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    let (before, after) = (difference(&file, &truth, &fresh), difference(&arm, &truth, &fresh));
+    let fresh = FourierTrajectory::new(&mut random);
+    let file = IdentifiedArm::from_file(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    let (before, after) =
+        (rms_torque_difference(&file, &truth, &fresh), rms_torque_difference(&arm, &truth, &fresh));
     println!("torques off by {before:.3} N·m by the file, {after:.4} N·m as identified");
     assert!(before > 1.0 && after < 0.02);
 
     // Physically inconsistent parameters are rejected.
     let wrong: Result<(), ParameterError> =
-        Arm { panda_link5: Inertial { mass: -1.0, ..arm.panda_link5 }, ..arm }.validate();
+        IdentifiedArm { panda_link5: Inertial { mass: -1.0, ..arm.panda_link5 }, ..arm }.validate();
     println!("{}", wrong.err().map_or(String::new(), |error| error.to_string()));
     Ok(())
 }
 
 #[test]
-fn it_holds() -> Result<(), Box<dyn std::error::Error>> {
+fn identified_arm_predicts_torques() -> Result<(), Box<dyn std::error::Error>> {
     main()
 }

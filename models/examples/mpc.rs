@@ -19,7 +19,7 @@ use regulator::linear_quadratic_regulator;
 
 /// Cart on a short rail with a pole pinned to it, upright at zero.
 #[mechanism(gravity = -9.81 * y, derivatives)]
-struct CartPole {
+struct RailCartPole {
     #[body(mass = 1)]
     cart: Body,
     #[body(mass = 0.2, com = 0.5 * y, inertia = rod(0.2, 1, y))]
@@ -36,18 +36,18 @@ struct CartPole {
 
 /// Position of the cart, m, angle of the pole, rad, then their rates.
 type State = SVector<f64, 4>;
-const RAIL: usize = index!(CartPole::VELOCITIES, "rail");
+const RAIL: usize = index!(RailCartPole::VELOCITIES, "rail");
 
 /// Number of planned steps, and the period of each, s.
 const STEPS: usize = 25;
 const PERIOD: f64 = 0.04;
 const METHOD: Rk4<f64> = Rk4::step(PERIOD);
-/// Goal: at rest two centimetres before the buffer.
+/// Target state of the cart: at rest two centimetres before the buffer.
 const GOAL: State = State::new(0.5, 0.0, 0.0, 0.0);
 /// Number of unknowns of a step in the quadratic program: a force, then the state after it.
 const SIZE: usize = 5;
 
-/// Returns the weights of one period about a state of rest.
+/// Returns the costs of one control period about a state of rest.
 fn quadratic_costs() -> Quadratic<f64, 2, 1> {
     Quadratic {
         qq: SMatrix::from_diagonal(&[20.0, 5.0].into()),
@@ -57,18 +57,18 @@ fn quadratic_costs() -> Quadratic<f64, 2, 1> {
     }
 }
 
-/// Returns the state after a period with a constant force.
+/// Returns the state of the cart-pole after one control period with a constant force.
 fn next_state(x: &State, push: f64) -> Result<State, Error> {
     let (q, v) = discrete::split(x);
-    let (q, v) = discrete::step(&CartPole {}, &METHOD, 0.0, &q, &v, &[push].into())?;
+    let (q, v) = discrete::step(&RailCartPole {}, &METHOD, 0.0, &q, &v, &[push].into())?;
     Ok(discrete::stacked(&q, &v))
 }
 
 /// Sparse matrix in triplet form: rows, columns and values of its entries.
 #[derive(Default)]
-struct Entries(Vec<usize>, Vec<usize>, Vec<f64>);
+struct TripletEntries(Vec<usize>, Vec<usize>, Vec<f64>);
 
-impl Entries {
+impl TripletEntries {
     fn push_entry(&mut self, row: usize, column: usize, value: f64) {
         self.0.push(row);
         self.1.push(column);
@@ -82,21 +82,21 @@ impl Entries {
 
 /// Quadratic program for the forces and states of the next second: minimum cost, with `rows x = right` for
 /// the motion and `rows x ≤ right` for the limits.
-struct Program {
-    hessian: Entries,
+struct QuadraticProgram {
+    hessian: TripletEntries,
     gradient: [f64; SIZE * STEPS],
-    rows: Entries,
+    rows: TripletEntries,
     right: Vec<f64>,
 }
 
-impl Program {
-    /// Adds the motion from a state, linearised about the motion under the planned forces:
-    /// `x⁺ − A x − B u = f − A x̄ − B ū`.
+impl QuadraticProgram {
+    /// Adds the equations of motion from a state to the quadratic program, linearised about the motion under
+    /// the planned forces: `x⁺ − A x − B u = f − A x̄ − B ū`.
     fn add_motion_equations(&mut self, start: &State, plan: &[f64; STEPS]) -> Result<(), Error> {
         let mut x = *start;
         for (k, &push) in plan.iter().enumerate() {
             let (q, v) = discrete::split(&x);
-            let step = discrete::transition(&CartPole {}, &METHOD, 0.0, &q, &v, &[push].into())?;
+            let step = discrete::transition(&RailCartPole {}, &METHOD, 0.0, &q, &v, &[push].into())?;
             let (a, b) = (step.a::<4>(), step.b::<4>());
             let next: State = discrete::stacked(&step.q, &step.v);
             // The initial state is given and moves to the right-hand side.
@@ -115,9 +115,10 @@ impl Program {
         Ok(())
     }
 
-    /// Adds the limits, in both directions, of the force in each step and of the position after it.
+    /// Adds the limits of the force in each step and of the position after it to the quadratic program, in
+    /// both directions.
     fn add_limits(&mut self) {
-        let m = CartPole {};
+        let m = RailCartPole {};
         let (least, most) = (m.lower_limits()[RAIL], m.upper_limits()[RAIL]);
         let strength = m.effort_limits()[RAIL];
         for k in 0..STEPS {
@@ -131,7 +132,7 @@ impl Program {
         }
     }
 
-    /// Adds the cost of every step, and at the end the cost-to-go of the regulator.
+    /// Adds the cost of every step to the quadratic program, and at the end the cost-to-go of the regulator.
     fn add_costs(&mut self, to_go: &Value<f64, 2>) {
         let costs = quadratic_costs();
         let each = Value { qq: costs.qq, vv: costs.vv, ..Value::zeros() }.hessian::<4>();
@@ -147,7 +148,7 @@ impl Program {
         }
     }
 
-    /// Returns the optimal forces, or `None` if the program is infeasible.
+    /// Returns the optimal forces of the quadratic program, or `None` if it is infeasible.
     fn optimal_forces(self) -> Option<[f64; STEPS]> {
         let (count, columns, motions) = (self.right.len(), SIZE * STEPS, 4 * STEPS);
         let (hessian, rows) =
@@ -161,11 +162,11 @@ impl Program {
     }
 }
 
-/// Returns the optimal forces of the next second, linearised about the previous plan; `None` if no forces
-/// satisfy the limits.
+/// Returns the optimal forces of the next second, for a motion that is linearised about the previous plan;
+/// `None` if no forces satisfy the limits.
 fn plan_forces(x: &State, plan: &[f64; STEPS], to_go: &Value<f64, 2>) -> Result<Option<[f64; STEPS]>, Error> {
-    let (hessian, rows) = (Entries::default(), Entries::default());
-    let mut program = Program { hessian, gradient: [0.0; SIZE * STEPS], rows, right: Vec::new() };
+    let (hessian, rows) = (TripletEntries::default(), TripletEntries::default());
+    let mut program = QuadraticProgram { hessian, gradient: [0.0; SIZE * STEPS], rows, right: Vec::new() };
     program.add_motion_equations(x, plan)?;
     program.add_limits();
     program.add_costs(to_go);
@@ -174,14 +175,14 @@ fn plan_forces(x: &State, plan: &[f64; STEPS], to_go: &Value<f64, 2>) -> Result<
 
 fn main() -> Result<(), Error> {
     let found = linear_quadratic_regulator(
-        &CartPole {},
+        &RailCartPole {},
         &METHOD,
         &SVector::zeros(),
         &SVector::zeros(),
         &quadratic_costs(),
     );
     let (regulator, to_go) = found.expect("a push on the cart can keep the pole upright");
-    let (most, strength) = (CartPole {}.upper_limits()[RAIL], CartPole {}.effort_limits()[RAIL]);
+    let (most, strength) = (RailCartPole {}.upper_limits()[RAIL], RailCartPole {}.effort_limits()[RAIL]);
 
     // The regulator alone, without limits, and the planner from the same initial state.
     let start = State::new(-0.5, 0.0, 0.0, 0.0);
@@ -217,6 +218,6 @@ fn main() -> Result<(), Error> {
 }
 
 #[test]
-fn it_holds() -> Result<(), Error> {
+fn cart_stays_on_its_rail() -> Result<(), Error> {
     main()
 }

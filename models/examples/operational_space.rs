@@ -16,13 +16,13 @@ use linkwork::prelude::{Limits, Rk4, frame, index, simulate};
 use linkwork_models::PandaArm;
 use std::f64::consts::PI;
 
-type Joints = SVector<f64, 7>;
-/// Linear, then angular components in ground axes.
+type JointVector = SVector<f64, 7>;
+/// Twist: linear, then angular velocity, in ground axes.
 type Twist = SVector<f64, 6>;
 
 /// Preferred joint angles, rad: far from their limits, with the elbow bent.
 const POSTURE: [f64; 7] = [0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8];
-/// Radius of the circle, m.
+/// Radius of the circle that the hand follows, m.
 const RADIUS: f64 = 0.12;
 const RATE: f64 = 2.0;
 
@@ -36,8 +36,9 @@ fn desired_hand_motion(t: f64) -> (IsometryMatrix3<f64>, Twist, Twist) {
     (placement, planar_twist(-sin, cos) * RATE, planar_twist(-cos, -sin) * RATE * RATE)
 }
 
-/// Returns the torques for the hand's motion; its nullspace moves the joints towards their preferred posture.
-fn hand_control_torques(t: f64, q: &Joints, v: &Joints) -> Joints {
+/// Returns the torques for the desired motion of the hand. In the nullspace of the hand's motion, they move
+/// the joints towards their preferred posture.
+fn hand_control_torques(t: f64, q: &JointVector, v: &JointVector) -> JointVector {
     let (arm, hand) = (PandaArm, frame!(PandaArm, "panda_hand_tcp"));
     let (placement, twist, acceleration) = desired_hand_motion(t);
     let jacobian = arm.frame_jacobian(hand, q);
@@ -45,14 +46,14 @@ fn hand_control_torques(t: f64, q: &Joints, v: &Joints) -> Joints {
     // Desired acceleration of the hand with feedback, minus the part J̇ v that it has without joint
     // accelerations.
     let corrected = acceleration + missing * 400.0 + (twist - jacobian * v) * 40.0;
-    let hand_acceleration = corrected - arm.frame_acceleration(hand, q, v, &Joints::zeros());
+    let hand_acceleration = corrected - arm.frame_acceleration(hand, q, v, &JointVector::zeros());
 
     // The operational-space inertia Λ = (J M⁻¹ Jᵀ)⁻¹ maps the acceleration to a force.
     let inverse_mass = arm.mass_matrix_inverse(q);
     let Some(inertia) = (jacobian * inverse_mass * jacobian.transpose()).try_inverse() else {
         return arm.clamp_effort(&arm.bias_forces(q, v)); // Singular: hold still.
     };
-    let posture = arm.mass_matrix(q) * ((Joints::from(POSTURE) - q) * 25.0 - v * 10.0);
+    let posture = arm.mass_matrix(q) * ((JointVector::from(POSTURE) - q) * 25.0 - v * 10.0);
     // Posture torques projected into the nullspace: the part Jᵀ Λ J M⁻¹ that would move the hand is
     // subtracted.
     let moving = jacobian.transpose() * (inertia * (jacobian * (inverse_mass * posture)));
@@ -69,7 +70,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let found = InverseKinematics::new().reach(&arm, 0.0, &[target], &POSTURE.into())?;
 
     let run = simulate(&arm)
-        .from(found.q, Joints::zeros())
+        .from(found.q, JointVector::zeros())
         .control_every(1e-3, hand_control_torques)
         .method(Rk4::step(1e-3))
         .duration(2.0 * PI / RATE)
@@ -94,7 +95,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             sample.q[2]
         );
         assert!(share <= 1.0, "no motor gives more than it can");
-        posture_kept = posture_kept.max((sample.q - Joints::from(POSTURE)).amax());
+        posture_kept = posture_kept.max((sample.q - JointVector::from(POSTURE)).amax());
         if sample.t > 1.0 {
             assert!(off < 1e-5 && turned < 1e-4, "a hundredth of a millimetre, a tenth of a milliradian");
         }
@@ -104,6 +105,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 #[test]
-fn it_holds() -> Result<(), Box<dyn std::error::Error>> {
+fn hand_follows_the_circle() -> Result<(), Box<dyn std::error::Error>> {
     main()
 }

@@ -17,9 +17,9 @@
 use linkwork::contact::{self, Touch};
 use linkwork::prelude::*;
 
-/// Hip on two legs; `x` points down the slope, `y` is normal to it.
+/// Walker: hip on two legs; `x` points down the slope, `y` is normal to it.
 #[mechanism(gravity = sin(slope) * x - cos(slope) * y)]
-struct Walker {
+struct CompassWalker {
     /// Angle of the slope, rad.
     #[unit(rad)]
     slope: f64,
@@ -46,13 +46,13 @@ struct Walker {
 
 /// State of a gait just after a touchdown, with both feet on the ground: the angle of the stance leg from the
 /// slope's normal, and its rate.
-type Gait = [f64; 2];
+type GaitState = [f64; 2];
 
-/// Published fixed point for the slope 0.009.
-const PUBLISHED: Gait = [0.200310900544287, -0.199832473004977];
+/// Published fixed point of the walking step for the slope 0.009.
+const PUBLISHED: GaitState = [0.200310900544287, -0.199832473004977];
 
 /// Returns the state with this gait and the left leg at the origin.
-fn state_of_gait([angle, rate]: Gait) -> (SVector<f64, 4>, SVector<f64, 4>) {
+fn state_of_gait([angle, rate]: GaitState) -> (SVector<f64, 4>, SVector<f64, 4>) {
     let (sin, cos) = angle.sin_cos();
     let q = [-sin, cos, angle, -angle].into();
     (q, [-cos * rate, -sin * rate, rate, rate * (2.0 * angle).cos()].into())
@@ -60,7 +60,10 @@ fn state_of_gait([angle, rate]: Gait) -> (SVector<f64, 4>, SVector<f64, 4>) {
 
 /// Simulates one step on the left leg. Returns the gait after the touchdown of the right foot, the duration,
 /// the distance of the hip, and the energy that the touchdown dissipates.
-fn step(walker: &Walker, gait: Gait) -> Result<(Gait, f64, f64, f64), Box<dyn std::error::Error>> {
+fn simulate_step(
+    walker: &CompassWalker,
+    gait: GaitState,
+) -> Result<(GaitState, f64, f64, f64), Box<dyn std::error::Error>> {
     let (q, v) = state_of_gait(gait);
     let stance = contact::hold(walker, [Touch::Sticks, Touch::Open]);
     // Both feet are also on the ground in mid-swing, when the sum of the angles rises through zero: that
@@ -76,10 +79,10 @@ fn step(walker: &Walker, gait: Gait) -> Result<(Gait, f64, f64, f64), Box<dyn st
     Ok(([end.q[3], after.v[3]], end.t, end.q[0] - q[0], lost))
 }
 
-/// Prints the gait, and the decay of a disturbance.
+/// Prints the gait of the walker, and the decay of a disturbance.
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let walker = Walker { slope: 0.009, foot: 1e-7 };
-    let (next, time, way, lost) = step(&walker, PUBLISHED)?;
+    let walker = CompassWalker { slope: 0.009, foot: 1e-7 };
+    let (next, time, way, lost) = simulate_step(&walker, PUBLISHED)?;
     println!("a step: {time:.4} √(l/g), {way:.4} l");
     // The published gait, for massless feet, is reproduced.
     for (found, published) in next.iter().zip(PUBLISHED) {
@@ -92,7 +95,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The gait recovers from a disturbance.
     let mut gait = [PUBLISHED[0] * 1.003, PUBLISHED[1] * 0.998];
     for count in 1..=60 {
-        gait = step(&walker, gait)?.0;
+        gait = simulate_step(&walker, gait)?.0;
         if count % 15 == 0 {
             println!("after {count} steps off by {:.1e}", (gait[0] - PUBLISHED[0]).abs());
         }
@@ -100,12 +103,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     assert!((gait[0] - PUBLISHED[0]).abs() < 1e-6 && (gait[1] - PUBLISHED[1]).abs() < 1e-6);
 
     // On level ground the walker falls before the other foot touches down.
-    let level = Walker { slope: 0.0, ..walker };
-    assert!(step(&level, PUBLISHED).is_err());
+    let level = CompassWalker { slope: 0.0, ..walker };
+    assert!(simulate_step(&level, PUBLISHED).is_err());
     Ok(())
 }
 
 #[test]
-fn it_walks_as_published() -> Result<(), Box<dyn std::error::Error>> {
+fn walker_has_the_published_gait() -> Result<(), Box<dyn std::error::Error>> {
     main()
 }

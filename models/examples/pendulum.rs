@@ -8,7 +8,7 @@ use linkwork::prelude::*;
 
 /// Uniform rod on a hinge, with friction and a motor.
 #[mechanism(gravity = -9.81 * y)]
-struct Pendulum {
+struct DrivenPendulum {
     // Plain fields are parameters. They remain fields of the struct.
     mass: f64,
     length: f64,
@@ -26,8 +26,8 @@ struct Pendulum {
 }
 
 fn main() -> Result<(), Error> {
-    let pendulum = Pendulum { mass: 2.0, length: 1.5, friction: 0.3 };
-    println!("{}", Pendulum::EQUATIONS);
+    let pendulum = DrivenPendulum { mass: 2.0, length: 1.5, friction: 0.3 };
+    println!("{}", DrivenPendulum::EQUATIONS);
 
     // Every function is generated for this mechanism. Configuration q, velocity v and forces are vectors.
     let (q, v) = (SVector::from([0.5]), SVector::from([0.0]));
@@ -48,7 +48,7 @@ fn main() -> Result<(), Error> {
         .inputs(|t, _q, _v| SVector::from([0.5 * t.sin()]))
         .duration(5.0)
         .sample_every(0.5);
-    println!("  t, s   {}, rad   motor, N·m   energy, J", Pendulum::CONFIGURATION[0]);
+    println!("  t, s   {}, rad   motor, N·m   energy, J", DrivenPendulum::CONFIGURATION[0]);
     let mut samples = 0;
     for sample in run {
         let Sample { t, q, v, u, .. } = sample?;
@@ -63,6 +63,6 @@ fn main() -> Result<(), Error> {
 }
 
 #[test]
-fn it_holds() -> Result<(), Error> {
+fn example_pendulum_runs() -> Result<(), Error> {
     main()
 }

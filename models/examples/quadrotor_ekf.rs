@@ -54,11 +54,11 @@ struct Quadrotor {
 type Pose = SVector<f64, { Quadrotor::NQ }>;
 type Twist = SVector<f64, { Quadrotor::NV }>;
 type Thrusts = SVector<f64, { Quadrotor::NU }>;
-/// Error of the state: displacement, then velocity.
-type Error12 = SVector<f64, 12>;
-type Measured = SVector<f64, 9>;
+/// Error of the estimated state: displacement, then velocity.
+type StateError = SVector<f64, 12>;
+type Measurements = SVector<f64, 9>;
 
-/// Period of the controller and of the measurements, s, and the integrator of a period.
+/// Period of the controller and of the measurements, s. The constant `METHOD` is the integrator of a period.
 const PERIOD: f64 = 0.01;
 const METHOD: Rk4<f64> = Rk4::step(PERIOD);
 /// Standard deviations of the changes of linear and angular velocity by gusts in a period, m/s and rad/s.
@@ -69,9 +69,9 @@ const UNIT: Range<usize> = 0..6;
 const FIX: Range<usize> = 6..9;
 
 /// Random numbers with a standard normal distribution (splitmix64; Box and Muller).
-struct Random(u64);
+struct RandomNumbers(u64);
 
-impl Random {
+impl RandomNumbers {
     fn uniform_number(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.0;
@@ -86,14 +86,14 @@ impl Random {
 }
 
 /// Estimate of the state with the covariance of its displacements and velocities.
-struct Belief {
+struct StateEstimate {
     q: Pose,
     v: Twist,
     spread: SMatrix<f64, 12, 12>,
 }
 
-impl Belief {
-    /// Predicts the estimate over one period with gusts.
+impl StateEstimate {
+    /// Predicts the estimate over one period, with the uncertainty due to gusts.
     fn predict_estimate(&mut self, u: &Thrusts) -> Result<(), Error> {
         let next = discrete::transition(&Quadrotor {}, &METHOD, 0.0, &self.q, &self.v, u)?;
         let a = next.a::<12>();
@@ -106,12 +106,12 @@ impl Belief {
     }
 
     /// Corrects the estimate with the measured outputs of `rows`, one scalar after the other.
-    fn correct_estimate(&mut self, u: &Thrusts, measured: &Measured, rows: Range<usize>) {
+    fn correct_estimate(&mut self, u: &Thrusts, measured: &Measurements, rows: Range<usize>) {
         let (m, q, v) = (Quadrotor {}, self.q, self.v);
         let motion = m.linear_motion(&q, &v, u);
         let seen = m.output_derivatives(0.0, &q, &v, &motion.acceleration, u).in_motion(&motion);
         let (c, expected) = (seen.c::<12>(), m.outputs(0.0, &q, &v, &motion.acceleration, u));
-        let mut x = Error12::zeros();
+        let mut x = StateError::zeros();
         for row in rows {
             let c = c.row(row);
             let shared = self.spread * c.transpose();
@@ -123,8 +123,8 @@ impl Belief {
         (self.q, self.v) = (m.integrate(&q, &dq), v + dv);
     }
 
-    /// Returns the error of the estimate from a state.
-    fn error_of_estimate(&self, q: &Pose, v: &Twist) -> Error12 {
+    /// Returns the error of the estimate relative to the true state.
+    fn error_of_estimate(&self, q: &Pose, v: &Twist) -> StateError {
         discrete::stacked(&Quadrotor {}.difference(&self.q, q), &(v - self.v))
     }
 }
@@ -144,7 +144,7 @@ fn hover_regulator() -> Option<(Thrusts, Policy<f64, 6, 4>)> {
 }
 
 /// Returns the thrusts for the estimated state, towards a moving point on a circle.
-fn steering_thrusts(hover: &(Thrusts, Policy<f64, 6, 4>), t: f64, belief: &Belief) -> Thrusts {
+fn steering_thrusts(hover: &(Thrusts, Policy<f64, 6, 4>), t: f64, belief: &StateEstimate) -> Thrusts {
     let (sin, cos) = (0.8 * t).sin_cos();
     let (target, speed) = ([2.0 * cos, 2.0 * sin, 1.0], [-1.6 * sin, 1.6 * cos, 0.0]);
     let pose = Quadrotor {}
@@ -153,38 +153,41 @@ fn steering_thrusts(hover: &(Thrusts, Policy<f64, 6, 4>), t: f64, belief: &Belie
     hover.0 + hover.1.inputs(1.0, &Quadrotor {}.difference(&pose, &belief.q), &dv)
 }
 
-/// Mean squared errors of a flight.
+/// Mean squared errors of the estimate during a flight.
 #[derive(Default)]
-struct Figures {
+struct FlightErrors {
     position: f64,
     tilt: f64,
     speed: f64,
-    /// Squared error normalised by the covariance: 12 for a consistent filter.
+    /// Squared error of the estimate, normalised by its covariance: 12 for a consistent filter.
     normalised: f64,
 }
 
 /// Simulates a flight of some seconds, and prints it if requested.
-fn simulate_flight(seed: u64, seconds: f64, print: bool) -> Result<Figures, Error> {
-    let (m, mut random) = (Quadrotor {}, Random(seed));
+fn simulate_flight(seed: u64, seconds: f64, print: bool) -> Result<FlightErrors, Error> {
+    let (m, mut random) = (Quadrotor {}, RandomNumbers(seed));
     let hover = hover_regulator().expect("four rotors can keep it in its place");
     // The true initial state deviates randomly from the estimate.
-    let deviations = Error12::from_fn(|k, _| [0.3, 0.15, 0.3, 0.1][k / 3]);
+    let deviations = StateError::from_fn(|k, _| [0.3, 0.15, 0.3, 0.1][k / 3]);
     let off = deviations.map(|deviation| deviation * random.normal_number());
     let start = m.integrate(&m.neutral(), &[2.0, 0.0, 1.0, 0.0, 0.0, 0.0].into());
-    let mut belief =
-        Belief { q: start, v: Twist::zeros(), spread: SMatrix::from_diagonal(&deviations.map(|x| x * x)) };
+    let mut belief = StateEstimate {
+        q: start,
+        v: Twist::zeros(),
+        spread: SMatrix::from_diagonal(&deviations.map(|x| x * x)),
+    };
     let (dq, dv) = discrete::split(&off);
     let (mut q, mut v) = (m.integrate(&start, &dq), dv);
 
-    let (steps, mut sum) = ((seconds / PERIOD) as usize, Figures::default());
+    let (steps, mut sum) = ((seconds / PERIOD) as usize, FlightErrors::default());
     for k in 0..steps {
         let t = PERIOD * k as f64;
         let u = steering_thrusts(&hover, t, &belief);
         (q, v) = discrete::step(&m, &METHOD, 0.0, &q, &v, &u)?;
         v += Twist::from_fn(|i, _| GUSTS[i / 3] * random.normal_number());
         let a = m.forward_dynamics(&q, &v, &m.generalized_forces(&q, &u));
-        let measured =
-            m.outputs(0.0, &q, &v, &a, &u) + Measured::from_fn(|i, _| NOISE[i / 3] * random.normal_number());
+        let measured = m.outputs(0.0, &q, &v, &a, &u)
+            + Measurements::from_fn(|i, _| NOISE[i / 3] * random.normal_number());
 
         belief.predict_estimate(&u)?;
         belief.correct_estimate(&u, &measured, UNIT);
@@ -216,7 +219,7 @@ fn main() -> Result<(), Error> {
     let flights =
         [simulate_flight(1, 5.0, true)?, simulate_flight(2, 5.0, false)?, simulate_flight(3, 5.0, false)?];
     let mean_over_flights =
-        |figure: fn(&Figures) -> f64| flights.iter().map(figure).sum::<f64>() / flights.len() as f64;
+        |figure: fn(&FlightErrors) -> f64| flights.iter().map(figure).sum::<f64>() / flights.len() as f64;
     let [position, tilt, speed] =
         [mean_over_flights(|f| f.position), mean_over_flights(|f| f.tilt), mean_over_flights(|f| f.speed)]
             .map(f64::sqrt);
@@ -233,6 +236,6 @@ fn main() -> Result<(), Error> {
 }
 
 #[test]
-fn it_holds() -> Result<(), Error> {
+fn filter_estimates_the_flight() -> Result<(), Error> {
     main()
 }

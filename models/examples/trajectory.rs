@@ -11,9 +11,9 @@ use linkwork::optimal::{Policy, Quadratic, Value, backward};
 use linkwork::prelude::*;
 use std::f64::consts::PI;
 
-/// Cart on a rail, with a pole that hangs down at zero.
+/// Test mechanism of the optimisation: cart on a rail, with a pole that hangs down at zero.
 #[mechanism(gravity = -9.81 * y, second_derivatives)]
-struct CartPole {
+struct HangingCartPole {
     #[body(mass = 1)]
     cart: Body,
     #[body(mass = 0.3, com = -0.4 * y, inertia = rod(0.3, 0.8, y))]
@@ -26,23 +26,23 @@ struct CartPole {
     push: Force,
 }
 
-/// Position of the cart, m, and angle of the pole, rad; or their rates.
+/// Position of the cart, m, and angle of the pole, rad; or the rates of these two.
 type State = SVector<f64, 2>;
-type Push = SVector<f64, 1>;
-/// Feedback policies of all steps.
+type PushForce = SVector<f64, 1>;
+/// Feedback policies of all steps of the trajectory.
 type Policies = [Policy<f64, 2, 1>; STEPS];
 
 /// Number of steps of the trajectory, and the period of each, s.
 const STEPS: usize = 60;
 const PERIOD: f64 = 0.03;
-/// Integrator of a period.
+/// Integration method for a step of the trajectory.
 const METHOD: Rk4<f64> = Rk4::step(PERIOD);
 
-/// States including the initial one, and the inputs between them.
+/// Trajectory: all states including the initial one, and the inputs between them.
 #[derive(Clone)]
-struct Trajectory {
+struct PlannedTrajectory {
     states: [(State, State); STEPS + 1],
-    inputs: [Push; STEPS],
+    inputs: [PushForce; STEPS],
 }
 
 /// Returns the final configuration: the cart at its initial position, the pole upright.
@@ -51,7 +51,7 @@ fn goal_state() -> State {
 }
 
 /// Returns the cost of a step, to second order in the input force, which is the only running cost.
-fn step_costs(u: &Push) -> Quadratic<f64, 2, 1> {
+fn step_costs(u: &PushForce) -> Quadratic<f64, 2, 1> {
     let weight = 0.02 * PERIOD;
     Quadratic { u: u * weight, uu: [weight].into(), ..Quadratic::zeros() }
 }
@@ -62,21 +62,21 @@ fn end_costs(q: &State, v: &State) -> Value<f64, 2> {
     Value { q: (q - goal_state()) * 100.0, v: v * 100.0, qq: weight, vv: weight, ..Value::zeros() }
 }
 
-impl Trajectory {
+impl PlannedTrajectory {
     fn total_costs(&self) -> f64 {
         let pushes: f64 = self.inputs.iter().map(|u| step_costs(u).u.dot(u) / 2.0).sum();
         let (q, v) = self.states[STEPS];
         pushes + 50.0 * ((q - goal_state()).norm_squared() + v.norm_squared())
     }
 
-    /// Returns the trajectory from the same initial state under policies about this one, with the step length
-    /// `α` of their changes.
+    /// Returns the trajectory from the same initial state under feedback policies about this one, with the
+    /// step length `α` of their changes.
     fn follow_policies(&self, policies: &Policies, length: f64) -> Result<Self, Error> {
         let mut next = self.clone();
         for (k, policy) in policies.iter().enumerate() {
             let ((q, v), (old_q, old_v)) = (next.states[k], self.states[k]);
             next.inputs[k] = self.inputs[k] + policy.inputs(length, &(q - old_q), &(v - old_v));
-            next.states[k + 1] = discrete::step(&CartPole {}, &METHOD, 0.0, &q, &v, &next.inputs[k])?;
+            next.states[k + 1] = discrete::step(&HangingCartPole {}, &METHOD, 0.0, &q, &v, &next.inputs[k])?;
         }
         Ok(next)
     }
@@ -91,7 +91,7 @@ impl Trajectory {
             by_v: SMatrix::zeros(),
             expected: [0.0; 2],
         };
-        let (m, mut policies, mut saved) = (CartPole {}, [none; STEPS], 0.0);
+        let (m, mut policies, mut saved) = (HangingCartPole {}, [none; STEPS], 0.0);
         let (q, v) = self.states[STEPS];
         let mut to_go = end_costs(&q, &v);
         for k in (0..STEPS).rev() {
@@ -113,14 +113,15 @@ impl Trajectory {
     }
 }
 
-/// Result of a method, with the largest change of the force in each iteration, N.
-struct Found {
-    best: Trajectory,
+/// Trajectory that an optimisation method has found, with the largest change of the force in each iteration,
+/// N.
+struct OptimisedTrajectory {
+    best: PlannedTrajectory,
     changes: Vec<f64>,
 }
 
 /// Improves a trajectory until its forces converge.
-fn optimise_trajectory(start: &Trajectory, ddp: bool) -> Result<Found, Error> {
+fn optimise_trajectory(start: &PlannedTrajectory, ddp: bool) -> Result<OptimisedTrajectory, Error> {
     let (mut best, mut regularisation, mut changes) = (start.clone(), 1e-3, Vec::new());
     for _ in 0..500 {
         let Some((policies, saved)) = best.optimal_policies(ddp, regularisation)? else {
@@ -132,8 +133,9 @@ fn optimise_trajectory(start: &Trajectory, ddp: bool) -> Result<Found, Error> {
         // states that are not finite.
         let lengths = (0..10).map(|k| 0.5_f64.powi(k));
         let mut tried = lengths.filter_map(|length| best.follow_policies(&policies, length).ok());
-        let has_sufficient_decrease =
-            |next: &Trajectory| saved < 1e-11 || next.total_costs() < best.total_costs() - 1e-4 * saved;
+        let has_sufficient_decrease = |next: &PlannedTrajectory| {
+            saved < 1e-11 || next.total_costs() < best.total_costs() - 1e-4 * saved
+        };
         let Some(next) = tried.find(has_sufficient_decrease) else {
             regularisation = (4.0 * regularisation).max(1e-6);
             continue;
@@ -146,17 +148,19 @@ fn optimise_trajectory(start: &Trajectory, ddp: bool) -> Result<Found, Error> {
             break;
         }
     }
-    Ok(Found { best, changes })
+    Ok(OptimisedTrajectory { best, changes })
 }
 
 fn main() -> Result<(), Error> {
     // Initial guess: the pole hangs, and the cart is pushed back and forth slightly.
-    let mut start =
-        Trajectory { states: [(State::zeros(), State::zeros()); STEPS + 1], inputs: [Push::zeros(); STEPS] };
+    let mut start = PlannedTrajectory {
+        states: [(State::zeros(), State::zeros()); STEPS + 1],
+        inputs: [PushForce::zeros(); STEPS],
+    };
     for (k, u) in start.inputs.iter_mut().enumerate() {
         u[0] = 2.0 * (4.0 * PERIOD * k as f64).sin();
         let (q, v) = start.states[k];
-        start.states[k + 1] = discrete::step(&CartPole {}, &METHOD, 0.0, &q, &v, u)?;
+        start.states[k + 1] = discrete::step(&HangingCartPole {}, &METHOD, 0.0, &q, &v, u)?;
     }
     let [ilqr, ddp] = [optimise_trajectory(&start, false)?, optimise_trajectory(&start, true)?];
 
@@ -189,6 +193,6 @@ fn main() -> Result<(), Error> {
 }
 
 #[test]
-fn it_holds() -> Result<(), Error> {
+fn swing_up_reaches_upright() -> Result<(), Error> {
     main()
 }

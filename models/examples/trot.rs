@@ -15,9 +15,9 @@ use linkwork::contact;
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
 
-/// Solo 12 on the ground, each foot a sphere.
+/// Quadruped Solo 12 on the ground, with a sphere as each foot.
 #[mechanism(urdf = "urdf/solo12.urdf", base = free, gravity = -9.81 * z, limits = ignore)]
-struct Solo {
+struct WalkingSolo {
     #[contact(FL_FOOT.sphere(0.016), ground.plane(z), friction = 0.8)]
     front_left: Contact,
     #[contact(FR_FOOT.sphere(0.016), ground.plane(z), friction = 0.8)]
@@ -31,23 +31,23 @@ struct Solo {
 type Configuration = SVector<f64, 19>;
 type Velocity = SVector<f64, 18>;
 
-/// Length of thigh and shank, m.
+/// Length of the thigh, and of the shank, of each leg, m.
 const SEGMENT: f64 = 0.16;
-/// Height of the hips above the feet, and height of a lifted foot, m.
+/// Height of the hips above the feet, m. The constant below is the height of a lifted foot, m.
 const HEIGHT: f64 = 0.23;
 const LIFT: f64 = 0.04;
-/// Stiffness and damping of the joints, N·m/rad and N·m·s/rad.
+/// Stiffness of the joint springs, N·m/rad. The constant below is their damping, N·m·s/rad.
 const STIFFNESS: f64 = 30.0;
 const DAMPING: f64 = 0.5;
 /// Time in which the gait grows from standing to its full amplitude, s.
 const BEGINS: f64 = 1.0;
 
-/// Timing of the feet.
-struct Gait {
+/// Gait: timing and speed of the feet.
+struct GaitTiming {
     name: &'static str,
-    /// Period of a cycle, s.
+    /// Period of a gait cycle, s.
     period: f64,
-    /// Fraction of a cycle in which a foot stands.
+    /// Fraction of a gait cycle in which a foot stands.
     duty: f64,
     /// Phase of each foot as a fraction of a cycle: front left and right, hind left and right.
     phases: [f64; 4],
@@ -55,10 +55,12 @@ struct Gait {
     speed: f64,
 }
 
-const TROT: Gait = Gait { name: "trot", period: 0.4, duty: 0.5, phases: [0.0, 0.5, 0.5, 0.0], speed: 0.3 };
-const WALK: Gait = Gait { name: "walk", period: 0.6, duty: 0.8, phases: [0.25, 0.75, 0.0, 0.5], speed: 0.1 };
+const TROT: GaitTiming =
+    GaitTiming { name: "trot", period: 0.4, duty: 0.5, phases: [0.0, 0.5, 0.5, 0.0], speed: 0.3 };
+const WALK: GaitTiming =
+    GaitTiming { name: "walk", period: 0.6, duty: 0.8, phases: [0.25, 0.75, 0.0, 0.5], speed: 0.1 };
 
-impl Gait {
+impl GaitTiming {
     /// Returns the desired position of a foot relative to its hip, forwards and up, m.
     fn desired_foot_position(&self, foot: usize, t: f64) -> [f64; 2] {
         let grown = (t / BEGINS).clamp(0.0, 1.0);
@@ -72,7 +74,7 @@ impl Gait {
         [-reach * angle.cos(), -HEIGHT + grown * LIFT * angle.sin().powi(2)]
     }
 
-    /// Returns the angles of hip, thigh and shank for the desired foot position, rad.
+    /// Returns the angles of hip, thigh and shank for the desired foot position at a time, rad.
     fn desired_leg_angles(&self, foot: usize, t: f64) -> [f64; 3] {
         let [x, z] = self.desired_foot_position(foot, t);
         let knee = -2.0 * (x.hypot(z) / (2.0 * SEGMENT)).acos();
@@ -95,9 +97,9 @@ fn trunk_tilt(q: &Configuration) -> f64 {
     (1.0 - 2.0 * (q[3] * q[3] + q[4] * q[4])).clamp(-1.0, 1.0).acos()
 }
 
-/// Simulates a gait for some seconds, and checks it.
-fn simulate_gait(gait: &Gait, duration: f64) -> Result<(), Box<dyn std::error::Error>> {
-    let robot = Solo {};
+/// Simulates a gait for some seconds, and checks its speed and the posture of the trunk.
+fn simulate_gait(gait: &GaitTiming, duration: f64) -> Result<(), Box<dyn std::error::Error>> {
+    let robot = WalkingSolo {};
     let mut start = robot.neutral();
     for foot in 0..4 {
         start.fixed_rows_mut::<3>(7 + 3 * foot).copy_from_slice(&gait.desired_leg_angles(foot, 0.0));
@@ -154,6 +156,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 #[test]
-fn it_goes() -> Result<(), Box<dyn std::error::Error>> {
+fn quadruped_trots_and_walks() -> Result<(), Box<dyn std::error::Error>> {
     main()
 }

@@ -15,9 +15,9 @@ use linkwork::contact::{self, Touch};
 use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::prelude::*;
 
-/// Solo 12 on the ground, each foot a sphere.
+/// Quadruped Solo 12 on the ground, with a sphere as each foot.
 #[mechanism(urdf = "urdf/solo12.urdf", base = free, gravity = -9.81 * z, limits = ignore, derivatives)]
-struct Solo {
+struct StandingSolo {
     #[contact(FL_FOOT.sphere(0.016), ground.plane(z), friction = 0.6)]
     front_left: Contact,
     #[contact(FR_FOOT.sphere(0.016), ground.plane(z), friction = 0.6)]
@@ -32,7 +32,7 @@ type Configuration = SVector<f64, 19>;
 type Velocity = SVector<f64, 18>;
 type Torques = SVector<f64, 12>;
 
-/// Angles of hip, thigh and shank of each leg, rad.
+/// Initial angles of hip, thigh and shank of each leg, rad.
 const POSTURE: [f64; 3] = [0.0, 0.8, -1.6];
 const STANDING: [Touch; 4] = [Touch::Sticks; 4];
 /// Weight of torques relative to tangential forces, (N/(N·m))², and weight of normal forces, which
@@ -43,7 +43,8 @@ const NORMAL: f64 = 1e-2;
 const REACH: [f64; 3] = [0.03, 0.015, 0.12];
 const RATE: f64 = 6.0;
 
-/// Returns the desired displacement of the trunk from the start, in its axes, with velocity and acceleration.
+/// Returns the desired displacement of the trunk from its initial pose, in its axes, with velocity and
+/// acceleration.
 fn desired_trunk_motion(t: f64) -> [SVector<f64, 6>; 3] {
     let [side, up, nod] = REACH;
     let trunk_vector = |sin: f64, cos: f64| SVector::from([0.0, side * sin, up * cos, 0.0, nod * sin, 0.0]);
@@ -60,22 +61,22 @@ fn desired_trunk_motion(t: f64) -> [SVector<f64, 6>; 3] {
     [x * grown, rate * grown + x * growth, change * grown + rate * (2.0 * growth) + x * bend]
 }
 
-/// Returns the configuration with the desired pose of the trunk.
+/// Returns the configuration in which the trunk has its desired pose.
 fn configuration_with_trunk_pose(start: &Configuration, t: f64) -> Configuration {
     let [place, ..] = desired_trunk_motion(t);
     let mut displacement = Velocity::zeros();
     displacement.fixed_rows_mut::<6>(0).copy_from(&place);
-    Solo {}.integrate(start, &displacement)
+    StandingSolo {}.integrate(start, &displacement)
 }
 
-/// Returns the torques, and the contact forces that they cause.
+/// Returns the joint torques, and the contact forces that they cause.
 fn torques_and_contact_forces(
     start: &Configuration,
     t: f64,
     q: &Configuration,
     v: &Velocity,
 ) -> (Torques, SVector<f64, 12>) {
-    let robot = Solo {};
+    let robot = StandingSolo {};
     let missing = robot.difference(q, &configuration_with_trunk_pose(start, t));
     let [_, velocity, acceleration] = desired_trunk_motion(t);
     let off = missing.fixed_rows::<6>(0) * 900.0 + (velocity - v.fixed_rows::<6>(0)) * 60.0;
@@ -113,7 +114,7 @@ fn largest_friction_ratio(forces: &SVector<f64, 12>) -> f64 {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let robot = Solo {};
+    let robot = StandingSolo {};
     let mut start = robot.neutral();
     for leg in 0..4 {
         start.fixed_rows_mut::<3>(7 + 3 * leg).copy_from_slice(&POSTURE);
@@ -156,6 +157,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 #[test]
-fn it_holds() -> Result<(), Box<dyn std::error::Error>> {
+fn contact_forces_stay_in_cones() -> Result<(), Box<dyn std::error::Error>> {
     main()
 }

@@ -19,13 +19,13 @@ use linkwork::mechanism;
 pub struct Aircraft {
     /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// Mass, kg.
+    /// Mass of the aircraft, kg.
     pub mass: f64,
-    /// Moment of inertia about the forward axis, kg·m².
+    /// Moment of inertia of the aircraft about its forward axis, kg·m².
     pub ixx: f64,
-    /// Moment of inertia about the right axis, kg·m².
+    /// Moment of inertia of the aircraft about its right axis, kg·m².
     pub iyy: f64,
-    /// Moment of inertia about the downward axis, kg·m².
+    /// Moment of inertia of the aircraft about its downward axis, kg·m².
     pub izz: f64,
     /// Entry of the inertia matrix in row x and column z, kg·m²: minus the product of inertia of the
     /// handbooks.
@@ -34,13 +34,13 @@ pub struct Aircraft {
     pub density: f64,
     /// Wing area, m².
     pub area: f64,
-    /// Mean chord, m.
+    /// Mean chord of the wing, m.
     pub chord: f64,
     /// Lift coefficient at zero angle of attack.
     pub cl_0: f64,
     /// Slope of the lift coefficient with the angle of attack, 1/rad.
     pub cl_alpha: f64,
-    /// Drag coefficient without lift.
+    /// Drag coefficient at zero lift.
     pub cd_0: f64,
     /// Induced drag: factor of the squared lift coefficient.
     pub cd_induced: f64,

@@ -59,7 +59,7 @@ pub struct AndrewsSqueezer {
 }
 
 impl AndrewsSqueezer {
-    /// Initial configuration of the test set, at rest, with closed loops.
+    /// Initial configuration in the problem of the test set, at rest, with closed loops.
     pub const START: [f64; 7] = [
         -0.061_713_890_014_276_45,
         0.0,

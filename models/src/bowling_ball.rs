@@ -16,13 +16,13 @@ use linkwork::mechanism;
 pub struct BowlingBall {
     /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// Mass, kg.
+    /// Mass of the ball, kg.
     pub mass: f64,
-    /// Radius, m.
+    /// Radius of the ball, m.
     pub radius: f64,
-    /// Coefficient of friction `μ`.
+    /// Coefficient of friction `μ` between ball and lane.
     pub friction: f64,
-    /// Speed below which friction is smooth, `v₀`, m/s.
+    /// Slip velocity below which friction is smooth, `v₀`, m/s.
     pub regular_speed: f64,
 
     #[body(mass = mass, inertia = sphere(mass, radius))]

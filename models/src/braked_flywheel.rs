@@ -13,11 +13,11 @@ use linkwork::mechanism;
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BrakedFlywheel {
-    /// Moment of inertia, kg·m².
+    /// Moment of inertia of the flywheel, kg·m².
     pub inertia: f64,
     /// Torque of the brake, N·m.
     pub brake_torque: f64,
-    /// Speed below which the wheel is considered at rest, rad/s.
+    /// Angular velocity below which the flywheel is considered at rest, rad/s.
     pub creep: f64,
 
     #[body(inertia = diagonal(inertia / 2, inertia / 2, inertia))]

@@ -11,9 +11,9 @@ use linkwork::mechanism;
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChaplyginSleigh {
-    /// Mass, kg.
+    /// Mass of the sleigh, kg.
     pub m: f64,
-    /// Moment of inertia about the centre of mass, kg·m².
+    /// Moment of inertia of the sleigh about its centre of mass, kg·m².
     pub j: f64,
     /// Distance of the centre of mass ahead of the knife, m.
     pub a: f64,

@@ -12,9 +12,9 @@ use linkwork::mechanism;
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChargedParticle {
-    /// Mass, kg.
+    /// Mass of the particle, kg.
     pub mass: f64,
-    /// Charge, C.
+    /// Electric charge of the particle, C.
     pub charge: f64,
     /// Electric field along y, V/m.
     pub electric: f64,

@@ -18,13 +18,13 @@ use linkwork::mechanism;
 pub struct CruisingAircraft {
     /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// Mass, kg.
+    /// Mass of the aircraft, kg.
     pub mass: f64,
-    /// Moment of inertia about the forward axis, kg·m².
+    /// Moment of inertia of the aircraft about its forward axis, kg·m².
     pub ixx: f64,
-    /// Moment of inertia about the right axis, kg·m².
+    /// Moment of inertia of the aircraft about its right axis, kg·m².
     pub iyy: f64,
-    /// Moment of inertia about the downward axis, kg·m².
+    /// Moment of inertia of the aircraft about its downward axis, kg·m².
     pub izz: f64,
     /// Product of inertia of the handbooks, kg·m²: minus the entry of the inertia matrix in row x and column
     /// z.
@@ -37,61 +37,61 @@ pub struct CruisingAircraft {
     /// Wing area, m².
     #[unit(m2)]
     pub area: f64,
-    /// Mean chord, m.
+    /// Mean chord of the wing, m.
     #[unit(m)]
     pub chord: f64,
     /// Wing span, m.
     #[unit(m)]
     pub span: f64,
-    /// Derivative `C_Xu` of the forward force.
+    /// Derivative `C_Xu` of the forward force with respect to the speed.
     pub cx_u: f64,
-    /// Derivative `C_Xα` of the forward force.
+    /// Derivative `C_Xα` of the forward force with respect to the angle of attack.
     pub cx_alpha: f64,
-    /// Derivative `C_Xδ` of the forward force by the elevator.
+    /// Derivative `C_Xδ` of the forward force with respect to the elevator angle.
     pub cx_elevator: f64,
-    /// Derivative `C_Zu` of the downward force.
+    /// Derivative `C_Zu` of the downward force with respect to the speed.
     pub cz_u: f64,
-    /// Derivative `C_Zα` of the downward force.
+    /// Derivative `C_Zα` of the downward force with respect to the angle of attack.
     pub cz_alpha: f64,
-    /// Derivative `C_Zq` of the downward force.
+    /// Derivative `C_Zq` of the downward force with respect to the pitch rate.
     pub cz_q: f64,
-    /// Derivative `C_Zα̇` of the downward force.
+    /// Derivative `C_Zα̇` of the downward force with respect to the rate of the angle of attack.
     pub cz_alpha_rate: f64,
-    /// Derivative `C_Zδ` of the downward force by the elevator.
+    /// Derivative `C_Zδ` of the downward force with respect to the elevator angle.
     pub cz_elevator: f64,
-    /// Derivative `C_mu` of the pitching moment.
+    /// Derivative `C_mu` of the pitching moment with respect to the speed.
     pub cm_u: f64,
-    /// Derivative `C_mα` of the pitching moment.
+    /// Derivative `C_mα` of the pitching moment with respect to the angle of attack.
     pub cm_alpha: f64,
-    /// Derivative `C_mq` of the pitching moment.
+    /// Derivative `C_mq` of the pitching moment with respect to the pitch rate.
     pub cm_q: f64,
-    /// Derivative `C_mα̇` of the pitching moment.
+    /// Derivative `C_mα̇` of the pitching moment with respect to the rate of the angle of attack.
     pub cm_alpha_rate: f64,
-    /// Derivative `C_mδ` of the pitching moment by the elevator.
+    /// Derivative `C_mδ` of the pitching moment with respect to the elevator angle.
     pub cm_elevator: f64,
-    /// Derivative `C_Yβ` of the side force.
+    /// Derivative `C_Yβ` of the side force with respect to the sideslip angle.
     pub cy_beta: f64,
-    /// Derivative `C_Yδ` of the side force by the rudder.
+    /// Derivative `C_Yδ` of the side force with respect to the rudder angle.
     pub cy_rudder: f64,
-    /// Derivative `C_lβ` of the rolling moment.
+    /// Derivative `C_lβ` of the rolling moment with respect to the sideslip angle.
     pub cl_beta: f64,
-    /// Derivative `C_lp` of the rolling moment.
+    /// Derivative `C_lp` of the rolling moment with respect to the roll rate.
     pub cl_p: f64,
-    /// Derivative `C_lr` of the rolling moment.
+    /// Derivative `C_lr` of the rolling moment with respect to the yaw rate.
     pub cl_r: f64,
-    /// Derivative `C_lδ` of the rolling moment by the ailerons.
+    /// Derivative `C_lδ` of the rolling moment with respect to the aileron angle.
     pub cl_aileron: f64,
-    /// Derivative `C_lδ` of the rolling moment by the rudder.
+    /// Derivative `C_lδ` of the rolling moment with respect to the rudder angle.
     pub cl_rudder: f64,
-    /// Derivative `C_nβ` of the yawing moment.
+    /// Derivative `C_nβ` of the yawing moment with respect to the sideslip angle.
     pub cn_beta: f64,
-    /// Derivative `C_np` of the yawing moment.
+    /// Derivative `C_np` of the yawing moment with respect to the roll rate.
     pub cn_p: f64,
-    /// Derivative `C_nr` of the yawing moment.
+    /// Derivative `C_nr` of the yawing moment with respect to the yaw rate.
     pub cn_r: f64,
-    /// Derivative `C_nδ` of the yawing moment by the ailerons.
+    /// Derivative `C_nδ` of the yawing moment with respect to the aileron angle.
     pub cn_aileron: f64,
-    /// Derivative `C_nδ` of the yawing moment by the rudder.
+    /// Derivative `C_nδ` of the yawing moment with respect to the rudder angle.
     pub cn_rudder: f64,
 
     elevator: Input,

@@ -23,24 +23,24 @@ pub struct DelayedServo {
     pub friction: f64,
     /// Delay of the measured angle, s.
     pub delay: f64,
-    /// Proportional gain, N·m/rad.
+    /// Proportional gain of the controller, N·m/rad.
     pub kp: f64,
-    /// Integral gain, N·m/(rad·s).
+    /// Integral gain of the controller, N·m/(rad·s).
     pub ki: f64,
-    /// Differential gain, N·m·s/rad.
+    /// Derivative gain of the controller, N·m·s/rad.
     pub kd: f64,
-    /// Bandwidth of the differential part, 1/s.
+    /// Bandwidth of the derivative part of the controller, 1/s.
     pub bandwidth: f64,
-    /// Maximum torque, N·m.
+    /// Maximum torque of the controller, N·m.
     pub limit: f64,
-    /// Rate at which the integral follows the limited torque, 1/s.
+    /// Rate at which the integral part follows the limited torque (anti-windup), 1/s.
     pub tracking: f64,
 
     target: Input,
     /// Low-pass filtered angle, rad.
     #[state(rate = drift)]
     pub filtered: State,
-    /// Rate of the filtered angle, rad/s.
+    /// Rate of the low-pass filtered angle, rad/s.
     #[state(rate = 12 / (delay * delay) * (shaft - filtered) - 6 / delay * drift)]
     pub drift: State,
     #[define(shaft - delay * drift)]

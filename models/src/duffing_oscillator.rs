@@ -15,17 +15,17 @@ use linkwork::mechanism;
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DuffingOscillator {
-    /// Mass, kg.
+    /// Mass of the oscillator, kg.
     pub mass: f64,
     /// Coefficient of the dashpot, N·s/m.
     pub damping: f64,
-    /// Linear stiffness, N/m.
+    /// Linear stiffness of the spring, N/m.
     pub alpha: f64,
-    /// Cubic stiffness, N/m³.
+    /// Cubic stiffness of the spring, N/m³.
     pub beta: f64,
-    /// Amplitude of the force, N.
+    /// Amplitude of the harmonic force, N.
     pub drive: f64,
-    /// Angular frequency of the force, rad/s.
+    /// Angular frequency of the harmonic force, rad/s.
     pub frequency: f64,
 
     #[body(mass = mass)]

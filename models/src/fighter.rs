@@ -23,13 +23,13 @@ mod tables;
 pub struct Fighter {
     /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// Mass, kg.
+    /// Mass of the aircraft, kg.
     pub mass: f64,
-    /// Moment of inertia about the forward axis, kg·m².
+    /// Moment of inertia of the aircraft about its forward axis, kg·m².
     pub ixx: f64,
-    /// Moment of inertia about the right axis, kg·m².
+    /// Moment of inertia of the aircraft about its right axis, kg·m².
     pub iyy: f64,
-    /// Moment of inertia about the downward axis, kg·m².
+    /// Moment of inertia of the aircraft about its downward axis, kg·m².
     pub izz: f64,
     /// Product of inertia of the handbooks, kg·m²: minus the entry of the inertia matrix in row x and column
     /// z.
@@ -40,37 +40,37 @@ pub struct Fighter {
     pub area: f64,
     /// Wing span, m.
     pub span: f64,
-    /// Mean chord, m.
+    /// Mean chord of the wing, m.
     pub chord: f64,
     /// Position of the centre of mass, in chords behind the leading edge.
     pub place: f64,
     /// Reference point of the moments, in chords behind the leading edge.
     pub reference: f64,
-    /// Density at sea level, kg/m³.
+    /// Density of the air at sea level, kg/m³.
     pub sea_density: f64,
     /// Speed of sound at sea level, m/s.
     pub sea_sound: f64,
-    /// Height at which the law of density becomes zero, m.
+    /// Height at which the formula for the density of the air becomes zero, m.
     pub depth: f64,
-    /// Unit of the engine's time constants, s.
+    /// Unit of time in which the engine's time constants are given, s.
     pub second: f64,
-    /// Coefficient of the forward force over elevator and angle of attack.
+    /// Table of the forward force's coefficient, over elevator angle and angle of attack.
     pub cx: Table<2>,
-    /// Coefficient of the downward force over the angle of attack.
+    /// Table of the downward force's coefficient, over the angle of attack.
     pub cz: Table<1>,
-    /// Coefficient of the rolling moment over sideslip and angle of attack.
+    /// Table of the rolling moment's coefficient, over sideslip and angle of attack.
     pub cl: Table<2>,
-    /// Coefficient of the pitching moment over elevator and angle of attack.
+    /// Table of the pitching moment's coefficient, over elevator angle and angle of attack.
     pub cm: Table<2>,
-    /// Coefficient of the yawing moment over sideslip and angle of attack.
+    /// Table of the yawing moment's coefficient, over sideslip and angle of attack.
     pub cn: Table<2>,
-    /// Rolling moment of 20° of aileron over sideslip and angle of attack.
+    /// Table of the rolling moment due to 20° of aileron, over sideslip and angle of attack.
     pub cl_aileron: Table<2>,
-    /// Rolling moment of 30° of rudder over sideslip and angle of attack.
+    /// Table of the rolling moment due to 30° of rudder, over sideslip and angle of attack.
     pub cl_rudder: Table<2>,
-    /// Yawing moment of 20° of aileron over sideslip and angle of attack.
+    /// Table of the yawing moment due to 20° of aileron, over sideslip and angle of attack.
     pub cn_aileron: Table<2>,
-    /// Yawing moment of 30° of rudder over sideslip and angle of attack.
+    /// Table of the yawing moment due to 30° of rudder, over sideslip and angle of attack.
     pub cn_rudder: Table<2>,
     /// Derivative of the forward force with respect to the pitch rate.
     pub cx_q: Table<1>,

@@ -16,13 +16,13 @@ use linkwork::mechanism;
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeRigidBody {
-    /// Mass, kg.
+    /// Mass of the body, kg.
     pub mass: f64,
-    /// Moment of inertia about x, kg·m².
+    /// Moment of inertia of the body about its x axis, kg·m².
     pub ixx: f64,
-    /// Moment of inertia about y, kg·m².
+    /// Moment of inertia of the body about its y axis, kg·m².
     pub iyy: f64,
-    /// Moment of inertia about z, kg·m².
+    /// Moment of inertia of the body about its z axis, kg·m².
     pub izz: f64,
 
     #[body(mass = mass, inertia = diagonal(ixx, iyy, izz))]

@@ -28,9 +28,9 @@ pub struct GearedJoint {
     pub stiffness: f64,
     /// Backlash: free rotation of the link with the rotor at rest, rad.
     pub backlash: f64,
-    /// Loss: torque lost per torque transmitted.
+    /// Loss coefficient of the gear: torque lost per torque transmitted.
     pub loss: f64,
-    /// Speed of the rotor at which the losses have three quarters of their full value, rad/s.
+    /// Angular velocity of the rotor at which the losses have three quarters of their full value, rad/s.
     pub creep: f64,
 
     #[body(inertia = diagonal(rotor_inertia, rotor_inertia, rotor_inertia))]

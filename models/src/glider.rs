@@ -19,19 +19,19 @@ use linkwork::mechanism;
 pub struct Glider {
     /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// Mass, kg.
+    /// Mass of the glider, kg.
     pub mass: f64,
-    /// Moment of inertia about the forward axis, kg·m².
+    /// Moment of inertia of the glider about its forward axis, kg·m².
     pub ixx: f64,
-    /// Moment of inertia about the right axis, kg·m².
+    /// Moment of inertia of the glider about its right axis, kg·m².
     pub iyy: f64,
-    /// Moment of inertia about the downward axis, kg·m².
+    /// Moment of inertia of the glider about its downward axis, kg·m².
     pub izz: f64,
     /// Density of the air, kg/m³.
     pub density: f64,
     /// Wing area, m².
     pub area: f64,
-    /// Mean chord, m.
+    /// Mean chord of the wing, m.
     pub chord: f64,
     /// Wing span, m.
     pub span: f64,
@@ -39,7 +39,7 @@ pub struct Glider {
     pub cl_0: f64,
     /// Slope of the lift coefficient with the angle of attack, 1/rad.
     pub cl_alpha: f64,
-    /// Drag coefficient without lift.
+    /// Drag coefficient at zero lift.
     pub cd_0: f64,
     /// Coefficient `K` of the induced drag.
     pub cd_induced: f64,

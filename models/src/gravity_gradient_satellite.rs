@@ -16,15 +16,15 @@ use linkwork::mechanism;
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GravityGradientSatellite {
-    /// Gravitational parameter of the centre, m³/s²: 3.986004418e14 for the earth.
+    /// Gravitational parameter of the central body, m³/s²: 3.986004418e14 for the earth.
     pub mu: f64,
-    /// Mass, kg.
+    /// Mass of the satellite, kg.
     pub mass: f64,
-    /// Moment of inertia about x, kg·m².
+    /// Moment of inertia of the satellite about its x axis, kg·m².
     pub ixx: f64,
-    /// Moment of inertia about y, kg·m².
+    /// Moment of inertia of the satellite about its y axis, kg·m².
     pub iyy: f64,
-    /// Moment of inertia about z, kg·m².
+    /// Moment of inertia of the satellite about its z axis, kg·m².
     pub izz: f64,
 
     #[body(mass = mass, inertia = diagonal(ixx, iyy, izz))]

@@ -20,13 +20,13 @@ use linkwork::{Real, mechanism};
 pub struct HeavyTop<T: Real> {
     /// Gravitational acceleration, m/s².
     pub g: T,
-    /// Mass, kg.
+    /// Mass of the top, kg.
     pub mass: T,
-    /// Height of the centre of mass above the tip, m.
+    /// Height of the top's centre of mass above its tip, m.
     pub height: T,
-    /// Moment of inertia about the axis, kg·m².
+    /// Moment of inertia of the top about its axis, kg·m².
     pub axial: T,
-    /// Moment of inertia across the axis, about the centre of mass, kg·m².
+    /// Moment of inertia of the top across its axis, about the centre of mass, kg·m².
     pub transverse: T,
 
     #[body(mass = mass, com = height * z, inertia = diagonal(transverse, transverse, axial))]

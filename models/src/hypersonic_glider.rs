@@ -18,26 +18,26 @@ use linkwork::mechanism;
 #[mechanism]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HypersonicGlider {
-    /// Gravitational parameter, m³/s².
+    /// Gravitational parameter of the Earth, m³/s².
     pub mu: f64,
     /// Rotation rate of the Earth, rad/s.
     pub turning: f64,
     /// Radius of the Earth, m.
     pub radius: f64,
-    /// Density of the air at this radius, kg/m³.
+    /// Density of the air at the radius of the Earth, kg/m³.
     #[unit(kg / m3)]
     pub density: f64,
-    /// Scale height, in which the density decreases by the factor `1/e`, m.
+    /// Scale height of the atmosphere, in which the density decreases by the factor `1/e`, m.
     pub scale: f64,
-    /// Mass, kg.
+    /// Mass of the vehicle, kg.
     pub mass: f64,
-    /// Moment of inertia about the forward axis, kg·m².
+    /// Moment of inertia of the vehicle about its forward axis, kg·m².
     pub ixx: f64,
-    /// Moment of inertia about the right axis, kg·m².
+    /// Moment of inertia of the vehicle about its right axis, kg·m².
     pub iyy: f64,
-    /// Moment of inertia about the downward axis, kg·m².
+    /// Moment of inertia of the vehicle about its downward axis, kg·m².
     pub izz: f64,
-    /// Area times the coefficient of drag, m².
+    /// Reference area times the drag coefficient of the vehicle, m².
     #[unit(m2)]
     pub drag_area: f64,
 

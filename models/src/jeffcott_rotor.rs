@@ -24,7 +24,7 @@ pub struct JeffcottRotor {
     pub eccentricity: f64,
     /// Stiffness of the shaft, N/m.
     pub stiffness: f64,
-    /// External damping, N·s/m.
+    /// External damping of the disk's motion, N·s/m.
     pub damping: f64,
 
     #[body]

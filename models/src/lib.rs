@@ -198,9 +198,9 @@
 //! | 6 | free-body diagrams: all forces on a body, in any frame, as data and as a drawing | `#[output(body)] loads: FreeBody`, `linkwork_view::free_body` | `free_body_diagrams/main.rs`: `what_acts_on_a_body_changes_its_momenta` |
 //! | 6 | forces along lines, ropes over pegs, cables around drums | `between = (a, b)`, `on = expression`, `cable(a / b, drum.cylinder(radius, axis))` | `textbook/curves.rs`: `elements_act_on_any_length`, `cables_take_the_shortest_way_around`, `cables_have_exact_derivatives` |
 //! | 6 | equilibria with fixed coordinates, unknown inputs and parameters; buckling | `linkwork_design::steady` | `steady` of that crate: a chain's catenary, a column, a table, a platform |
-//! | 6 | a chain's catenary, an unstable column, three legs, a platform on six | `linkwork_design::steady` | `a_chain_hangs_in_its_catenary`, `a_column_buckles_at_eulers_load`, `three_legs_share_what_stands_on_a_table`, `six_legs_hold_a_platform` of design |
-//! | 6 | stability by energy and by eigenvalues | `stiffness`, `linear_system` of an equilibrium | `a_bead_on_a_hoop_has_four_equilibria` |
-//! | 6 | no equilibrium, too few or too many unknowns, unknown names | errors of `linkwork_design::Error` that report them | `what_is_wrong_is_named` of design |
+//! | 6 | a chain's catenary, an unstable column, three legs, a platform on six | `linkwork_design::steady` | `chain_hangs_in_catenary`, `column_buckles_at_critical_load`, `table_legs_share_the_load`, `six_legs_support_a_platform` of design |
+//! | 6 | stability by energy and by eigenvalues | `stiffness`, `linear_system` of an equilibrium | `bead_on_hoop_has_four_equilibria` |
+//! | 6 | no equilibrium, too few or too many unknowns, unknown names | errors of `linkwork_design::Error` that report them | `errors_name_the_wrong_entry` of design |
 //! | 7 | Newton's and Euler's equations | `inverse_dynamics`, `forward_dynamics` | [`FreeRigidBody`], every mechanism |
 //! | 7 | inertia of solids, parallel axes, rotated inertias; physically consistent principal moments | `inertia = …`, `validate()` | `validate.rs` |
 //! | 7 | inertia about any point, of one body or several, in any frame | `inertia(body / point)`, `moment_of_inertia(body / point, x, y)`, `about = point` of a `Body` | `moments_of_inertia_are_those_of_energies`, `inertias_about_another_point_are_moved_to_the_centre_of_mass`, `matrices_are_what_their_vectors_say` |
@@ -223,28 +223,28 @@
 //! | 10–16 | linearisation for small motions | `linearize`, `linear_system` | [`Bicycle`]; `linearization.rs` |
 //! | 10–16 | aircraft: axes of body, stability and wind; angles of attack, sideslip, heading, flight path, bank | `angle_of_attack(body, velocity)`, `sideslip`, `heading(body)`, …, `#[frame(…)]` | [`Aircraft`]; `tables.rs` |
 //! | 10–16 | coefficients of aircraft from tables, the standard atmosphere | `Table<N>`, `density(height)`, … | [`Fighter`]; `tables.rs` |
-//! | 10–16 | engine and actuator lags | `#[state(rate = …)] power: State`, `extended` | [`Fighter`], [`Quadrotor`]; `first_order.rs`; `trim_finds_states_of_first_order` in `flight` of design |
-//! | 10–16 | trim | `linkwork_design::steady` | [`Aircraft`]; [`Fighter`]: `trimmed_flight_is_that_of_the_book`; `tests/steady.rs` here and in design |
+//! | 10–16 | engine and actuator lags | `#[state(rate = …)] power: State`, `extended` | [`Fighter`], [`Quadrotor`]; `first_order.rs`; `trim_solves_for_first_order_states` in `flight` of design |
+//! | 10–16 | trim | `linkwork_design::steady` | [`Aircraft`]; [`Fighter`]: `trimmed_flight_matches_the_book`; `tests/steady.rs` here and in design |
 //! | 10–16 | gliding, hovering, rotation by wheels | `value = …` of forces, `#[state(rate = …)]`, a `Pin` for each wheel | [`Glider`], [`Quadrotor`], [`WheeledSatellite`] |
 //! | 10–16 | six degrees of freedom over the round rotating Earth | a `Free` joint on a body whose motion is prescribed | [`HypersonicGlider`] |
 //! | 10–16 | forces linear in accelerations (derivatives with respect to `α̇`, added mass) | `value = …` with `rate(alpha)`, `a(body / ground / ground)` | [`CruisingAircraft`]; `acceleration_forces.rs`; `accelerations` of design |
-//! | 10–16 | dimensional and dimensionless stability and control derivatives, static margin | `linkwork_design::flight::Derivatives` | [`CruisingAircraft`]: `derivatives_without_dimension_are_those_declared` |
-//! | 10–16 | flight modes: phugoid, short period, Dutch roll, roll, spiral | `linkwork_design::flight::FlightModes` | [`CruisingAircraft`]: `a_transport_has_the_modes_of_etkin_and_reid`, `a_light_aircraft_has_the_modes_of_nelson`; `phugoid_of_lanchester` in `flight`, `transport_modes` in `anchors` of design |
-//! | 10–16 | modes from published derivatives and matrices: an airliner, an attack aircraft, a fighter | `linkwork_design::flight::FlightModes` | `an_airliner_has_the_modes_of_cook`, `modes_of_printed_matrices_are_named`, `the_centre_of_mass_decides_on_the_modes_of_a_fighter` |
-//! | 10–16 | satellites: nutation, wheels that stabilise a spin about the intermediate axis | a `Pin` for each wheel, `linear_system` | [`WheeledSatellite`]; `a_wheel_holds_a_satellite_that_turns_about_its_middle_axis` |
-//! | 10–16 | linear systems: poles, zeros, transfer functions, responses | `linkwork_design::StateSpace`, `TransferFunction` | `transport_channels` and `step_responses` in `anchors` of design |
-//! | 10–16 | gyroscopic and circulatory forces: nutation, whirl, gravity gradient | `linear_system`, `second_order_form` | `gyroscope_nutates`, `rotor_with_internal_damping`, `gravity_holds_a_satellite` in `flight` of design |
-//! | 10–16 | mass, damping, gyroscopic, stiffness and circulatory matrices under constraints | `Trim::second_order_form` | [`Bicycle`]: `a_bicycle_has_the_published_matrices`; `constrained_forms` of design |
-//! | 10–16 | linearised motions with stabilised constraints | `constraint::stabilized`, `linear_system` | `decaying_constraints_have_their_exponents` in `flight` of design |
-//! | 10–16 | eigenvalues of a bicycle | `Trim::linear_system` | `a_bicycle_weaves_and_capsizes` in `tests/steady.rs` here |
-//! | 10–16 | responses over time by the matrix exponential, repeated eigenvalues | `step_response`, `forced_response`, `matrices::exponential` | `straight_inputs_are_exact`, `repeated_poles_have_their_results` |
-//! | 10–16 | invariant zeros, minimal realisations, controllability, observability | `zeros`, `minimal`, `kalman_ranks` | `zeros_lose_rank`, `realisations_are_minimal` |
-//! | 10–16 | Lyapunov's and Riccati's equations, regulators, estimators, placed poles | `matrices::lyapunov`, `lqr`, `kalman`, `place` | `linear_matrix_equations`, `regulators_are_optimal`, `riccati_benchmarks`, `poles_are_put_where_they_should_be` |
-//! | 10–16 | digital control: discrete-time systems | `discretize`, `lqr_held` | `discretised_and_back`, `discrete_riccati_benchmarks` |
-//! | 10–16 | block diagrams | `series`, `parallel`, `feedback` | `connections` in `properties` of design |
+//! | 10–16 | dimensional and dimensionless stability and control derivatives, static margin | `linkwork_design::flight::Derivatives` | [`CruisingAircraft`]: `dimensionless_derivatives_match_declared` |
+//! | 10–16 | flight modes: phugoid, short period, Dutch roll, roll, spiral | `linkwork_design::flight::FlightModes` | [`CruisingAircraft`]: `transport_matches_etkin_and_reid_modes`, `navion_matches_nelson_modes`; `phugoid_matches_lanchester` in `flight`, `jet_transport_modes_match_published` in `anchors` of design |
+//! | 10–16 | modes from published derivatives and matrices: an airliner, an attack aircraft, a fighter | `linkwork_design::flight::FlightModes` | `dc8_matches_cook_modes`, `printed_matrices_yield_named_modes`, `centre_of_mass_determines_pitch_modes` |
+//! | 10–16 | satellites: nutation, wheels that stabilise a spin about the intermediate axis | a `Pin` for each wheel, `linear_system` | [`WheeledSatellite`]; `wheel_stabilises_intermediate_axis` |
+//! | 10–16 | linear systems: poles, zeros, transfer functions, responses | `linkwork_design::StateSpace`, `TransferFunction` | `jet_transport_channels_match_published` and `step_responses_match_published` in `anchors` of design |
+//! | 10–16 | gyroscopic and circulatory forces: nutation, whirl, gravity gradient | `linear_system`, `second_order_form` | `gyroscope_nutation_frequency`, `rotor_with_internal_damping`, `gravity_gradient_stabilises_satellite` in `flight` of design |
+//! | 10–16 | mass, damping, gyroscopic, stiffness and circulatory matrices under constraints | `Trim::second_order_form` | [`Bicycle`]: `bicycle_has_published_matrices`; `constrained_forms` of design |
+//! | 10–16 | linearised motions with stabilised constraints | `constraint::stabilized`, `linear_system` | `stabilised_constraints_add_decay_poles` in `flight` of design |
+//! | 10–16 | eigenvalues of a bicycle | `Trim::linear_system` | `bicycle_has_published_eigenvalues` in `tests/steady.rs` here |
+//! | 10–16 | responses over time by the matrix exponential, repeated eigenvalues | `step_response`, `forced_response`, `matrices::exponential` | `linear_inputs_are_exact`, `repeated_poles_have_exact_results` |
+//! | 10–16 | invariant zeros, minimal realisations, controllability, observability | `zeros`, `minimal`, `kalman_ranks` | `system_matrix_loses_rank_at_zeros`, `realisations_are_minimal` |
+//! | 10–16 | Lyapunov's and Riccati's equations, regulators, estimators, placed poles | `matrices::lyapunov`, `lqr`, `kalman`, `place` | `matrix_equations_have_small_residuals`, `regulators_are_optimal`, `riccati_benchmarks`, `placed_poles_are_the_required_ones` |
+//! | 10–16 | digital control: discrete-time systems | `discretize`, `lqr_held` | `discretisation_is_inverted`, `discrete_riccati_benchmarks` |
+//! | 10–16 | block diagrams | `series`, `parallel`, `feedback` | `connections_multiply_and_add_responses` in `properties` of design |
 //! | 10–16 | errors: unstable, uncontrollable and improper systems | `linkwork_design::Error` | `bad_input` of design |
-//! | 10–16 | Routh's table, margins, root locus | `Polynomial`, `margins`, `root_locus` | `margins_and_routh`, `routh_of_ogata` in `anchors` of design; `routh_counts_roots`, `margins_miss_no_crossing` |
-//! | 10–16 | frequency response, Bode's and Nyquist's diagrams | `frequency_response`, `linkwork_design::picture` | `transport_frequency_response` in `anchors`, `pictures` of design |
+//! | 10–16 | Routh's table, margins, root locus | `Polynomial`, `margins`, `root_locus` | `margins_and_routh_table_match_published`, `routh_tables_match_ogata` in `anchors` of design; `routh_counts_roots`, `margins_include_every_crossing` |
+//! | 10–16 | frequency response, Bode's and Nyquist's diagrams | `frequency_response`, `linkwork_design::picture` | `jet_transport_frequency_response` in `anchors`, `pictures` of design |
 
 mod aircraft;
 mod andrews_squeezer;

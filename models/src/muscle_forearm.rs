@@ -18,7 +18,7 @@ use linkwork::mechanism;
 #[mechanism(gravity = -9.81 * y, derivatives)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MuscleForearm {
-    /// Maximum isometric force, N.
+    /// Maximum isometric force of the muscle, N.
     pub strength: f64,
     /// Optimal length of the fibre, m.
     pub optimal: f64,
@@ -30,25 +30,25 @@ pub struct MuscleForearm {
     pub passive_stiffness: f64,
     /// Width of the curve of active force over length.
     pub width: f64,
-    /// Maximum speed of the fibre, in optimal lengths per second, 1/s.
+    /// Maximum shortening velocity of the fibre, in optimal lengths per second, 1/s.
     pub fastest: f64,
-    /// Shape of the hyperbola for shortening.
+    /// Shape parameter of Hill's hyperbola (force over velocity) for shortening.
     pub hill: f64,
     /// Ratio of the maximum force while lengthening to the isometric force.
     pub eccentric: f64,
-    /// Time constant of activation, s.
+    /// Time constant of the muscle's activation, s.
     pub rise: f64,
-    /// Time constant of deactivation, s.
+    /// Time constant of the muscle's deactivation, s.
     pub fall: f64,
 
     excitation: Input,
-    /// Activation of the muscle.
+    /// State: activation of the muscle.
     #[state(
         rate = if excitation < activation { (excitation - activation) * (0.5 + 1.5 * activation) / fall }
             else { (excitation - activation) / (rise * (0.5 + 1.5 * activation)) }
     )]
     pub activation: State,
-    /// Length of the fibre divided by its optimal length.
+    /// State: length of the fibre divided by its optimal length.
     #[state(
         rate = if ratio < 1 { -fastest * (1 - ratio) / (1 + ratio / hill) }
             else { fastest * (1 - part) / (1 + ((1 + 1 / hill) / (eccentric - 1) - 1) * part) }

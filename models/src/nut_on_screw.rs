@@ -18,7 +18,7 @@ pub struct NutOnScrew {
     pub mass: f64,
     /// Radius of the nut, a uniform disk, m.
     pub radius: f64,
-    /// Rise per radian, m.
+    /// Pitch of the screw: rise per radian, m.
     pub pitch: f64,
 
     #[body(mass = mass, inertia = disk(mass, radius, z))]

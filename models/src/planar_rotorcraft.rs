@@ -15,9 +15,9 @@ use linkwork::mechanism;
 pub struct PlanarRotorcraft {
     /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// Mass, kg.
+    /// Mass of the rotorcraft, kg.
     pub mass: f64,
-    /// Moment of inertia about the axis across the plane, kg·m².
+    /// Moment of inertia of the rotorcraft about the axis across the plane, kg·m².
     pub inertia: f64,
     /// Distance of the propellers from the centre of mass, m.
     pub arm: f64,

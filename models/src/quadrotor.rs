@@ -18,13 +18,13 @@ use linkwork::mechanism;
 pub struct Quadrotor {
     /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// Mass, kg.
+    /// Mass of the quadrotor, kg.
     pub mass: f64,
-    /// Moment of inertia about the forward axis, kg·m².
+    /// Moment of inertia of the quadrotor about its forward axis, kg·m².
     pub ixx: f64,
-    /// Moment of inertia about the left axis, kg·m².
+    /// Moment of inertia of the quadrotor about its left axis, kg·m².
     pub iyy: f64,
-    /// Moment of inertia about the upward axis, kg·m².
+    /// Moment of inertia of the quadrotor about its upward axis, kg·m².
     pub izz: f64,
     /// Distance of the rotors from the centre of mass, m.
     pub arm: f64,

@@ -18,7 +18,7 @@ use linkwork::mechanism;
 pub struct Rattleback {
     /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// Mass, kg.
+    /// Mass of the rattleback, kg.
     pub mass: f64,
     /// Semi-axis of the ellipsoid along x, m.
     pub a: f64,
@@ -28,13 +28,13 @@ pub struct Rattleback {
     pub c: f64,
     /// Depth of the centre of mass below the ellipsoid's centre, m.
     pub depth: f64,
-    /// Moment of inertia about x, kg·m².
+    /// Moment of inertia of the rattleback about its x axis, kg·m².
     pub ixx: f64,
-    /// Moment of inertia about y, kg·m².
+    /// Moment of inertia of the rattleback about its y axis, kg·m².
     pub iyy: f64,
-    /// Moment of inertia about z, kg·m².
+    /// Moment of inertia of the rattleback about its z axis, kg·m².
     pub izz: f64,
-    /// Product of inertia (entry of the matrix), kg·m².
+    /// Product of inertia of the rattleback (entry xy of the matrix), kg·m².
     pub ixy: f64,
 
     #[body(mass = mass, com = -depth * z, inertia = [[ixx, ixy, 0], [ixy, iyy, 0], [0, 0, izz]])]

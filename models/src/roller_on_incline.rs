@@ -15,11 +15,11 @@ use linkwork::mechanism;
 pub struct RollerOnIncline {
     /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// Mass, kg.
+    /// Mass of the rolling body, kg.
     pub mass: f64,
-    /// Radius, m.
+    /// Radius of the rolling body, m.
     pub radius: f64,
-    /// Moment of inertia about the axis, in units of mass times squared radius.
+    /// Moment of inertia of the rolling body about its axis, in units of mass times squared radius.
     pub shape: f64,
     /// Angle of the incline from the level, rad.
     pub slope: f64,

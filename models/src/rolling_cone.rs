@@ -19,13 +19,13 @@ use linkwork::mechanism;
 pub struct RollingCone {
     /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// Mass, kg.
+    /// Mass of the cone, kg.
     pub mass: f64,
-    /// Height, m.
+    /// Height of the cone, m.
     pub height: f64,
-    /// Angle between axis and surface `α`, rad.
+    /// Half angle `α` of the cone, between its axis and its surface, rad.
     pub half_angle: f64,
-    /// Angle of the plane from the level `β`, rad.
+    /// Angle `β` of the plane from the level, rad.
     pub slope: f64,
 
     #[body(

@@ -17,9 +17,9 @@ use linkwork::mechanism;
 pub struct RollingDisk {
     /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// Mass, kg.
+    /// Mass of the disk, kg.
     pub m: f64,
-    /// Radius, m.
+    /// Radius of the disk, m.
     pub radius: f64,
 
     #[body]

@@ -17,13 +17,13 @@ use linkwork::mechanism;
 pub struct SlidingRod {
     /// Gravitational acceleration, m/s².
     pub g: f64,
-    /// Mass, kg.
+    /// Mass of the rod, kg.
     pub mass: f64,
-    /// Half the length `l`, m.
+    /// Half the length of the rod, `l`, m.
     pub half: f64,
-    /// Radius of the end `r`, m.
+    /// Radius of the rod's round end, `r`, m.
     pub radius: f64,
-    /// Coefficient of friction `μ`.
+    /// Coefficient of friction `μ` between rod and floor.
     pub friction: f64,
 
     #[body(mass = mass, inertia = rod(mass, 2 * half, x))]

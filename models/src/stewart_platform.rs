@@ -1,7 +1,7 @@
 use linkwork::mechanism;
 
-/// Declares the legs of the platform: for each the fields of its two halves and its joints, and the angles of
-/// its ends.
+/// Macro that declares the legs of the platform: for each leg, the fields of its two halves and its joints,
+/// and the angles of its ends.
 macro_rules! stewart_platform {
     ($($lower:ident $upper:ident $foot:ident $slide:ident $head:ident $force:ident ($a:literal, $b:literal)),+) => {
         /// Stewart platform: six legs of variable length support and move a free platform. Also called a

@@ -20,9 +20,9 @@ pub struct TunedSuspension {
     pub m1: f64,
     /// Mass of the second cart, kg.
     pub m2: f64,
-    /// Stiffness between wall and first cart, N/m.
+    /// Stiffness of the spring between the wall and the first cart, N/m.
     pub k1: f64,
-    /// Stiffness between the carts, N/m.
+    /// Stiffness of the spring between the carts, N/m.
     pub k2: f64,
     /// Coefficient of the dashpot between the carts, N·s/m.
     pub damping: f64,

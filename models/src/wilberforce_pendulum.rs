@@ -23,7 +23,8 @@ pub struct WilberforcePendulum {
     pub stiffness: f64,
     /// Stiffness of the spring about its axis, N·m/rad.
     pub torsion: f64,
-    /// Coupling `ε`, N: half of it is the force per twist and the torque per stretch.
+    /// Coupling coefficient `ε` of the spring, N: half of it is the force per twist and the torque per
+    /// stretch.
     pub coupling: f64,
 
     #[body(mass = mass, inertia = diagonal(inertia / 2, inertia / 2, inertia))]

@@ -1,5 +1,5 @@
-//! The table of the book's sections in the gallery's documentation has rows for every chapter, and names
-//! existing mechanisms and tests.
+//! Checks that the table of the book's sections in the gallery's documentation has rows for every chapter,
+//! and names existing mechanisms and tests.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -24,7 +24,7 @@ fn collect_source_files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns the names of a file's test functions.
+/// Returns the names of the test functions in the text of a file.
 fn test_function_names(text: &str) -> impl Iterator<Item = &str> {
     text.split("#[test]").skip(1).filter_map(|rest| rest.split_once("fn ")?.1.split('(').next())
 }
@@ -35,7 +35,7 @@ fn texts_in_backticks(cell: &str) -> impl Iterator<Item = &str> {
 }
 
 #[test]
-fn sections_name_what_exists() {
+fn table_names_existing_mechanisms_and_tests() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let gallery = fs::read_to_string(root.join("src/lib.rs")).unwrap();
     let mut paths = Vec::new();

@@ -24,7 +24,7 @@ const HOSTILE: [f64; 12] = [
 /// Mechanism with functions of many kinds, and a screw that closes a loop.
 #[mechanism(gravity = -g * y, batch, derivatives)]
 #[derive(Clone, Copy)]
-struct Machine {
+struct TestMachine {
     g: f64,
     k: f64,
     l: f64,
@@ -61,8 +61,8 @@ fn pathological_vectors<const N: usize>() -> impl Iterator<Item = SVector<f64, N
 }
 
 #[test]
-fn functions_take_any_figures() {
-    let list = [Machine { g: 9.81, k: 1.0, l: 0.5 }, Machine { g: f64::NAN, k: f64::MAX, l: 0.0 }];
+fn functions_accept_pathological_numbers() {
+    let list = [TestMachine { g: 9.81, k: 1.0, l: 0.5 }, TestMachine { g: f64::NAN, k: f64::MAX, l: 0.0 }];
     for (machine, (q, v)) in list
         .iter()
         .flat_map(|m| pathological_vectors().zip(pathological_vectors()).map(move |state| (m, state)))
@@ -89,7 +89,7 @@ fn functions_take_any_figures() {
 }
 
 #[test]
-fn constraints_take_any_figures() {
+fn constraint_functions_accept_pathological_numbers() {
     let disk = RollingDisk { g: 9.81, m: 1.0, radius: 0.1 };
     for (q, v) in pathological_vectors().zip(pathological_vectors()) {
         let a = disk.forward_dynamics(&q, &v, &v);
@@ -107,8 +107,8 @@ fn constraints_take_any_figures() {
 }
 
 #[test]
-fn runs_take_any_times() {
-    let machine = Machine { g: 9.81, k: 1.0, l: 0.5 };
+fn simulations_accept_pathological_times() {
+    let machine = TestMachine { g: 9.81, k: 1.0, l: 0.5 };
     let (q, v) = (machine.neutral(), SVector::repeat(0.1));
     for (x, y) in HOSTILE.into_iter().flat_map(|x| HOSTILE.map(|y| (x, y))) {
         // Only a few steps each, since some of these runs never end.

@@ -1,5 +1,5 @@
-//! Eight states at once in a build with debug assertions return the bits of single states, and need no more
-//! stack than a small thread has.
+//! Checks that eight states at once in a build with debug assertions return the bits of single states, and
+//! need no more stack than a small thread has.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;
@@ -12,19 +12,19 @@ struct Solo12;
 /// Stack size of the test thread, bytes.
 const STACK: usize = 128 << 10;
 
-type Q<T> = SVector<T, 19>;
-type V<T> = SVector<T, 18>;
-type Eight = Lanes<f64, 8>;
+type ConfigurationIn<T> = SVector<T, 19>;
+type VelocityIn<T> = SVector<T, 18>;
+type EightLanes = Lanes<f64, 8>;
 
 /// Returns eight states of the quadruped in SIMD lanes, with configurations displaced from the neutral one.
-fn eight_states() -> (Q<Eight>, V<Eight>) {
-    let v = V::from_fn(|i, _| Lanes::from_fn(|k| ((i * i + 3 * k) as f64).sin()));
+fn eight_states() -> (ConfigurationIn<EightLanes>, VelocityIn<EightLanes>) {
+    let v = VelocityIn::from_fn(|i, _| Lanes::from_fn(|k| ((i * i + 3 * k) as f64).sin()));
     let q = Solo12.neutral().map(Lanes::splat);
     (Solo12.integrate_lanes(&q, &v), v)
 }
 
 #[test]
-fn eight_states_are_those_of_one() {
+fn eight_states_equal_single_states() {
     let (q, v) = eight_states();
     let a = Solo12.forward_dynamics_lanes(&q, &v, &v);
     let mass = Solo12.mass_matrix_lanes(&q);
@@ -41,11 +41,11 @@ fn eight_states_are_those_of_one() {
 }
 
 #[test]
-fn eight_states_fit_into_a_small_stack() {
+fn eight_states_fit_in_a_small_stack() {
     let largest_lane_difference = || {
         let (q, v) = eight_states();
-        let a = Solo12.forward_dynamics(&q.map(|x| x.0[0]), &v.map(|x| x.0[0]), &V::zeros());
-        let eight = Solo12.forward_dynamics_lanes(&q, &v, &V::zeros());
+        let a = Solo12.forward_dynamics(&q.map(|x| x.0[0]), &v.map(|x| x.0[0]), &VelocityIn::zeros());
+        let eight = Solo12.forward_dynamics_lanes(&q, &v, &VelocityIn::zeros());
         (eight.map(|x| x.0[0]) - a).amax()
     };
     let thread = thread::Builder::new().stack_size(STACK).spawn(largest_lane_difference).expect("a thread");

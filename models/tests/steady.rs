@@ -5,9 +5,10 @@ use linkwork::prelude::*;
 use linkwork_design::steady::constrained_equilibrium;
 use linkwork_models::{Bicycle, RollingDisk};
 
-/// A disk rolls in a circle: lean and turning rate determine its rolling rate (Neimark and Fufaev, ch. II).
+/// Checks a disk that rolls in a circle: lean and turning rate determine its rolling rate (Neimark and
+/// Fufaev, ch. II).
 #[test]
-fn a_disk_rolls_in_a_circle() {
+fn disk_rolls_in_a_circle() {
     let disk = RollingDisk { g: 9.81, m: 0.5, radius: 0.2 };
     let (lean, turning) = (0.3_f64, 2.5);
     let found = constrained_equilibrium(&disk)
@@ -28,11 +29,11 @@ fn a_disk_rolls_in_a_circle() {
     assert!(v.dot(&a).abs() < 1e-10 && (a.norm() - turning * v.norm()).abs() < 1e-10);
 }
 
-/// The bicycle moves in wide circles at 4.6 m/s: lean and steering torque satisfy
+/// Checks that the bicycle moves in wide circles at 4.6 m/s: lean and steering torque satisfy
 /// `(g K₀ + v² K₂) (φ, δ) = (0, T)`. Without torque it moves in a circle only at the published capsize speed
 /// (Meijaard and others, 2007).
 #[test]
-fn a_bicycle_turns() {
+fn bicycle_moves_in_wide_circles() {
     let bicycle = Bicycle::BENCHMARK;
     let straight_rolling_velocity = |speed: f64| {
         let mut v = SVector::<f64, 9>::zeros();
@@ -79,10 +80,10 @@ fn a_bicycle_turns() {
     assert!((speed - 6.024_262_015_388_37).abs() < 1e-6, "{speed}");
 }
 
-/// The upright straight bicycle, built from its bodies and wheels, has the published eigenvalues (Meijaard
-/// and others, 2007, table 2).
+/// Checks that the upright straight bicycle, built from its bodies and wheels, has the published eigenvalues
+/// (Meijaard and others, 2007, table 2).
 #[test]
-fn a_bicycle_weaves_and_capsizes() {
+fn bicycle_has_published_eigenvalues() {
     let bicycle = Bicycle::BENCHMARK;
     let published = [
         (
@@ -136,11 +137,11 @@ fn assert_same_matrix(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: 
     );
 }
 
-/// The bodies and wheels of the bicycle give the published matrices of `M q̈ + v C₁ q̇ + (g K₀ + v² K₂) q` in
-/// lean and steer (Meijaard, Papadopoulos, Ruina and Schwab, *Linearized dynamics equations for the balance
-/// and steer of a bicycle*, Proc. R. Soc. A 463, 2007, § 4).
+/// Checks that the bodies and wheels of the bicycle give the published matrices of
+/// `M q̈ + v C₁ q̇ + (g K₀ + v² K₂) q` in lean and steer (Meijaard, Papadopoulos, Ruina and Schwab,
+/// *Linearized dynamics equations for the balance and steer of a bicycle*, Proc. R. Soc. A 463, 2007, § 4).
 #[test]
-fn a_bicycle_has_the_published_matrices() {
+fn bicycle_has_published_matrices() {
     let bicycle = Bicycle::BENCHMARK;
     let mass =
         matrix_from_rows([[80.817_22, 2.319_413_322_087_09], [2.319_413_322_087_09, 0.297_841_881_996_86]]);

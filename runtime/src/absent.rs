@@ -124,7 +124,7 @@ pub trait AsksForBatch<'a> {}
 )]
 pub trait AsksForDrawing<'a> {}
 
-/// A mechanism with loops, rolling or other constraints.
+/// Trait bound, never satisfied, of functions that need a mechanism with loops, rolling or other constraints.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no constraints",
     label = "only mechanisms with constraints have this",
@@ -193,7 +193,8 @@ pub trait HasSpeeds<'a> {}
 )]
 pub trait HasNoSpeeds<'a> {}
 
-/// A mechanism whose mass matrix can be inverted.
+/// Trait bound, never satisfied, of functions that need the inverse of the mass matrix, which this mechanism
+/// lacks.
 #[diagnostic::on_unimplemented(
     message = "the mass matrix of `{Self}` has no inverse",
     label = "coordinates without inertia follow from constraints",
@@ -201,7 +202,8 @@ pub trait HasNoSpeeds<'a> {}
 )]
 pub trait HasRegularMass<'a> {}
 
-/// Mechanism whose outputs of accelerations and reactions have Jacobians; no type implements this trait.
+/// Trait bound, never satisfied, of functions that need Jacobians of outputs, which outputs of accelerations
+/// and reactions lack.
 #[diagnostic::on_unimplemented(
     message = "an output of accelerations or reactions has no Jacobian",
     label = "this output has none",
@@ -226,7 +228,8 @@ pub trait HasFrames<'a> {}
 )]
 pub trait HasParameters<'a> {}
 
-/// Mechanism that stores its parameters, unlike a prepared mechanism.
+/// Trait bound, never satisfied, of functions that need the stored parameters of a mechanism, which a
+/// prepared mechanism lacks.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not store its parameters",
     label = "the mechanism that it was prepared from has this",
@@ -234,7 +237,8 @@ pub trait HasParameters<'a> {}
 )]
 pub trait HoldsParameters<'a> {}
 
-/// Mechanism with values of its robot file as parameters.
+/// Trait bound, never satisfied, of functions that need a mechanism whose parameters include values of its
+/// robot file.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no values of a file as parameters",
     label = "this needs the argument `parameters`",
@@ -242,7 +246,8 @@ pub trait HoldsParameters<'a> {}
 )]
 pub trait HasFileParameters<'a> {}
 
-/// Mechanism with mass properties of a robot file's links as parameters.
+/// Trait bound, never satisfied, of functions that need a mechanism whose parameters include the mass
+/// properties of a robot file's links.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no mass properties of links as parameters",
     label = "this needs `parameters = inertial`",
@@ -259,8 +264,8 @@ pub trait HasFileInertials<'a> {}
 )]
 pub trait DeclaresEquilibria<'a> {}
 
-/// Program whose arithmetic gives the same bits on every machine. All types have this trait with the feature
-/// `reproducible`, and none without it.
+/// Trait bound of mechanisms whose arithmetic gives the same bits on every machine. All types have this trait
+/// with the feature `reproducible`, and none without it.
 #[diagnostic::on_unimplemented(
     message = "`arithmetic = reproducible` needs the feature `reproducible` of the crate `linkwork`",
     label = "the arithmetic of this program depends on the processor",

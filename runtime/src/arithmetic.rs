@@ -90,7 +90,7 @@ pub trait Arithmetic: Registers {
         if Self::FUSED { X::fused(a, b, c) } else { a * b + c }
     }
 
-    /// Returns `a b - c`, fused if the hardware supports it.
+    /// Returns `a b − c`, fused if the hardware supports it.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul_sub<X: Number<Self>>(a: X, b: X, c: X) -> X {
@@ -243,7 +243,7 @@ pub trait Arithmetic: Registers {
         store!(0 1 2 3 4 5 6 7);
     }
 
-    /// Returns arguments that are given as lanes as SIMD vectors.
+    /// Converts arguments in lanes to SIMD vectors, without copying.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn each<T, const N: usize, const R: usize>(numbers: &[Lanes<T, N>; R]) -> &[Vector<Self, T, N>; R] {
@@ -265,7 +265,8 @@ pub trait Arithmetic: Registers {
         X::sin_cos_all(x)
     }
 
-    /// Returns the value of a table, or its derivative of these orders.
+    /// Returns the value of a table by interpolation, or its derivative. `orders` are the orders of
+    /// differentiation with respect to each argument.
     #[cfg_attr(debug_assertions, inline)]
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn tabulated<X: Elementary<Self>, const N: usize>(table: &Table<N>, x: [X; N], orders: [u8; N]) -> X {
@@ -282,7 +283,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn functions_agree_with_the_standard_library() {
+    fn arithmetic_matches_the_standard_library() {
         type A = Compiled;
         assert_eq!(A::atan2(1.0_f64, -2.0), 1.0_f64.atan2(-2.0));
         assert_eq!(A::powf(2.0_f64, 0.5), 2.0_f64.powf(0.5));

@@ -18,39 +18,40 @@ const T0: f64 = 288.15;
 const P0: f64 = 101_325.0;
 
 /// Layer of the atmosphere: its base height, m, and its temperature gradient, K/m.
-struct Layer {
+struct AtmosphereLayer {
     base: f64,
     lapse: f64,
 }
 
 /// Layers of the atmosphere; the last is unbounded.
-static LAYERS: [Layer; 8] = [
-    Layer { base: 0.0, lapse: -6.5e-3 },
-    Layer { base: 11_000.0, lapse: 0.0 },
-    Layer { base: 20_000.0, lapse: 1.0e-3 },
-    Layer { base: 32_000.0, lapse: 2.8e-3 },
-    Layer { base: 47_000.0, lapse: 0.0 },
-    Layer { base: 51_000.0, lapse: -2.8e-3 },
-    Layer { base: 71_000.0, lapse: -2.0e-3 },
-    Layer { base: 84_852.0, lapse: 0.0 },
+static LAYERS: [AtmosphereLayer; 8] = [
+    AtmosphereLayer { base: 0.0, lapse: -6.5e-3 },
+    AtmosphereLayer { base: 11_000.0, lapse: 0.0 },
+    AtmosphereLayer { base: 20_000.0, lapse: 1.0e-3 },
+    AtmosphereLayer { base: 32_000.0, lapse: 2.8e-3 },
+    AtmosphereLayer { base: 47_000.0, lapse: 0.0 },
+    AtmosphereLayer { base: 51_000.0, lapse: -2.8e-3 },
+    AtmosphereLayer { base: 71_000.0, lapse: -2.0e-3 },
+    AtmosphereLayer { base: 84_852.0, lapse: 0.0 },
 ];
 
 /// Returns the layers of the atmosphere with the heights of their upper ends; the last layer has none.
-fn layers_with_ends() -> impl Iterator<Item = (&'static Layer, Option<f64>)> {
+fn layers_with_top_altitudes() -> impl Iterator<Item = (&'static AtmosphereLayer, Option<f64>)> {
     let ends = LAYERS.iter().skip(1).map(|next| Some(next.base)).chain([None]);
     LAYERS.iter().zip(ends)
 }
 
 /// Returns the depth of height `h` within a layer, m: the layer's whole thickness above it, zero below it.
 /// The lowest layer is unbounded below.
-fn depth_in_layer<T: Real>(h: T, layer: &Layer, end: Option<f64>) -> T {
+fn depth_in_layer<T: Real>(h: T, layer: &AtmosphereLayer, end: Option<f64>) -> T {
     let below = end.map_or(h, |end| h.min(constant(end)));
     let inside = if layer.base > 0.0 { below.max(constant(layer.base)) } else { below };
     inside - constant(layer.base)
 }
 
-/// Returns one for a nonnegative number and zero for a negative one, lane by lane.
-fn step<T: Real>(x: T) -> T {
+/// Returns the unit step function of `x`, lane by lane: one for a nonnegative number and zero for a negative
+/// one.
+fn unit_step<T: Real>(x: T) -> T {
     (T::one() + x.signum()) * constant(0.5)
 }
 
@@ -58,7 +59,7 @@ fn step<T: Real>(x: T) -> T {
 pub trait Atmosphere: Real {
     /// Returns the temperature of the standard atmosphere at this height, K.
     fn isa_temperature(self) -> Self {
-        layers_with_ends().fold(constant(T0), |sum, (layer, end)| {
+        layers_with_top_altitudes().fold(constant(T0), |sum, (layer, end)| {
             sum + depth_in_layer(self, layer, end) * constant(layer.lapse)
         })
     }
@@ -69,8 +70,11 @@ pub trait Atmosphere: Real {
         let mut rate: Self = constant(0.0);
         let mut before = 0.0;
         for (k, layer) in LAYERS.iter().enumerate() {
-            let above =
-                if k == 0 { Self::one() + self * Self::zero() } else { step(self - constant(layer.base)) };
+            let above = if k == 0 {
+                Self::one() + self * Self::zero()
+            } else {
+                unit_step(self - constant(layer.base))
+            };
             rate += above * constant(layer.lapse - before);
             before = layer.lapse;
         }
@@ -80,7 +84,7 @@ pub trait Atmosphere: Real {
     /// Returns the pressure of the standard atmosphere at this height, Pa.
     fn isa_pressure(self) -> Self {
         let (mut pressure, mut base): (Self, f64) = (constant(P0), T0);
-        for (layer, end) in layers_with_ends() {
+        for (layer, end) in layers_with_top_altitudes() {
             // Layers above have no effect; lanes that differ pass through all layers.
             if layer.base > 0.0 && self < constant(layer.base) {
                 break;
@@ -106,7 +110,8 @@ mod tests {
     use super::*;
     use crate::lanes::{Lanes, f64x4};
 
-    /// Geometric height, m; temperature, K; pressure, Pa: *U.S. Standard Atmosphere 1976*, tables I and II.
+    /// Published values of the *U.S. Standard Atmosphere 1976*, tables I and II: geometric height, m;
+    /// temperature, K; pressure, Pa.
     const TABLE: [(f64, f64, f64); 8] = [
         (0.0, 288.150, 1.01325e5),
         (1_000.0, 281.651, 8.9876e4),
@@ -123,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn the_published_figures_are_met() {
+    fn published_values_are_reproduced() {
         for (h, temperature, pressure) in TABLE {
             let h = geopotential_height(h);
             assert!((h.isa_temperature() - temperature).abs() < 2e-3, "{h}: {}", h.isa_temperature());
@@ -132,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn slopes_are_those_of_the_hydrostatic_equation() {
+    fn lapse_rates_match_hydrostatic_equation() {
         for h in [
             -500.0,
             300.0,
@@ -154,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn lanes_are_each_in_a_layer_of_their_own() {
+    fn lanes_evaluate_different_layers() {
         let heights = [-100.0, 15_000.0, 33_000.0, 90_000.0];
         let all: f64x4 = Lanes(heights).isa_pressure();
         for (lane, h) in heights.into_iter().enumerate() {

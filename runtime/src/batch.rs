@@ -31,7 +31,7 @@ use crate::{Lanes, Mechanism};
 use nalgebra::{SMatrix, SVector};
 
 /// Column vector whose entries are SIMD lanes over several states.
-type Column<T, const L: usize, const N: usize> = SVector<Lanes<T, L>, N>;
+type LaneColumn<T, const L: usize, const N: usize> = SVector<Lanes<T, L>, N>;
 
 /// Mechanism with functions that evaluate several states at once, implemented by `#[mechanism(…, batch)]`.
 /// Shapes, units and conventions are those of [`Mechanism`] for the state in each lane. `t` has no effect if
@@ -53,33 +53,33 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Mechanism<NQ
     /// Returns [`integrate`](Mechanism::integrate) of each lane: `q ⊕ dv`.
     fn integrate_lanes<const L: usize>(
         &self,
-        q: &Column<Self::Scalar, L, NQ>,
-        dv: &Column<Self::Scalar, L, NV>,
-    ) -> Column<Self::Scalar, L, NQ>;
+        q: &LaneColumn<Self::Scalar, L, NQ>,
+        dv: &LaneColumn<Self::Scalar, L, NV>,
+    ) -> LaneColumn<Self::Scalar, L, NQ>;
 
     /// Returns [`difference`](Mechanism::difference) of each lane: `to ⊖ from`.
     fn difference_lanes<const L: usize>(
         &self,
-        from: &Column<Self::Scalar, L, NQ>,
-        to: &Column<Self::Scalar, L, NQ>,
-    ) -> Column<Self::Scalar, L, NV>;
+        from: &LaneColumn<Self::Scalar, L, NQ>,
+        to: &LaneColumn<Self::Scalar, L, NQ>,
+    ) -> LaneColumn<Self::Scalar, L, NV>;
 
     /// Returns [`tangent_rate`](Mechanism::tangent_rate) for the state in each lane: the rate of `dv` such
     /// that `q ⊕ dv` moves with velocity `v`.
     fn tangent_rate_lanes<const L: usize>(
         &self,
-        dv: &Column<Self::Scalar, L, NV>,
-        v: &Column<Self::Scalar, L, NV>,
-    ) -> Column<Self::Scalar, L, NV>;
+        dv: &LaneColumn<Self::Scalar, L, NV>,
+        v: &LaneColumn<Self::Scalar, L, NV>,
+    ) -> LaneColumn<Self::Scalar, L, NV>;
 
     /// Returns [`displacement_rate`](Mechanism::displacement_rate) for the state in each lane: the rate of
     /// the displacement `dv` from `q` such that `q ⊕ dv` moves with velocity `v`.
     fn displacement_rate_lanes<const L: usize>(
         &self,
-        _q: &Column<Self::Scalar, L, NQ>,
-        dv: &Column<Self::Scalar, L, NV>,
-        v: &Column<Self::Scalar, L, NV>,
-    ) -> Column<Self::Scalar, L, NV> {
+        _q: &LaneColumn<Self::Scalar, L, NQ>,
+        dv: &LaneColumn<Self::Scalar, L, NV>,
+        v: &LaneColumn<Self::Scalar, L, NV>,
+    ) -> LaneColumn<Self::Scalar, L, NV> {
         self.tangent_rate_lanes(dv, v)
     }
 
@@ -87,59 +87,59 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Mechanism<NQ
     fn mass_matrix_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
-        q: &Column<Self::Scalar, L, NQ>,
+        q: &LaneColumn<Self::Scalar, L, NQ>,
     ) -> SMatrix<Lanes<Self::Scalar, L>, NV, NV>;
 
     /// Returns [`bias_forces`](Mechanism::bias_forces) of each lane: `h(t, q, v)`, N and N·m.
     fn bias_forces_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
-        q: &Column<Self::Scalar, L, NQ>,
-        v: &Column<Self::Scalar, L, NV>,
-    ) -> Column<Self::Scalar, L, NV>;
+        q: &LaneColumn<Self::Scalar, L, NQ>,
+        v: &LaneColumn<Self::Scalar, L, NV>,
+    ) -> LaneColumn<Self::Scalar, L, NV>;
 
     /// Returns [`inverse_dynamics`](Mechanism::inverse_dynamics) of each lane: `τ = M a + h`, N and N·m.
     fn inverse_dynamics_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
-        q: &Column<Self::Scalar, L, NQ>,
-        v: &Column<Self::Scalar, L, NV>,
-        a: &Column<Self::Scalar, L, NV>,
-    ) -> Column<Self::Scalar, L, NV>;
+        q: &LaneColumn<Self::Scalar, L, NQ>,
+        v: &LaneColumn<Self::Scalar, L, NV>,
+        a: &LaneColumn<Self::Scalar, L, NV>,
+    ) -> LaneColumn<Self::Scalar, L, NV>;
 
     /// Returns [`forward_dynamics`](Mechanism::forward_dynamics) of each lane: `v̇ = M⁻¹ (τ − h)`, m/s² and
     /// rad/s².
     fn forward_dynamics_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
-        q: &Column<Self::Scalar, L, NQ>,
-        v: &Column<Self::Scalar, L, NV>,
-        tau: &Column<Self::Scalar, L, NV>,
-    ) -> Column<Self::Scalar, L, NV>;
+        q: &LaneColumn<Self::Scalar, L, NQ>,
+        v: &LaneColumn<Self::Scalar, L, NV>,
+        tau: &LaneColumn<Self::Scalar, L, NV>,
+    ) -> LaneColumn<Self::Scalar, L, NV>;
 
     /// Returns [`generalized_forces`](Mechanism::generalized_forces) of the inputs `u` of each lane, N and
     /// N·m.
     fn generalized_forces_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
-        q: &Column<Self::Scalar, L, NQ>,
-        v: &Column<Self::Scalar, L, NV>,
-        u: &Column<Self::Scalar, L, NU>,
-    ) -> Column<Self::Scalar, L, NV>;
+        q: &LaneColumn<Self::Scalar, L, NQ>,
+        v: &LaneColumn<Self::Scalar, L, NV>,
+        u: &LaneColumn<Self::Scalar, L, NU>,
+    ) -> LaneColumn<Self::Scalar, L, NV>;
 
     /// Returns [`kinetic_energy`](Mechanism::kinetic_energy) for the state in each lane, J.
     fn kinetic_energy_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
-        q: &Column<Self::Scalar, L, NQ>,
-        v: &Column<Self::Scalar, L, NV>,
+        q: &LaneColumn<Self::Scalar, L, NQ>,
+        v: &LaneColumn<Self::Scalar, L, NV>,
     ) -> Lanes<Self::Scalar, L>;
 
     /// Returns [`potential_energy`](Mechanism::potential_energy) for the state in each lane, J.
     fn potential_energy_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
-        q: &Column<Self::Scalar, L, NQ>,
+        q: &LaneColumn<Self::Scalar, L, NQ>,
     ) -> Lanes<Self::Scalar, L>;
 
     /// Returns [`generalized_momentum`](Mechanism::generalized_momentum) of each lane, `p`, kg·m/s and
@@ -147,15 +147,15 @@ pub trait Batch<const NQ: usize, const NV: usize, const NU: usize>: Mechanism<NQ
     fn generalized_momentum_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
-        q: &Column<Self::Scalar, L, NQ>,
-        v: &Column<Self::Scalar, L, NV>,
-    ) -> Column<Self::Scalar, L, NV>;
+        q: &LaneColumn<Self::Scalar, L, NQ>,
+        v: &LaneColumn<Self::Scalar, L, NV>,
+    ) -> LaneColumn<Self::Scalar, L, NV>;
 
     /// Returns [`momentum_rate`](Mechanism::momentum_rate) of each lane: `ṗ` without inputs, N and N·m.
     fn momentum_rate_lanes<const L: usize>(
         &self,
         t: Lanes<Self::Scalar, L>,
-        q: &Column<Self::Scalar, L, NQ>,
-        v: &Column<Self::Scalar, L, NV>,
-    ) -> Column<Self::Scalar, L, NV>;
+        q: &LaneColumn<Self::Scalar, L, NQ>,
+        v: &LaneColumn<Self::Scalar, L, NV>,
+    ) -> LaneColumn<Self::Scalar, L, NV>;
 }

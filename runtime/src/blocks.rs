@@ -25,10 +25,10 @@ pub fn add_product<T: Real, const R: usize, const K: usize, const C: usize>(
     a: &SMatrix<T, R, K>,
     b: &SMatrix<T, K, C>,
 ) {
-    dispatch::<0, T, _, _>(&Product { a, b }, sum);
+    dispatch::<0, T, _, _>(&MatrixProduct { a, b }, sum);
 }
 
-/// Computes [`add_product`] with the given columns of `A` and rows of `B` alone.
+/// Adds the product of some columns of `A`, with the indices `places`, and the corresponding rows of `B`.
 #[inline(never)]
 pub fn add_product_of_some<T: Real, const R: usize, const K: usize, const C: usize>(
     sum: &mut SMatrix<T, R, C>,
@@ -36,17 +36,17 @@ pub fn add_product_of_some<T: Real, const R: usize, const K: usize, const C: usi
     a: &SMatrix<T, R, K>,
     b: &SMatrix<T, K, C>,
 ) {
-    dispatch::<2, T, _, _>(&Chosen { places, a, b }, sum);
+    dispatch::<2, T, _, _>(&ChosenColumnsProduct { places, a, b }, sum);
 }
 
 /// Factors `A` and `B` of a matrix product.
-struct Product<'a, T, const R: usize, const K: usize, const C: usize> {
+struct MatrixProduct<'a, T, const R: usize, const K: usize, const C: usize> {
     a: &'a SMatrix<T, R, K>,
     b: &'a SMatrix<T, K, C>,
 }
 
 impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<0, &mut SMatrix<T, R, C>>
-    for Product<'_, T, R, K, C>
+    for MatrixProduct<'_, T, R, K, C>
 {
     type Output = ();
 
@@ -60,15 +60,15 @@ impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<0, &mut S
     }
 }
 
-/// Factors of a product restricted to some columns.
-struct Chosen<'a, T, const R: usize, const K: usize, const C: usize> {
+/// Factors of a matrix product that is restricted to chosen columns of the first factor.
+struct ChosenColumnsProduct<'a, T, const R: usize, const K: usize, const C: usize> {
     places: &'a [usize],
     a: &'a SMatrix<T, R, K>,
     b: &'a SMatrix<T, K, C>,
 }
 
 impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<2, &mut SMatrix<T, R, C>>
-    for Chosen<'_, T, R, K, C>
+    for ChosenColumnsProduct<'_, T, R, K, C>
 {
     type Output = ();
 
@@ -79,8 +79,8 @@ impl<T: Real, const R: usize, const K: usize, const C: usize> Evaluate<2, &mut S
     }
 }
 
-/// Adds the product of the given columns, with their indices. It processes four columns at a time, and as
-/// many rows as fit in registers together with the operands.
+/// Adds a matrix product of the given columns, with their indices. It processes four columns at a time, and
+/// the maximum number of rows that fit in registers together with the operands.
 #[inline(always)]
 fn add_columns<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C: usize>(
     columns: &mut [[T; R]; C],
@@ -88,11 +88,11 @@ fn add_columns<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const
     b: &[[T; K]; C],
 ) {
     if A::WIDE && R >= 8 {
-        wide_rows::<A, T, R, K, C>(columns, a, b);
+        multiply_rows_wide::<A, T, R, K, C>(columns, a, b);
     } else if R >= 4 {
-        rows_of::<A, T, 4, R, K, C>(columns, a, b);
+        multiply_all_rows::<A, T, 4, R, K, C>(columns, a, b);
     } else {
-        rows_of::<A, T, 1, R, K, C>(columns, a, b);
+        multiply_all_rows::<A, T, 1, R, K, C>(columns, a, b);
     }
 }
 
@@ -112,7 +112,15 @@ const fn remaining_rows(rows: usize, w: usize) -> usize {
 /// remaining up to three. If fewer rows remain, the last register overlaps the previous one; all rows are
 /// read before any is written.
 #[inline(always)]
-fn rows_of<'a, A: Arithmetic, T: Real, const W: usize, const R: usize, const K: usize, const C: usize>(
+fn multiply_all_rows<
+    'a,
+    A: Arithmetic,
+    T: Real,
+    const W: usize,
+    const R: usize,
+    const K: usize,
+    const C: usize,
+>(
     columns: &mut [[T; R]; C],
     a: impl Iterator<Item = (usize, &'a [T; R])> + Clone,
     b: &[[T; K]; C],
@@ -131,11 +139,11 @@ fn rows_of<'a, A: Arithmetic, T: Real, const W: usize, const R: usize, const K: 
     }
 }
 
-/// Computes a matrix product as [`rows_of`] does, with registers of eight, and a final register of four if it
-/// can hold the remaining rows. Instructions on four are half as long on processors that split instructions
-/// on eight.
+/// Computes a matrix product as [`multiply_all_rows`] does, with registers of eight, and a final register of
+/// four if it can hold the remaining rows. Instructions on four are half as long on processors that split
+/// instructions on eight.
 #[inline(always)]
-fn wide_rows<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C: usize>(
+fn multiply_rows_wide<'a, A: Arithmetic, T: Real, const R: usize, const K: usize, const C: usize>(
     columns: &mut [[T; R]; C],
     a: impl Iterator<Item = (usize, &'a [T; R])> + Clone,
     b: &[[T; K]; C],
@@ -194,16 +202,16 @@ fn add_product_strip<
     }
 }
 
-/// Rows of a column in registers: `V` of width `W`, then `F` of four.
+/// Rows of a matrix column in SIMD registers: `V` registers of width `W`, then `F` registers of width four.
 #[derive(Clone, Copy)]
-struct Rows<A, T, const W: usize, const V: usize, const F: usize> {
+struct RegisterRows<A, T, const W: usize, const V: usize, const F: usize> {
     whole: [Vector<A, T, W>; V],
     fours: [Vector<A, T, 4>; F],
 }
 
-impl<A: Arithmetic, T: Real, const W: usize, const V: usize, const F: usize> Rows<A, T, W, V, F> {
+impl<A: Arithmetic, T: Real, const W: usize, const V: usize, const F: usize> RegisterRows<A, T, W, V, F> {
     #[inline(always)]
-    fn zero() -> Self {
+    fn zero_rows() -> Self {
         Self { whole: [A::splat(T::zero()); V], fours: [A::splat(T::zero()); F] }
     }
 
@@ -258,12 +266,12 @@ fn add_product_tile<
     b: &[[T; K]; G],
     from: usize,
 ) {
-    let mut all = [Rows::<A, T, W, V, F>::zero(); G];
+    let mut all = [RegisterRows::<A, T, W, V, F>::zero_rows(); G];
     for (rows, column) in all.iter_mut().zip(columns.iter()) {
         rows.read_rows(column, from);
     }
     for (k, column) in a {
-        let mut rows = Rows::zero();
+        let mut rows = RegisterRows::zero_rows();
         rows.read_rows(column, from);
         for (sums, factors) in all.iter_mut().zip(b) {
             if let Some(factor) = factors.get(k) {
@@ -341,7 +349,7 @@ pub fn transpose_into<T: Real, const R: usize, const C: usize>(
     }
 }
 
-/// Returns `A B` for a mostly zero `B`.
+/// Returns the product `A B` with a matrix `B` that is mostly zero.
 pub fn product_with_few<T: Real, const R: usize, const K: usize, const C: usize>(
     a: &SMatrix<T, R, K>,
     b: &SMatrix<T, K, C>,

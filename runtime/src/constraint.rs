@@ -28,7 +28,9 @@ mod stabilized;
 pub use assemble::{Loops, assemble, assembly_mode, least_violation};
 pub use careful::{Structure, careful_dynamics, careful_response, nearly_singular};
 pub use differentiable::{ConstrainedDerivatives, EquationDerivatives, MultiplierDerivatives, Visitor};
-pub(crate) use differentiable::{Frozen, column_or_zeros, each_column, multipliers_of_forces, set_column};
+pub(crate) use differentiable::{
+    FrozenTimeVisitor, column_or_zeros, matrix_of_columns, multipliers_of_forces, set_column,
+};
 pub use error::ConstraintError;
 pub(crate) use graded::change_rates;
 #[doc(hidden)]
@@ -37,7 +39,7 @@ pub use linearize::Linearization;
 #[doc(hidden)]
 pub use linearize::{Motion, constrained_derivatives};
 pub use second::{ConstrainedSecondDerivatives, CurvatureVisitor, EquationSecondDerivatives};
-pub(crate) use second::{FrozenCurvature, adjoint_variables, with_transpose};
+pub(crate) use second::{FrozenCurvatureVisitor, adjoint_variables, with_transpose};
 #[doc(hidden)]
 pub use second::{constrained_second_derivatives, with_curvature};
 #[doc(hidden)]
@@ -61,7 +63,7 @@ pub type Projected<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, SVect
 /// Accelerations `v̇` and constraint multipliers `λ`.
 pub type Solution<T, const NV: usize, const NC: usize> = (SVector<T, NV>, SVector<T, NC>);
 
-/// Returns the holonomic constraints of a mechanism at an instant, for assembly.
+/// Returns the holonomic constraints of a mechanism at an instant, as input of the assembly.
 macro_rules! loops {
     ($mechanism:ident, $t:ident) => {
         Loops {
@@ -106,14 +108,15 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         NH
     }
 
-    /// Returns [`ANGLES`](Self::ANGLES), from which a mechanism that is loaded at run time differs.
+    /// Returns the indices of angles in `q`: [`ANGLES`](Self::ANGLES), unless the mechanism is loaded at run
+    /// time and has its own list.
     #[doc(hidden)]
     #[inline(always)]
     fn angles(&self) -> &[usize] {
         Self::ANGLES
     }
 
-    /// Whether each velocity is that of a rotation.
+    /// Returns true for each velocity that is the rate of a rotation.
     #[doc(hidden)]
     #[inline(always)]
     fn rotations(&self) -> [bool; NV] {
@@ -206,7 +209,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         p: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV> {
         let half = h * constant(0.5);
-        let way = crate::speeds::way_of(self, q, v, half);
+        let way = crate::speeds::displacement_of_mechanism(self, q, v, half);
         let holonomic = self.holonomic();
         let within = if NC > holonomic { self.integrate(q, &way) } else { *q };
         let mut gap = if NC > holonomic || h == nalgebra::zero() {
@@ -421,7 +424,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
         complete::driving_forces(self, t, (q, v), a, driven)
     }
 
-    /// Projects the configuration, then the velocity.
+    /// Returns the state projected onto the constraints: the configuration first, then the velocity.
     ///
     /// Near a crossing of two branches of the constraints, a state within rounding errors of the crossing
     /// keeps its velocity if it satisfies the rates of both branches. The velocity identifies the branch of
@@ -450,7 +453,7 @@ pub trait Constrained<const NQ: usize, const NV: usize, const NU: usize, const N
     }
 }
 
-/// Returns index and magnitude of the largest entry.
+/// Returns the index and the magnitude of the largest entry of a vector.
 fn index_of_largest_entry<T: Real, const N: usize>(x: &SVector<T, N>) -> Result<(usize, T), ConstraintError> {
     let mut found = (0, T::zero());
     for (k, x) in x.iter().enumerate() {

@@ -92,13 +92,13 @@ use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
 mod apart;
+mod coefficients;
 mod derivatives;
 mod force;
 mod held;
 mod holding;
 mod impulses;
 mod landing;
-mod lawful;
 mod layout;
 mod light;
 mod observer;
@@ -114,6 +114,8 @@ mod total;
 mod velocities;
 
 pub use apart::{Apart, apart};
+use coefficients::checked_contact_laws;
+pub use coefficients::{Law, Restitution};
 #[doc(hidden)]
 pub use derivatives::{Columns, held_derivatives};
 pub use derivatives::{
@@ -125,20 +127,20 @@ pub use holding::{Holding, hold};
 #[doc(hidden)]
 pub use impulses::{Assumed, Impulses};
 pub use landing::{LandedDerivatives, land, land_derivatives};
-use lawful::lawful;
-pub use lawful::{Law, Restitution};
-use layout::Layout;
+use layout::ContactLayout;
 #[doc(hidden)]
 pub use overlap::start;
 pub use overlap::{check, project};
-pub(crate) use phase::{Phase, Phased, Watch, separated, settled as kept};
+pub(crate) use phase::{
+    ContactPhase, PhaseState, PhasedMechanism, projected_onto_contacts as kept, velocity_after_impact,
+};
 #[doc(hidden)]
 pub use response::responses;
-use selection::Selection;
+use selection::ContactSelection;
 #[doc(hidden)]
 pub use sensitivity::differentiate_step;
-use solution::{Acted, act};
-use stepping::closed;
+use solution::{ActedContacts, compute_impulses};
+use stepping::closed_contacts;
 #[doc(hidden)]
 pub use stepping::step;
 use velocities::ContactVelocities;
@@ -147,7 +149,8 @@ use velocities::ContactVelocities;
 /// of a friction moment ([`PRESSED_BY`](Contacts::PRESSED_BY)) are relative angular velocities only, rad/s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rows {
-    /// Index of the rate of the gap; of a moment of friction that of its first rate.
+    /// Index of the gap velocity in the vector of contact velocities. For a friction moment, the index of its
+    /// first relative angular velocity.
     pub first: usize,
     /// Number of contact velocities: one without friction, up to three with friction; one for a spin moment,
     /// up to two for a rolling moment.
@@ -167,7 +170,8 @@ pub enum Touch {
     Slips,
 }
 
-/// Mechanism with `NK` unilateral contacts and `NR` contact velocities, for generic code.
+/// Mechanism with `NK` unilateral contacts (counting friction moments) and `NR` contact velocities, for
+/// generic code.
 ///
 /// `#[mechanism]` implements the trait if a [`Contact`](crate::elements::Contact) or a
 /// [`Limit`](crate::elements::Limit) with `restitution` is declared. Time `t` is in seconds; it has no effect
@@ -187,25 +191,27 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
     /// Index of the contact whose normal force limits the friction of each entry: the contact itself, except
     /// for friction moments. Spin and rolling moments such as `foot.spin` and `foot.roll` belong to the
     /// contact `foot` and share its gap; their contact velocities are relative angular velocities.
-    const PRESSED_BY: [usize; NK] = layout::own();
+    const PRESSED_BY: [usize; NK] = layout::contacts_pressed_by_themselves();
 
-    /// Returns [`CONTACT_ROWS`](Self::CONTACT_ROWS) and [`PRESSED_BY`](Self::PRESSED_BY), from which a
-    /// mechanism that is loaded at run time differs: a contact without rows is padding.
+    /// Returns the tables [`CONTACT_ROWS`](Self::CONTACT_ROWS) and [`PRESSED_BY`](Self::PRESSED_BY). A
+    /// mechanism that is loaded at run time returns tables of its own, in which a contact without rows is
+    /// padding.
     #[doc(hidden)]
     #[inline(always)]
     fn contact_tables(&self) -> ([Rows; NK], [usize; NK]) {
         (Self::CONTACT_ROWS, Self::PRESSED_BY)
     }
 
-    /// Returns for each contact the columns of the Jacobian, from the first to behind the last, outside of
-    /// which its rows are zero.
+    /// Returns a range of columns of the contact Jacobian for each contact: the first column, and the index
+    /// behind the last. Outside of this range the rows of the contact are zero.
     #[doc(hidden)]
     #[inline(always)]
     fn contact_columns(&self) -> [(usize, usize); NK] {
         [(0, NV); NK]
     }
 
-    /// Whether contact velocities may differ from zero where the velocity is zero.
+    /// Whether contact velocities may be nonzero at zero generalized velocity, because bodies have prescribed
+    /// motions.
     #[doc(hidden)]
     #[inline(always)]
     fn contacts_drift(&self) -> bool {
@@ -216,8 +222,9 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
     /// surfaces.
     fn contact_gaps(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SVector<Self::Scalar, NK>;
 
-    /// Rates at the contacts, m/s and rad/s: of each that of its gap, then the slip along its tangents; of
-    /// moments of friction the relative angular velocity about the normal, or about the tangents.
+    /// Returns the contact velocities, m/s and rad/s: for each contact the gap velocity, then the slip
+    /// velocities along its tangents. For a friction moment they are the relative angular velocities about
+    /// the normal (spin) or about the tangents (rolling).
     fn contact_rates(
         &self,
         t: Self::Scalar,
@@ -225,14 +232,16 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NR>;
 
-    /// `G(t, q)`: how the rates change with the velocities.
+    /// Returns the contact Jacobian `G(t, q)`, the derivative of the contact velocities with respect to the
+    /// generalized velocities.
     fn contact_jacobian(
         &self,
         t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
     ) -> SMatrix<Self::Scalar, NR, NV>;
 
-    /// `b(t, q, v)`, m/s² and rad/s²: where surfaces touch, their rates change by `G v̇ + b`.
+    /// Returns the contact bias `b(t, q, v)`, m/s² and rad/s²: the acceleration of closed contacts is
+    /// `G v̇ + b`.
     fn contact_bias(
         &self,
         t: Self::Scalar,
@@ -241,8 +250,8 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
     ) -> SVector<Self::Scalar, NR>;
 
     /// Returns the changes of velocities and contact velocities due to unit contact impulses, including the
-    /// constraints of the mechanism. Only contacts marked `closed` are needed; entries of other contacts may
-    /// be zero.
+    /// constraints of the mechanism. Only contacts marked as closed are computed; entries of other contacts
+    /// may be zero.
     fn contact_responses(
         &self,
         t: Self::Scalar,
@@ -255,9 +264,10 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
         response::responses(self, t, q, closed)
     }
 
-    /// [`acceleration_derivatives`](crate::integrate::Hooks::acceleration_derivatives) while contacts do
-    /// what `touches` says, with gaps and rates of what is held decaying by the gains of position and
-    /// velocity, 1/s² and 1/s; `None` without [`ContactDerivatives`].
+    /// Returns the derivatives of the accelerations in the contact modes `touches`, as
+    /// [`acceleration_derivatives`](crate::integrate::Hooks::acceleration_derivatives) does without contacts.
+    /// Gaps and contact velocities of enforced contacts decay with position and velocity gains, 1/s² and 1/s.
+    /// Returns `None` for mechanisms without [`ContactDerivatives`].
     fn held_derivatives(
         &self,
         _t: Self::Scalar,
@@ -269,8 +279,9 @@ pub trait Contacts<const NQ: usize, const NV: usize, const NU: usize, const NK: 
         None
     }
 
-    /// Writes a step of time stepping with its derivatives; `None` without [`ContactDerivatives`]. Called by
-    /// [`discrete::transition`](crate::discrete::transition).
+    /// Writes a step of time stepping with its derivatives, for
+    /// [`discrete::transition`](crate::discrete::transition). Returns `None` for mechanisms without
+    /// [`ContactDerivatives`].
     #[doc(hidden)]
     fn differentiate_step(
         &self,
@@ -304,9 +315,11 @@ pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
 /// velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Responses<T, const NV: usize, const NR: usize> {
-    /// `M⁻¹ Gᵀ`, with what constraints add: by how much each impulse changes the velocities.
+    /// Changes of the generalized velocities by unit impulses, `M⁻¹ Gᵀ` without constraints; with
+    /// constraints, their reactions are included.
     pub velocities: SMatrix<T, NV, NR>,
-    /// `G M⁻¹ Gᵀ`, likewise: by how much each impulse, 1 N·s or 1 N·m·s, changes the rates.
+    /// Changes of the contact velocities by unit impulses (1 N·s or 1 N·m·s), the Delassus matrix `G M⁻¹ Gᵀ`
+    /// without constraints; with constraints, their reactions are included.
     pub rates: SMatrix<T, NR, NR>,
 }
 
@@ -337,8 +350,9 @@ pub struct Touched<T, const NQ: usize, const NV: usize> {
     pub q: SVector<T, NQ>,
     /// Velocity at the end of the step.
     pub v: SVector<T, NV>,
-    /// Change of the velocity by the impulses of the contacts, with the directions that contact forces have
-    /// at the end: divided by the length of the step, an estimate of their effect where the next step starts.
+    /// Change of the velocity by the contact impulses of the step, with the directions that contact forces
+    /// have at the end of the step. Divided by the step size, it estimates the effect of contact forces at
+    /// the start of the next step.
     pub held: SVector<T, NV>,
     /// Contact impulses with which the next step starts its iteration.
     #[doc(hidden)]
@@ -357,7 +371,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Touched<T, NQ, NV> {
 /// Velocity after contact impulses have acted, with these impulses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solved<T, const NV: usize, const NR: usize> {
-    /// Velocity after the contact impulses, m/s and rad/s.
+    /// Generalized velocity after the contact impulses, m/s and rad/s.
     pub v: SVector<T, NV>,
     /// Contact impulses, N·s, or N·m·s for stops about an axis: for each contact the normal impulse, followed
     /// by those along its tangents.
@@ -440,13 +454,21 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    match closed(mechanism, t, (q, free), None)? {
+    match closed_contacts(mechanism, t, (q, free), None)? {
         Some(closed) => {
-            let selection = Selection::<NK, NR>::select(Layout::of(mechanism), &closed);
-            let mut acted = Acted::nothing(selection, false);
-            let velocities = ContactVelocities::at(mechanism, t, q);
-            let before = || selection.rates(before);
-            act(mechanism, (t, &velocities), (q, free), &closed, (before, None), &mut acted)
+            let selection =
+                ContactSelection::<NK, NR>::select_closed(ContactLayout::of_mechanism(mechanism), &closed);
+            let mut acted = ActedContacts::without_impulses(selection, false);
+            let velocities = ContactVelocities::in_configuration(mechanism, t, q);
+            let velocities_before = || selection.selected_rates(before);
+            compute_impulses(
+                mechanism,
+                (t, &velocities),
+                (q, free),
+                &closed,
+                (velocities_before, None),
+                &mut acted,
+            )
         }
         None => Ok(Solved { v: *free, impulses: SVector::zeros() }),
     }

@@ -1,14 +1,14 @@
 //! First derivatives of the dynamics for generic code: controllers, estimators and optimisers.
 
 use crate::blocks::{add_product, is_zero, product_with_few, zeros};
-use crate::constraint::{Frozen, Visitor};
+use crate::constraint::{FrozenTimeVisitor, Visitor};
 use crate::forward::{constants, each_function};
 use crate::private::constant;
 use crate::{At, Mechanism, Real, Scleronomic};
 use nalgebra::{SMatrix, SVector};
 
 /// Square matrix with one row and one column for each of the `NV` velocities.
-type Square<T, const NV: usize> = SMatrix<T, NV, NV>;
+type SquareMatrix<T, const NV: usize> = SMatrix<T, NV, NV>;
 
 /// Derivatives with respect to configuration, velocity, and `N` forces or inputs.
 pub type ByMotion<T, const NV: usize, const N: usize> =
@@ -36,33 +36,34 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
     /// `q ⊕ dv` are those of a vector space (identity); `None` if unknown.
     const TURNED: Option<(usize, usize)> = None;
 
-    /// Returns `(∂/∂q, ∂/∂dv)` of `q ⊕ dv`, which depend on `dv` alone; identities for plain coordinates.
+    /// Returns the derivatives `(∂/∂q, ∂/∂dv)` of the displaced configuration `q ⊕ dv`, which depend on `dv`
+    /// alone. They are identities for coordinates whose rates are the velocities.
     fn integrate_derivatives(
         &self,
         dv: &SVector<Self::Scalar, NV>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
+    ) -> (SquareMatrix<Self::Scalar, NV>, SquareMatrix<Self::Scalar, NV>);
 
-    /// Returns `(∂/∂dv, ∂/∂v)` of [`tangent_rate`](Mechanism::tangent_rate); zero and the identity for plain
-    /// coordinates.
+    /// Returns the derivatives `(∂/∂dv, ∂/∂v)` of [`tangent_rate`](Mechanism::tangent_rate): zero and the
+    /// identity for coordinates whose rates are the velocities.
     fn tangent_rate_derivatives(
         &self,
         dv: &SVector<Self::Scalar, NV>,
         v: &SVector<Self::Scalar, NV>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
+    ) -> (SquareMatrix<Self::Scalar, NV>, SquareMatrix<Self::Scalar, NV>);
 
-    /// Returns `(∂/∂q, ∂/∂dv)` of `q ⊕ dv` at `q`. They do not depend on `q` unless generalized speeds are
-    /// declared ([`SPEEDS`](crate::integrate::Hooks::SPEEDS)):
+    /// Returns the derivatives `(∂/∂q, ∂/∂dv)` of the displaced configuration `q ⊕ dv` at `q`. They depend on
+    /// `q` only if generalized speeds are declared ([`SPEEDS`](crate::integrate::Hooks::SPEEDS));
     /// [`integrate_derivatives`](Self::integrate_derivatives) is then NaN.
     fn integrate_derivatives_at(
         &self,
         _q: &SVector<Self::Scalar, NQ>,
         dv: &SVector<Self::Scalar, NV>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>) {
+    ) -> (SquareMatrix<Self::Scalar, NV>, SquareMatrix<Self::Scalar, NV>) {
         self.integrate_derivatives(dv)
     }
 
-    /// Returns `(∂/∂q, ∂/∂dv, ∂/∂v)` of [`displacement_rate`](Mechanism::displacement_rate); the first is
-    /// zero unless generalized speeds are declared.
+    /// Returns the derivatives `(∂/∂q, ∂/∂dv, ∂/∂v)` of [`displacement_rate`](Mechanism::displacement_rate).
+    /// The first is zero unless generalized speeds are declared.
     fn displacement_rate_derivatives(
         &self,
         _q: &SVector<Self::Scalar, NQ>,
@@ -80,7 +81,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         &self,
         _q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
-    ) -> Square<Self::Scalar, NV> {
+    ) -> SquareMatrix<Self::Scalar, NV> {
         let (turning, _) = self.tangent_rate_derivatives(&SVector::zeros(), v);
         // The tangent space moves with the configuration, so that the Lie bracket counts twice.
         turning * constant::<Self::Scalar>(2.0)
@@ -94,7 +95,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         t: Self::Scalar,
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
-    ) -> Square<Self::Scalar, NV>;
+    ) -> SquareMatrix<Self::Scalar, NV>;
 
     /// Returns `(∂τ/∂q, ∂τ/∂v)` of [`inverse_dynamics`](Mechanism::inverse_dynamics), N and N·m per m, rad,
     /// m/s and rad/s; `∂τ/∂a` is the mass matrix unless forces depend on accelerations (Carpentier and
@@ -105,7 +106,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         a: &SVector<Self::Scalar, NV>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>);
+    ) -> (SquareMatrix<Self::Scalar, NV>, SquareMatrix<Self::Scalar, NV>);
 
     /// Returns `(∂v̇/∂q, ∂v̇/∂v, ∂v̇/∂τ)` of [`forward_dynamics`](Mechanism::forward_dynamics), constraints
     /// included. Without constraints `∂v̇/∂τ` is the inverse of the mass matrix.
@@ -128,9 +129,9 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         tau: &SVector<Self::Scalar, NV>,
-        by_q: &mut Square<Self::Scalar, NV>,
-        by_v: &mut Square<Self::Scalar, NV>,
-        by_tau: &mut Square<Self::Scalar, NV>,
+        by_q: &mut SquareMatrix<Self::Scalar, NV>,
+        by_v: &mut SquareMatrix<Self::Scalar, NV>,
+        by_tau: &mut SquareMatrix<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV> {
         (*by_q, *by_v, *by_tau) = self.forward_dynamics_derivatives(t, q, v, tau);
         self.forward_dynamics(t, q, v, tau)
@@ -153,7 +154,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         _t: Self::Scalar,
         _q: &SVector<Self::Scalar, NQ>,
         _v: &SVector<Self::Scalar, NV>,
-    ) -> Square<Self::Scalar, NV> {
+    ) -> SquareMatrix<Self::Scalar, NV> {
         unknown_matrix()
     }
 
@@ -164,7 +165,7 @@ pub trait Derivatives<const NQ: usize, const NV: usize, const NU: usize>: Mechan
         _t: Self::Scalar,
         _q: &SVector<Self::Scalar, NQ>,
         _v: &SVector<Self::Scalar, NV>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>) {
+    ) -> (SquareMatrix<Self::Scalar, NV>, SquareMatrix<Self::Scalar, NV>) {
         (unknown_matrix(), unknown_matrix())
     }
 
@@ -250,7 +251,7 @@ pub(crate) fn accelerated_into<M, T, const NQ: usize, const NV: usize, const NU:
     t: T,
     (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
     u: &SVector<T, NU>,
-    (by_q, by_v, by_u): (&mut Square<T, NV>, &mut Square<T, NV>, &mut SMatrix<T, NV, NU>),
+    (by_q, by_v, by_u): (&mut SquareMatrix<T, NV>, &mut SquareMatrix<T, NV>, &mut SMatrix<T, NV, NU>),
 ) -> SVector<T, NV>
 where
     T: Real,
@@ -307,9 +308,9 @@ pub struct LinearMotion<T, const NV: usize, const NU: usize> {
     pub turning: SMatrix<T, NV, NV>,
 }
 
-/// Returns an entry of a matrix of two by two blocks.
+/// Returns entry `(i, j)` of the matrix composed of two by two blocks.
 pub(crate) fn entry_of_blocks<T: Real, const NV: usize>(
-    blocks: [[&Square<T, NV>; 2]; 2],
+    blocks: [[&SquareMatrix<T, NV>; 2]; 2],
     i: usize,
     j: usize,
 ) -> T {
@@ -331,15 +332,16 @@ pub(crate) fn stack_blocks<T: Real, const NV: usize, const NU: usize, const NX: 
 }
 
 impl<T: Real, const NV: usize, const NU: usize> LinearMotion<T, NV, NU> {
-    /// Returns `A` of `ẋ = A x + B δu`, with `x` the displacements, then the changes of velocity. `NX` is `2
-    /// NV`, inferred from the requested type; any other value does not compile.
+    /// Returns the matrix `A` of the linearised motion `ẋ = A x + B δu`, where `x` contains the
+    /// displacements, then the changes of velocity. `NX` is `2 NV`, inferred from the requested type; any
+    /// other value does not compile.
     pub fn a<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
-        let identity = Square::identity();
+        let identity = SquareMatrix::identity();
         SMatrix::from_fn(|i, j| entry_of_blocks([[&self.turning, &identity], [&self.by_q, &self.by_v]], i, j))
     }
 
-    /// Returns `B` of `ẋ = A x + B δu`; `NX` is `2 NV`.
+    /// Returns the matrix `B` of the linearised motion `ẋ = A x + B δu`. `NX` is `2 NV`.
     pub fn b<const NX: usize>(&self) -> SMatrix<T, NX, NU> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         stack_blocks(&SMatrix::zeros(), &self.by_u)
@@ -377,6 +379,6 @@ where
     where
         V: Visitor<Self::Scalar, NQ, NV, NU>,
     {
-        self.mechanism.visit_constraints(Frozen { visitor, t: self.t })
+        self.mechanism.visit_constraints(FrozenTimeVisitor { visitor, t: self.t })
     }
 }

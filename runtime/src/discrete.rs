@@ -55,11 +55,11 @@ mod second;
 mod time_stepping;
 
 pub use explicit::semi_implicit_into;
-pub(crate) use explicit::{Sensitive, Start};
-pub(crate) use implicit::eliminated;
+pub(crate) use explicit::{DifferentiatedStart, VectorWithDerivatives};
+pub(crate) use implicit::eliminate_with_pivoting;
 pub use parameters::{StepByParameters, by_parameters};
 pub use second::{TwiceDifferentiableStep, second_order};
-pub(crate) use time_stepping::{Manifold, acceleration_at_start, smooth_motion};
+pub(crate) use time_stepping::{ConfigurationManifold, acceleration_at_start, smooth_motion};
 
 /// Returns configuration and velocity after one step of a method under constant inputs `u`.
 ///
@@ -273,7 +273,9 @@ where
     method.check()?;
     if mechanism.features().constrained {
         let undetermined = Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular };
-        *into = mechanism.visit_constraints(Through { method, t, q, v, u }).unwrap_or(Err(undetermined))?;
+        *into = mechanism
+            .visit_constraints(ContactStepVisitor { method, t, q, v, u })
+            .unwrap_or(Err(undetermined))?;
     } else {
         method.differentiate_into(mechanism, t, q, v, u, into)?;
     }
@@ -295,8 +297,8 @@ impl<T: Real> FixedStep<T> for TimeStepping<T> {}
 impl<T: Real> FixedStep<T> for crate::integrate::ImplicitMidpoint<T> {}
 impl<T: Real> FixedStep<T> for crate::integrate::Rosenbrock<T> {}
 
-/// Arguments of a step: method, time, state and inputs.
-struct Through<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
+/// Arguments of a step of a mechanism with contacts: method, time, state and inputs.
+struct ContactStepVisitor<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
     method: &'a S,
     t: T,
     q: &'a SVector<T, NQ>,
@@ -305,7 +307,7 @@ struct Through<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
 }
 
 impl<S, T, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, NV, NU>
-    for Through<'_, S, T, NQ, NV, NU>
+    for ContactStepVisitor<'_, S, T, NQ, NV, NU>
 where
     T: Real,
     S: DifferentiableStep<T>,
@@ -327,7 +329,8 @@ where
     note = "those of `Rk4`, `SemiImplicitEuler`, `ImplicitMidpoint` and `TimeStepping` have"
 )]
 pub trait DifferentiableStep<T: Real>: FixedStep<T> {
-    /// Whether steps need derivatives of momenta: without constraints, with constraints.
+    /// Whether steps need derivatives of generalized momenta: the first entry for mechanisms without
+    /// constraints, the second with constraints.
     const IN_MOMENTA: [bool; 2];
 
     /// Returns a step of a mechanism with constraints and its Jacobians; called by [`transition`].
@@ -358,7 +361,7 @@ pub trait DifferentiableStep<T: Real>: FixedStep<T> {
     /// # Errors
     ///
     /// The errors of [`step`].
-    fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
+    fn differentiate_step<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
         t: T,
@@ -386,7 +389,7 @@ pub trait DifferentiableStep<T: Real>: FixedStep<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        *into = self.differentiate(mechanism, t, q, v, u)?;
+        *into = self.differentiate_step(mechanism, t, q, v, u)?;
         Ok(())
     }
 }
@@ -481,8 +484,8 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, N
 
     /// Returns the transition to a configuration and a velocity, given their derivatives.
     pub(crate) fn from_sensitive(
-        (q, motion): &(SVector<T, NQ>, Sensitive<T, NV, NU>),
-        v: &Sensitive<T, NV, NU>,
+        (q, motion): &(SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>),
+        v: &VectorWithDerivatives<T, NV, NU>,
     ) -> Self {
         Self {
             q: *q,
@@ -497,15 +500,15 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, N
         }
     }
 
-    /// Returns `A` of `x⁺ = A x + B δu`: displacements first, then changes of velocity. `NX` is `2 NV`; any
-    /// other value does not compile.
+    /// Returns the matrix `A` of the linearised step `x⁺ = A x + B δu`, for states `x` of displacements
+    /// followed by changes of velocity. `NX` is `2 NV`; any other value does not compile.
     pub fn a<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         let blocks = [[&self.q_by_q, &self.q_by_v], [&self.v_by_q, &self.v_by_v]];
         SMatrix::from_fn(|i, j| entry_of_blocks(blocks, i, j))
     }
 
-    /// Returns `B` of `x⁺ = A x + B δu`; `NX` is `2 NV`.
+    /// Returns the matrix `B` of the linearised step `x⁺ = A x + B δu`. `NX` is `2 NV`.
     pub fn b<const NX: usize>(&self) -> SMatrix<T, NX, NU> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         stack_blocks(&self.q_by_u, &self.v_by_u)
@@ -527,8 +530,8 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Transition<T, N
     }
 }
 
-/// Returns `x` of `x⁺ = A x + B δu` as one vector: displacements, then changes of velocity. `NX` is `2 NV`;
-/// any other value does not compile.
+/// Returns the state `x` of the linearised step `x⁺ = A x + B δu` as one vector: displacements `dq`, then
+/// changes of velocity `dv`. `NX` is `2 NV`; any other value does not compile.
 ///
 /// ```
 /// use linkwork::discrete;

@@ -23,14 +23,14 @@ pub struct Piece {
 /// Part of a declaration that a piece shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// A body, drawn from its mass properties: the solids of its inertia, or the mass and moments that
+    /// The piece shows a body by its mass properties: the solids of its inertia, or the mass and moments that
     /// determine an ellipsoid. A body that a file draws by meshes has these pieces as well, for programs that
     /// cannot read meshes.
     Body,
-    /// Bars from the inboard joint of a body to its other joints and its centre of mass, for the same bodies
-    /// as [`Body`](Self::Body).
+    /// The piece is a bar from the inboard joint of a body to its other joints or its centre of mass. The
+    /// same bodies have pieces of the role [`Body`](Self::Body).
     Link,
-    /// A body, drawn from the visual geometry of a file.
+    /// The piece shows a body by the visual geometry of a robot file.
     Visual,
     /// The piece shows a joint.
     Joint,
@@ -48,7 +48,7 @@ pub enum Role {
 /// Vectors have three numbers; axes are a rotation matrix, row by row; lengths are in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// Axis, length; the position is the centre, as for all solids.
+    /// Thin rod, with its centre at the position. Its numbers are axis and length.
     Rod,
     /// Thin ring. Its numbers are axis and radius.
     Ring,
@@ -58,9 +58,10 @@ pub enum Kind {
     Cylinder,
     /// Hollow cylinder. Its numbers are axis, inner radius, outer radius and height.
     Tube,
-    /// Axis, radius, height; the position is the centre of mass, a quarter of the height above the base.
+    /// Solid cone, with its centre of mass, a quarter of the height above the base, at the position. Its
+    /// numbers are axis, radius and height.
     Cone,
-    /// Axis, radius, distance between the centres of the end spheres.
+    /// Capsule. Its numbers are axis, radius, and distance between the centres of the end spheres.
     Capsule,
     /// Sphere. Its number is the radius.
     Sphere,
@@ -68,7 +69,8 @@ pub enum Kind {
     Cuboid,
     /// Ellipsoid. Its numbers are the axes and the semi-axes.
     Ellipsoid,
-    /// Mass, kg, and inertia about the position, kg·m²: xx, yy, zz, xy, xz, yz.
+    /// Body with given mass properties. Its numbers are the mass, kg, and the inertia about the position,
+    /// kg·m²: xx, yy, zz, xy, xz, yz.
     Inertia,
     /// Unbounded plane. Its numbers are the normal.
     Plane,
@@ -77,13 +79,13 @@ pub enum Kind {
     Funnel,
     /// Pipe: surface of a cylinder of unbounded length. Its numbers are axis and radius.
     Pipe,
-    /// Axis, radius of the centre line, radius of the cross section.
+    /// Torus. Its numbers are axis, radius of the centre line and radius of the cross section.
     Torus,
     /// Sphere that is seen from inside. Its number is the radius.
     Bowl,
     /// Point. It has no numbers other than its position.
     Point,
-    /// Position of the other end, in the second frame.
+    /// Bar. Its numbers are the position of the other end, in the second frame.
     Bar,
     /// Revolute joint. Its numbers are the joint axis.
     Hinge,
@@ -91,29 +93,31 @@ pub enum Kind {
     Slide,
     /// Ball joint. It has no numbers other than its position.
     Ball,
-    /// Position of the other end, in the second frame: a translational spring.
+    /// Translational spring. Its numbers are the position of the other end, in the second frame.
     Coil,
     /// Torsional spring. Its numbers are the axis.
     Spiral,
-    /// Position of the other end, in the second frame: a translational dashpot.
+    /// Translational dashpot. Its numbers are the position of the other end, in the second frame.
     Damper,
     /// Torsional dashpot. Its numbers are the axis.
     Brake,
-    /// Direction in the second frame; index of the input.
+    /// Force of the input with this index. Its numbers are the direction in the second frame.
     Force(usize),
-    /// Direction in the second frame; index of the input.
+    /// Torque of the input with this index. Its numbers are the direction in the second frame.
     Torque(usize),
     /// Gravity, drawn at the ground's origin. Its numbers are the acceleration, m/s².
     Gravity,
-    /// Axes; ground surface whose height along the third axis, as a function of the coordinates along the
-    /// first two, is the entry of [`Drawn::drawing_heights`] with this index.
+    /// Ground surface, as a height along the third axis that is a function of the coordinates along the first
+    /// two. Its numbers are the axes; the heights are the entry of [`Drawn::drawing_heights`] with this
+    /// index.
     Terrain(usize),
-    /// Axes, scale factors along them; path of the triangle mesh file, as written in the robot's file.
+    /// Triangle mesh of the file with this path, as written in the robot file. Its numbers are the axes and
+    /// the scale factors along them.
     Mesh(&'static str),
 }
 
 impl Kind {
-    /// Returns the number of numbers, including the position.
+    /// Returns the number of values that a piece of this shape has, including its position.
     pub const fn count(self) -> usize {
         match self {
             Kind::Point | Kind::Ball => 3,

@@ -33,7 +33,7 @@ pub trait FirstOrder<const NQ: usize, const NV: usize, const NU: usize, const NX
     /// Returns the current states, each in its own unit.
     fn states(&self) -> SVector<Self::Scalar, NX>;
 
-    /// Returns the mechanism with other values of the states.
+    /// Returns the mechanism with the values `x` of its first-order states.
     fn with_states(&self, x: &SVector<Self::Scalar, NX>) -> Self;
 
     /// Returns the rates of the states, in their units per second, at time `t` (which matters only if a
@@ -157,11 +157,12 @@ pub trait FirstOrderDerivatives<
 /// eᵢ`, in body axes for ball and free joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateDerivatives<T, const NV: usize, const NU: usize, const NX: usize> {
-    /// Derivative with respect to the configuration, per m and rad.
+    /// Derivative of the rates of the first-order states with respect to the configuration, per m and rad.
     pub by_q: SMatrix<T, NX, NV>,
-    /// Derivative with respect to the velocity, per m/s and rad/s.
+    /// Derivative of the rates of the first-order states with respect to the velocity, per m/s and rad/s.
     pub by_v: SMatrix<T, NX, NV>,
-    /// Derivative with respect to the states, 1/s between states of the same unit.
+    /// Derivative of the rates of the first-order states with respect to these states, 1/s between states of
+    /// the same unit.
     pub by_x: SMatrix<T, NX, NX>,
     /// Derivative of the rates of the first-order states with respect to the inputs.
     pub by_u: SMatrix<T, NX, NU>,

@@ -127,7 +127,8 @@ macro_rules! kind {
     ($scalar:ty, $n:ident) => { &$crate::nalgebra::SVector<$scalar, $n> };
 }
 
-/// Defines `linear_motion` of a wrapper with its default, since only wrappers without time have it.
+/// Defines `linear_motion` of a wrapper by the default implementation, because only wrappers without time
+/// have it.
 macro_rules! linear_motion {
     ($nq:ident, $nv:ident, $nu:ident) => {
         fn linear_motion(

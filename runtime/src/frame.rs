@@ -112,14 +112,15 @@ impl<const I: usize> Index<I> {
     note = "name a frame of the mechanism itself: `frame!({Self}, \"…\")`"
 )]
 pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
-    /// Scalar type of the mechanism.
+    /// Scalar type of the mechanism to which the frame belongs.
     type Scalar: Real;
 
-    /// Returns the rotation matrix by rows (columns are the frame's axes in ground axes), then the position
-    /// of the origin, m.
+    /// Returns the placement of the frame in the ground frame: the rotation matrix by rows (columns are the
+    /// frame's axes in ground axes), then the position of the origin, m.
     fn placement(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> [Self::Scalar; 12];
 
-    /// Returns the velocity of the origin (m/s), then the angular velocity (rad/s), in ground axes.
+    /// Returns the twist of the frame: the velocity of its origin (m/s), then its angular velocity (rad/s),
+    /// in ground axes.
     fn twist(
         &self,
         t: Self::Scalar,
@@ -127,8 +128,8 @@ pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> [Self::Scalar; 6];
 
-    /// Returns the acceleration of the origin (m/s²), then the angular acceleration (rad/s²), in ground axes,
-    /// without gravity.
+    /// Returns the acceleration of the frame's origin (m/s²), then its angular acceleration (rad/s²), in
+    /// ground axes, without gravity.
     fn acceleration(
         &self,
         t: Self::Scalar,
@@ -137,7 +138,7 @@ pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
         a: &SVector<Self::Scalar, NV>,
     ) -> [Self::Scalar; 6];
 
-    /// Returns the Jacobian: the twist per unit of each velocity, 6 × `NV`.
+    /// Returns the Jacobian of the frame: its twist per unit of each velocity, 6 × `NV`.
     fn jacobian(&self, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, 6, NV>;
 }
 
@@ -149,7 +150,7 @@ pub trait NamedFrame<const I: usize, const NQ: usize, const NV: usize> {
             trait `Frames`"
 )]
 pub trait FrameName<M, const NQ: usize, const NV: usize> {
-    /// Scalar type of the mechanism.
+    /// Scalar type of the mechanism to which the frame belongs.
     type Scalar: Real;
 
     /// Returns the placement of the frame in the ground frame: its axes and its origin, m.
@@ -160,7 +161,7 @@ pub trait FrameName<M, const NQ: usize, const NV: usize> {
         q: &SVector<Self::Scalar, NQ>,
     ) -> IsometryMatrix3<Self::Scalar>;
 
-    /// Returns the velocity of the origin (m/s), then the angular velocity (rad/s), in ground axes.
+    /// Returns the velocity of the frame's origin (m/s), then its angular velocity (rad/s), in ground axes.
     fn velocity(
         self,
         m: &M,
@@ -169,8 +170,8 @@ pub trait FrameName<M, const NQ: usize, const NV: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, 6>;
 
-    /// Returns the acceleration of the origin (m/s²), then the angular acceleration (rad/s²), in ground axes,
-    /// without gravity.
+    /// Returns the acceleration of the frame's origin (m/s²), then its angular acceleration (rad/s²), in
+    /// ground axes, without gravity.
     fn acceleration(
         self,
         m: &M,
@@ -180,7 +181,7 @@ pub trait FrameName<M, const NQ: usize, const NV: usize> {
         a: &SVector<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, 6>;
 
-    /// Returns the Jacobian: the twist per unit of each velocity, 6 × `NV`.
+    /// Returns the Jacobian of the frame: its twist per unit of each velocity, 6 × `NV`.
     fn jacobian(self, m: &M, t: Self::Scalar, q: &SVector<Self::Scalar, NQ>) -> SMatrix<Self::Scalar, 6, NV>;
 }
 
@@ -262,13 +263,13 @@ where
     note = "a mechanism is a struct with the attribute `#[mechanism(…)]`; its prepared form has no frames"
 )]
 pub trait Frames<const NQ: usize, const NV: usize> {
-    /// Scalar type of the mechanism.
+    /// Scalar type of the mechanism to which the frames belong.
     type Scalar: Real;
 
     /// Names of the frames, in the order of their indices.
     const FRAMES: &'static [&'static str];
 
-    /// Returns the placement in the ground frame: the frame's axes and its origin, m.
+    /// Returns the placement of a frame in the ground frame: its axes and its origin, m.
     fn placement_of(
         &self,
         frame: usize,
@@ -276,8 +277,8 @@ pub trait Frames<const NQ: usize, const NV: usize> {
         q: &SVector<Self::Scalar, NQ>,
     ) -> Option<IsometryMatrix3<Self::Scalar>>;
 
-    /// Returns the velocity of the origin (m/s), then the angular velocity (rad/s), relative to the ground,
-    /// in ground axes.
+    /// Returns the velocity of the frame's origin (m/s), then its angular velocity (rad/s), relative to the
+    /// ground, in ground axes.
     fn velocity_of(
         &self,
         frame: usize,
@@ -286,9 +287,9 @@ pub trait Frames<const NQ: usize, const NV: usize> {
         v: &SVector<Self::Scalar, NV>,
     ) -> Option<SVector<Self::Scalar, 6>>;
 
-    /// Returns the acceleration of the origin (m/s²), then the angular acceleration (rad/s²), relative to the
-    /// ground, in ground axes, without gravity. With zero `a` the result is `J̇ v`, the contribution of the
-    /// Jacobian's rate.
+    /// Returns the acceleration of the frame's origin (m/s²), then its angular acceleration (rad/s²),
+    /// relative to the ground, in ground axes, without gravity. With zero `a` the result is `J̇ v`, the
+    /// contribution of the Jacobian's rate.
     fn acceleration_of(
         &self,
         frame: usize,
@@ -298,7 +299,8 @@ pub trait Frames<const NQ: usize, const NV: usize> {
         a: &SVector<Self::Scalar, NV>,
     ) -> Option<SVector<Self::Scalar, 6>>;
 
-    /// Returns the Jacobian `J`: the velocity is `J v`, plus the velocity of the driven motion, if any.
+    /// Returns the Jacobian `J` of the frame: its velocity is `J v`, plus the velocity of the driven motion,
+    /// if any.
     fn jacobian_of(
         &self,
         frame: usize,
@@ -397,7 +399,7 @@ pub fn origin<T: Real>(p: &[T; 12]) -> [T; 3] {
     [x, y, z]
 }
 
-/// Returns the twist of a motion, which consists of twist and acceleration.
+/// Returns the twist of a frame's motion, the first six of twelve numbers; the last six are its acceleration.
 #[inline(always)]
 pub fn twist<T: Real>(motion: &[T; 12]) -> [T; 6] {
     let [a, b, c, d, e, f, ..] = *motion;

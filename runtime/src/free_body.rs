@@ -9,17 +9,19 @@ use nalgebra::SVector;
 pub enum Origin {
     /// The action is the weight of the body in uniform gravity, at the centre of mass.
     Gravity,
-    /// A force element: a spring, a dashpot, a force or torque with a value, an energy.
+    /// The action is the force of a force element: a spring, a dashpot, a force or torque with a given value,
+    /// an energy.
     Element,
     /// The action is the force or torque of an input.
     Input,
-    /// A joint: its constraint forces, plus the forces on its own coordinates.
+    /// The action is the force and torque of a joint: its constraint forces, plus the forces on its own
+    /// coordinates.
     Joint,
     /// The action is the force of a constraint, such as rolling, including the friction of a sliding contact
     /// constraint.
     Constraint,
-    /// A unilateral contact: zero if it is separated. A stop on a joint's own coordinate is included in the
-    /// joint.
+    /// The action is the force of a unilateral contact, zero if the surfaces are separated. A stop on a
+    /// joint's own coordinate is included in the action of the joint.
     Contact,
 }
 

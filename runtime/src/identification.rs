@@ -19,7 +19,7 @@ use nalgebra::{Cholesky, Matrix3, Matrix4, SMatrix, SVector, Vector3};
     note = "write `#[mechanism(urdf = \"…\", parameters = inertial, regressor)]`"
 )]
 pub trait Identifiable<const N: usize, const B: usize> {
-    /// Scalar type of the mechanism.
+    /// Scalar type of the mechanism to be identified.
     type Scalar: Real;
 
     /// Returns the mass properties of the links, in the order of `LINKS`.
@@ -36,18 +36,18 @@ pub trait Identifiable<const N: usize, const B: usize> {
 #[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum PutBackError {
-    /// The initial mass properties of a link are impossible for a body: the mass is not positive, or no body
-    /// has the inertia.
+    /// Error: the initial mass properties of a link are impossible for a body. The mass is not positive, or
+    /// no body has the inertia.
     Prior {
         /// Index of the link, in the order of `LINKS`.
         link: usize,
     },
-    /// No physically consistent mass properties have these base parameters, or hardly any.
+    /// Error: no physically consistent mass properties have these base parameters, or hardly any.
     NotPhysical {
         /// Largest remaining difference between a base parameter and its target, in units of the parameter.
         residual: f64,
     },
-    /// A base parameter is infinite or NaN.
+    /// Error: a base parameter is infinite or NaN.
     NotFinite,
 }
 
@@ -139,22 +139,23 @@ where
     let map = linear_map(mechanism);
     mechanism.set_inertials(&before);
     let found = least_change(&map, &prior, base, softness)?;
-    mechanism.set_inertials(&found.map(|p| of_pseudo_inertia(&p)));
+    mechanism.set_inertials(&found.map(|p| inertial_from_pseudo_inertia(&p)));
     Ok(())
 }
 
-/// One matrix for each base parameter and link.
-type Blocks<T, const N: usize, const B: usize> = [[Matrix4<T>; N]; B];
+/// Matrices for each base parameter and link.
+type ParameterMatrices<T, const N: usize, const B: usize> = [[Matrix4<T>; N]; B];
 
 /// Base parameters as an affine function of the links' pseudo-inertias: a matrix for each base parameter and
 /// link, and the constant term.
-struct Map<T, const N: usize, const B: usize> {
-    factors: Blocks<T, N, B>,
+struct AffineParameterMap<T, const N: usize, const B: usize> {
+    factors: ParameterMatrices<T, N, B>,
     rest: SVector<T, B>,
 }
 
-/// Returns the affine function, computed from its values for pseudo-inertias with a single nonzero entry.
-fn linear_map<M, const N: usize, const B: usize>(mechanism: &mut M) -> Map<M::Scalar, N, B>
+/// Returns the base parameters as an affine function of the pseudo-inertias, computed from their values for
+/// pseudo-inertias with a single nonzero entry.
+fn linear_map<M, const N: usize, const B: usize>(mechanism: &mut M) -> AffineParameterMap<M::Scalar, N, B>
 where
     M: Identifiable<N, B>,
 {
@@ -175,7 +176,7 @@ where
                     p[(3, 3)] = massive;
                 }
                 let mut links = nothing;
-                links[k] = of_pseudo_inertia(&p);
+                links[k] = inertial_from_pseudo_inertia(&p);
                 mechanism.set_inertials(&links);
                 let mut value = mechanism.own_base_parameters() - rest;
                 if alone {
@@ -193,30 +194,30 @@ where
             }
         }
     }
-    Map { factors, rest }
+    AffineParameterMap { factors, rest }
 }
 
-impl<T: Real, const N: usize, const B: usize> Map<T, N, B> {
+impl<T: Real, const N: usize, const B: usize> AffineParameterMap<T, N, B> {
     fn value_of_map(&self, of: &[Matrix4<T>; N]) -> SVector<T, B> {
         SVector::from_fn(|i, _| inner_product(&self.factors[i], of))
     }
 }
 
-/// Returns the sum of the products of all entries.
+/// Returns the inner product of two lists of matrices: the sum of the products of all entries.
 fn inner_product<T: Real, const N: usize>(a: &[Matrix4<T>; N], b: &[Matrix4<T>; N]) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + a.dot(b))
 }
 
-/// Minimises the change of the mass properties by Newton's method. The step length keeps pseudo-inertias
-/// positive definite, which a step shorter than one in the norm of the Hessian does (Boyd and Vandenberghe,
-/// *Convex Optimization*, 2004, ch. 9.6).
+/// Returns the pseudo-inertias that have the base parameters and change least, by Newton's method. A step
+/// shorter than one in the norm of the Hessian keeps pseudo-inertias positive definite (Boyd and
+/// Vandenberghe, *Convex Optimization*, 2004, ch. 9.6).
 fn least_change<T: Real, const N: usize, const B: usize>(
-    map: &Map<T, N, B>,
+    map: &AffineParameterMap<T, N, B>,
     prior: &[Matrix4<T>; N],
     base: &SVector<T, B>,
     softness: Option<T>,
 ) -> Result<[Matrix4<T>; N], PutBackError> {
-    let prior_inverse = prior.map(|p| inverse(&p));
+    let prior_inverse = prior.map(|p| inverse_by_cholesky(&p));
     let mut p = *prior;
     let not_physical_error = |p: &[Matrix4<T>; N]| {
         let residual = (map.value_of_map(p) + map.rest - base).amax();
@@ -245,7 +246,7 @@ fn least_change<T: Real, const N: usize, const B: usize>(
         });
         // Base parameters, or combinations of them, that these links do not reach are satisfied
         // approximately.
-        let unit = *diagonal.get_or_insert_with(|| softness_of(&s, softness.map(|_| T::one())));
+        let unit = *diagonal.get_or_insert_with(|| regularisation_diagonal(&s, softness.map(|_| T::one())));
         let soft = unit * share;
         for (i, soft) in soft.iter().enumerate() {
             s[(i, i)] += *soft;
@@ -268,7 +269,7 @@ fn least_change<T: Real, const N: usize, const B: usize>(
         }
         let mut length = T::zero();
         for (p, step) in p.iter().zip(&step) {
-            let relative = inverse(p) * step;
+            let relative = inverse_by_cholesky(p) * step;
             length += (relative * relative).trace();
         }
         let length = length.max(T::zero()).sqrt();
@@ -293,10 +294,10 @@ fn least_change<T: Real, const N: usize, const B: usize>(
     not_physical_error(&p)
 }
 
-/// Returns the diagonal regularisation for the matrix of the multipliers: `asked` (relative to the diagonal),
-/// if given. Otherwise it is zero for full rank, so that base parameters are met exactly, and `√ε` for a
+/// Returns the diagonal regularisation of the multipliers' matrix: `asked` (relative to the diagonal), if
+/// given. Otherwise it is zero for full rank, so that base parameters are met exactly, and `√ε` for a
 /// singular matrix.
-fn softness_of<T: Real, const B: usize>(s: &SMatrix<T, B, B>, asked: Option<T>) -> SVector<T, B> {
+fn regularisation_diagonal<T: Real, const B: usize>(s: &SMatrix<T, B, B>, asked: Option<T>) -> SVector<T, B> {
     let regular = asked.is_none()
         && Cholesky::new(*s).is_some_and(|factor| {
             let l = factor.l_dirty();
@@ -310,7 +311,7 @@ fn softness_of<T: Real, const B: usize>(s: &SMatrix<T, B, B>, asked: Option<T>) 
 }
 
 /// Returns the inverse of a positive definite matrix, from its Cholesky factorisation.
-fn inverse<T: Real>(p: &Matrix4<T>) -> Matrix4<T> {
+fn inverse_by_cholesky<T: Real>(p: &Matrix4<T>) -> Matrix4<T> {
     Cholesky::new(*p).map_or(Matrix4::repeat(constant(f64::NAN)), |factor| factor.inverse())
 }
 
@@ -342,8 +343,8 @@ fn pseudo_inertia<T: Real>(link: &Inertial<T>) -> Option<Matrix4<T>> {
     Some(p)
 }
 
-/// Returns the mass properties of a link from its 4 × 4 pseudo-inertia matrix.
-fn of_pseudo_inertia<T: Real>(p: &Matrix4<T>) -> Inertial<T> {
+/// Returns the mass properties of a link from its pseudo-inertia, a 4 × 4 matrix.
+fn inertial_from_pseudo_inertia<T: Real>(p: &Matrix4<T>) -> Inertial<T> {
     let (xx, yy, zz) = (p[(0, 0)], p[(1, 1)], p[(2, 2)]);
     Inertial::from_standard([
         p[(3, 3)],

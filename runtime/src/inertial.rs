@@ -26,7 +26,8 @@ pub struct Inertial<T> {
     /// Entry xx of the inertia about the centre of mass, in the link's axes, kg·m². An inertia that a file
     /// gives in other axes has been rotated.
     pub ixx: T,
-    /// Entry xy, a product of inertia with the sign of the matrix, kg·m².
+    /// Entry xy of the inertia about the centre of mass, kg·m²: a product of inertia with the sign of the
+    /// matrix entry.
     pub ixy: T,
     /// Entry xz of the inertia about the centre of mass, kg·m².
     pub ixz: T,
@@ -137,7 +138,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ten_numbers_lead_back() {
+    fn standard_parameters_convert_back() {
         let body = Inertial::<f64> {
             mass: 2.0,
             com: [0.1, -0.2, 0.3],

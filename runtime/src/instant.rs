@@ -1,4 +1,4 @@
-//! Mechanisms at a fixed time, for functions that require equations without time.
+//! Mechanisms at a fixed time, for functions that require equations of motion without time.
 
 use crate::forward::{constants, each_function};
 use crate::integrate::{Features, Hooks};

@@ -79,7 +79,7 @@ impl<T: Real, const NQ: usize, const NV: usize> State<T, NQ, NV> {
     }
 }
 
-/// Projects the end of a step onto the constraints, which remove the drift of the step. [`Error::NotFinite`]
+/// Projects the end of a step onto the constraints, which removes the drift of the step. [`Error::NotFinite`]
 /// and [`Error::Constraint`] report the time `t` of the start.
 pub(crate) fn project_end_of_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &D,
@@ -162,14 +162,14 @@ fn largest_magnitude<T: Real, const N: usize>(x: &SVector<T, N>) -> T {
     x.iter().fold(T::zero(), |largest, x| largest.max(x.abs()))
 }
 
-/// Checks that a number is finite and not negative; otherwise returns [`Error::InvalidStep`] with the name of
-/// the setting.
-pub(crate) fn not_negative<T: Real>(name: &'static str, value: T) -> Result<(), Error> {
+/// Checks that a setting is finite and not negative; otherwise returns [`Error::InvalidStep`] with the name
+/// of the setting.
+pub(crate) fn check_not_negative<T: Real>(name: &'static str, value: T) -> Result<(), Error> {
     if value == T::zero() { Ok(()) } else { check_positive(name, value) }
 }
 
-/// Checks that a number is finite and positive; otherwise returns [`Error::InvalidStep`] with the name of the
-/// setting.
+/// Checks that a setting is finite and positive; otherwise returns [`Error::InvalidStep`] with the name of
+/// the setting.
 pub(crate) fn check_positive<T: Real>(name: &'static str, value: T) -> Result<(), Error> {
     if value.is_finite() && value > T::zero() {
         Ok(())

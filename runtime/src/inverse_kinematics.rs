@@ -55,7 +55,7 @@ impl<T: Real> Target<T> {
         Self { frame, placement, position: T::one(), orientation: T::one() }
     }
 
-    /// Returns a target of the position alone, m.
+    /// Returns a target for the position of a frame alone, m.
     pub fn position(frame: usize, position: SVector<T, 3>) -> Self {
         let placement = IsometryMatrix3::from_parts(position.into(), nalgebra::Rotation3::identity());
         Self { frame, placement, position: T::one(), orientation: T::zero() }
@@ -74,18 +74,19 @@ pub struct Reached<T, const NQ: usize> {
 /// Error for targets of inverse kinematics that were not reached.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Unreached<T, const NQ: usize> {
-    /// The index of the frame is out of range.
+    /// Error: the index of a target's frame is out of range.
     UnknownFrame {
         /// Index of the target whose frame does not exist.
         target: usize,
     },
-    /// A weight or a placement of a target, or the placement of its frame at the start, is not finite, or a
-    /// weight is negative.
+    /// Error: a weight or a placement of a target, or the placement of its frame at the start, is not finite,
+    /// or a weight is negative.
     NotFinite {
         /// Index of the target that is not finite or has a negative weight.
         target: usize,
     },
-    /// The targets are out of reach, contradict each other, or are separated from this start by joint limits.
+    /// Error: the targets are out of reach, contradict each other, or are separated from this start by joint
+    /// limits.
     OutOfReach {
         /// Configuration nearest to the targets that the solver found.
         q: SVector<T, NQ>,
@@ -144,16 +145,17 @@ impl<T: Real> Default for InverseKinematics<T> {
     }
 }
 
-/// Weight of the attraction to the posture relative to the targets. It decreases with the pose errors, so
-/// that it does not prevent convergence to the targets.
+/// Weight of the attraction to the initial posture, relative to the targets. It decreases with the pose
+/// errors, so that it does not prevent convergence to the targets.
 const PULL: f64 = 1e-3;
 
-/// Pose errors of all targets; `cost` is half of their weighted squares.
-struct Left<T, const NV: usize> {
+/// Pose errors of all targets; the field `cost` is half of the sum of their weighted squares.
+struct PoseErrors<T, const NV: usize> {
     cost: T,
     position: T,
     orientation: T,
-    /// Gradient `Jᵀ W e`; `normal` is the matrix `Jᵀ W J`.
+    /// Gradient `Jᵀ W e` of the costs, with Jacobian `J`, weights `W` and pose errors `e`. The field `normal`
+    /// is the matrix `Jᵀ W J`.
     gradient: SVector<T, NV>,
     normal: SMatrix<T, NV, NV>,
 }
@@ -193,7 +195,7 @@ impl<T: Real> InverseKinematics<T> {
                 break;
             }
             let posture = mechanism.difference(&q, start) * (pull * left.cost);
-            let step = step(mechanism, &q, &left, (damping + pull) * left.cost, &posture);
+            let step = levenberg_marquardt_step(mechanism, &q, &left, (damping + pull) * left.cost, &posture);
             let tried = mechanism.clamp_configuration(&mechanism.integrate(&q, &step));
             let next = self.residuals_of_targets(mechanism, t, targets, &tried)?;
             if next.cost < left.cost {
@@ -216,13 +218,13 @@ impl<T: Real> InverseKinematics<T> {
         t: T,
         targets: &[Target<T>],
         q: &SVector<T, NQ>,
-    ) -> Result<Left<T, NV>, Unreached<T, NQ>>
+    ) -> Result<PoseErrors<T, NV>, Unreached<T, NQ>>
     where
         M: Frames<NQ, NV, Scalar = T>,
     {
         let zero = T::zero();
         let mut left =
-            Left { cost: zero, position: zero, orientation: zero, gradient: zeros(), normal: zeros() };
+            PoseErrors { cost: zero, position: zero, orientation: zero, gradient: zeros(), normal: zeros() };
         for (target, wanted) in targets.iter().enumerate() {
             let found =
                 mechanism.placement_of(wanted.frame, t, q).zip(mechanism.jacobian_of(wanted.frame, t, q));
@@ -261,10 +263,10 @@ impl<T: Real> InverseKinematics<T> {
 
 /// Returns the Levenberg–Marquardt step, `(JᵀWJ + μ) dq = JᵀWe + posture`; coordinates that it would move
 /// beyond their limits are fixed.
-fn step<M, T: Real, const NQ: usize, const NV: usize, const NU: usize>(
+fn levenberg_marquardt_step<M, T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
     q: &SVector<T, NQ>,
-    left: &Left<T, NV>,
+    left: &PoseErrors<T, NV>,
     damping: T,
     posture: &SVector<T, NV>,
 ) -> SVector<T, NV>

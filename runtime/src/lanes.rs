@@ -76,7 +76,7 @@ impl<T: Copy, const N: usize> Lanes<T, N> {
         Self(core::array::from_fn(f))
     }
 
-    /// Returns the first `M` lanes. Does not compile if there are fewer.
+    /// Returns the first `M` lanes. Does not compile if `N` is less than `M`.
     #[inline(always)]
     #[must_use]
     pub fn first<const M: usize>(self) -> Lanes<T, M> {
@@ -84,21 +84,22 @@ impl<T: Copy, const N: usize> Lanes<T, N> {
         Lanes::from_fn(|k| self.0[k])
     }
 
-    /// Applies a function to each lane and returns the results as lanes.
+    /// Applies a function to the number in each lane and returns the results as lanes.
     #[inline(always)]
     #[must_use]
     pub fn map<U: Copy>(self, f: impl FnMut(T) -> U) -> Lanes<U, N> {
         Lanes(self.0.map(f))
     }
 
-    /// Applies a function to each lane and the same lane of `other`.
+    /// Applies a function to the numbers in each lane of `self` and `other`, and returns the results as
+    /// lanes.
     #[inline(always)]
     #[must_use]
     pub fn zip<U: Copy, V: Copy>(self, other: Lanes<U, N>, mut f: impl FnMut(T, U) -> V) -> Lanes<V, N> {
         Lanes::from_fn(|k| f(self.0[k], other.0[k]))
     }
 
-    /// Selects lane by lane: the number of `a` where the mask is true, otherwise that of `b`.
+    /// Selects a number lane by lane: that of `a` where the mask is true, otherwise that of `b`.
     #[inline(always)]
     #[must_use]
     pub fn select(mask: [bool; N], a: Self, b: Self) -> Self {
@@ -125,7 +126,7 @@ impl<T: Real, const N: usize> Lanes<T, N> {
         x.first().copied().unwrap_or(T::zero())
     }
 
-    /// Returns sines and cosines, rad, of angles of any magnitude.
+    /// Returns the sine and the cosine of the angle in each lane, rad, of any magnitude.
     #[inline(always)]
     #[must_use]
     pub fn sin_cos(self) -> (Self, Self) {
@@ -133,7 +134,7 @@ impl<T: Real, const N: usize> Lanes<T, N> {
         (s.lanes(), c.lanes())
     }
 
-    /// Returns `self * b + c`, fused if the hardware supports it.
+    /// Returns `self * b + c` lane by lane, fused if the hardware supports it.
     #[inline(always)]
     #[must_use]
     pub fn mul_add(self, b: Self, c: Self) -> Self {
@@ -141,7 +142,7 @@ impl<T: Real, const N: usize> Lanes<T, N> {
     }
 }
 
-/// Returns a constant or parameter in all lanes, for generated code.
+/// Returns lanes that all contain a constant or parameter, for generated code.
 #[inline(always)]
 pub fn splat<T: Copy, const N: usize>(x: T) -> Lanes<T, N> {
     Lanes::splat(x)

@@ -194,7 +194,7 @@ pub mod prelude {
     pub use nalgebra::{SMatrix, SVector};
 }
 
-/// Items for generated code; not part of the public interface.
+/// Items that generated code uses. They are not part of the public interface.
 #[doc(hidden)]
 pub mod __private {
     pub use crate::absent;

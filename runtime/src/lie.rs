@@ -12,7 +12,8 @@ use crate::arithmetic::{Arithmetic, Compiled};
 use crate::private::constant;
 use core::cmp::Ordering;
 
-/// Coefficients `|B₂ₖ| / (2k)!` for k = 1, 2, …: `1 − (θ/2) cot(θ/2) = Σ cₖ θ²ᵏ`.
+/// Coefficients `cₖ = |B₂ₖ| / (2k)!` for k = 1, 2, …, with the Bernoulli numbers `B₂ₖ`:
+/// `1 − (θ/2) cot(θ/2) = Σ cₖ θ²ᵏ`.
 const BERNOULLI: [f64; 8] = [
     1.0 / 12.0,
     1.0 / 720.0,
@@ -32,7 +33,7 @@ fn dot<T: Real>([a, b, c]: [T; 3], [x, y, z]: [T; 3]) -> T {
     a * x + b * y + c * z
 }
 
-fn add<T: Real>([a, b, c]: [T; 3], [x, y, z]: [T; 3]) -> [T; 3] {
+fn vector_sum<T: Real>([a, b, c]: [T; 3], [x, y, z]: [T; 3]) -> [T; 3] {
     [a + x, b + y, c + z]
 }
 
@@ -60,15 +61,16 @@ fn normalised_quaternion<T: Real>([x, y, z, w]: [T; 4]) -> [T; 4] {
     [x / norm, y / norm, z / norm, w / norm]
 }
 
-/// Returns `a` rotated by the unit quaternion: `a + 2 u × (u × a + w a)`.
+/// Returns the vector `a` rotated by a unit quaternion with vector part `u`: `a + 2 u × (u × a + w a)`.
 fn rotated_vector<T: Real>([x, y, z, w]: [T; 4], a: [T; 3]) -> [T; 3] {
     let u = [x, y, z];
-    let inner = add(cross(u, a), scaled_vector(a, w));
-    add(a, scaled_vector(cross(u, inner), constant(2.0)))
+    let inner = vector_sum(cross(u, a), scaled_vector(a, w));
+    vector_sum(a, scaled_vector(cross(u, inner), constant(2.0)))
 }
 
-/// Returns `small(x)` if `x` is below the limit and `large(x)` otherwise. If lanes differ, both functions are
-/// evaluated within their own ranges, and every lane has the result of a single number.
+/// Returns `small(x)` if `x` is below the limit and `large(x)` otherwise. If SIMD lanes of `x` differ in
+/// this, both functions are evaluated within their own ranges, and every lane has the result of a single
+/// number.
 fn choose_by_limit<T: Real, const K: usize>(
     x: T,
     limit: T,
@@ -95,7 +97,7 @@ const SMALL_TURN: f64 = 0.05;
 /// Limit of `tan²(θ/2)` below which seven terms of the series of the arc tangent are exact to rounding.
 const SMALL_TANGENT: f64 = 0.0025;
 
-/// Returns `1/d₀ − x/d₁ + x²/d₂ − …`
+/// Returns the alternating polynomial `1/d₀ − x/d₁ + x²/d₂ − …` with the divisors `d₀, d₁, d₂, …`.
 fn alternating_polynomial<T: Real, const N: usize>(x: T, divisors: [f64; N]) -> T {
     divisors.iter().rev().fold(T::zero(), |sum, d| constant::<T>(1.0 / d) - x * sum)
 }
@@ -161,7 +163,7 @@ const SERIES_ANGLE: f64 = 0.25;
 
 /// Returns `(1 − (θ/2) cot(θ/2)) / θ²` as a function of `θ²`: the factor of `[φ, [φ, ·]]` in the inverse
 /// Jacobians of SO(3). Not finite at full rotations, where the exponential cannot be inverted.
-fn second_bracket<T: Real>(square: T) -> T {
+fn second_bracket_factor<T: Real>(square: T) -> T {
     let [factor] = choose_by_limit(
         square,
         constant(SERIES_ANGLE),
@@ -178,7 +180,7 @@ fn second_bracket<T: Real>(square: T) -> T {
 ///
 /// `ad` has the minimal polynomial `ad (ad² + θ²)²`, so `(ad/2) coth(ad/2)` is the even polynomial of degree
 /// four that agrees with it at `iθ` in value and slope (Selig, *Geometric Fundamentals of Robotics*, §4.6).
-fn even_brackets<T: Real>(square: T) -> [T; 2] {
+fn even_bracket_factors<T: Real>(square: T) -> [T; 2] {
     choose_by_limit(
         square,
         constant(SERIES_ANGLE),
@@ -198,7 +200,7 @@ fn lie_bracket<T: Real>(a: [T; 6], b: [T; 6]) -> [T; 6] {
     let [ax, ay, az, arx, ary, arz] = a;
     let [bx, by, bz, brx, bry, brz] = b;
     let (a_turn, b_turn) = ([arx, ary, arz], [brx, bry, brz]);
-    let [x, y, z] = add(cross(a_turn, [bx, by, bz]), cross([ax, ay, az], b_turn));
+    let [x, y, z] = vector_sum(cross(a_turn, [bx, by, bz]), cross([ax, ay, az], b_turn));
     let [rx, ry, rz] = cross(a_turn, b_turn);
     [x, y, z, rx, ry, rz]
 }
@@ -210,7 +212,7 @@ fn plus_scaled<T: Real>([a0, a1, a2, a3, a4, a5]: [T; 6], s: T, [b0, b1, b2, b3,
 
 /// Returns `(1 − cos θ)/θ²` and `(θ − sin θ)/θ³` as functions of `θ²`: the left Jacobian of SO(3) is `1 + a
 /// [φ]ₓ + b [φ]ₓ²`.
-pub(crate) fn left_jacobian<T: Real>(square: T) -> [T; 2] {
+pub(crate) fn left_jacobian_factors<T: Real>(square: T) -> [T; 2] {
     choose_by_limit(
         square,
         constant(SMALL_TURN),
@@ -228,31 +230,34 @@ pub(crate) fn left_jacobian<T: Real>(square: T) -> [T; 2] {
     )
 }
 
-/// Returns `q ⊕ dv` of a ball joint: the quaternion `q exp(dv)`, normalised.
+/// Returns the orientation of a ball joint after the displacement `dv`, `q ⊕ dv`: the quaternion `q exp(dv)`,
+/// normalised.
 ///
 /// - `q`: x y z w, of any nonzero norm; `dv`: rotation vector in the child frame, rad, of any magnitude.
 pub fn ball_integrate<T: Real>(q: [T; 4], dv: [T; 3]) -> [T; 4] {
     normalised_quaternion(quaternion_product(q, quaternion_exponential(dv)))
 }
 
-/// Returns the rotation vector `dv`, in the child frame of `q0`, rad, with `q0 ⊕ dv = ±q1` and `|dv| ≤ π`.
+/// Returns the displacement of a ball joint between two orientations: the rotation vector `dv`, in the child
+/// frame of `q0`, rad, with `q0 ⊕ dv = ±q1` and `|dv| ≤ π`.
 ///
 /// For a rotation by π, either of the two shortest solutions is returned. Quaternions need not be normalised.
 pub fn ball_difference<T: Real>(q0: [T; 4], q1: [T; 4]) -> [T; 3] {
     quaternion_logarithm(quaternion_product(conjugate(normalised_quaternion(q0)), normalised_quaternion(q1)))
 }
 
-/// Returns the rate of `dv` such that `q ⊕ dv` rotates with the body-frame angular velocity `v`, rad/s: the
-/// inverse right Jacobian of SO(3), `v + ½ dv × v + c dv × (dv × v)`. Not finite at `|dv|` = 2π.
+/// Returns the rate of the displacement `dv` of a ball joint such that `q ⊕ dv` rotates with the body-frame
+/// angular velocity `v`, rad/s: the inverse right Jacobian of SO(3), `v + ½ dv × v + c dv × (dv × v)`. Not
+/// finite at `|dv|` = 2π.
 ///
 /// Source: Iserles et al., *Lie-group methods*, Acta Numerica 9 (2000), appendix B.
 pub fn ball_tangent_rate<T: Real>(dv: [T; 3], v: [T; 3]) -> [T; 3] {
     let first = cross(dv, v);
-    let second = scaled_vector(cross(dv, first), second_bracket(dot(dv, dv)));
-    add(add(v, scaled_vector(first, constant(0.5))), second)
+    let second = scaled_vector(cross(dv, first), second_bracket_factor(dot(dv, dv)));
+    vector_sum(vector_sum(v, scaled_vector(first, constant(0.5))), second)
 }
 
-/// Returns `q ⊕ dv` of a free joint: the exponential of SE(3).
+/// Returns the pose of a free joint after the displacement `dv`, `q ⊕ dv`, by the exponential of SE(3).
 ///
 /// - `q`: position in the parent frame, m, then quaternion x y z w; the quaternion of the result is
 ///   normalised.
@@ -262,16 +267,16 @@ pub fn free_integrate<T: Real>(q: [T; 7], dv: [T; 6]) -> [T; 7] {
     let [x, y, z, rx, ry, rz] = dv;
     let (linear, turn) = ([x, y, z], [rx, ry, rz]);
     let quaternion = normalised_quaternion([qx, qy, qz, qw]);
-    let [a, b] = left_jacobian(dot(turn, turn));
+    let [a, b] = left_jacobian_factors(dot(turn, turn));
     let first = cross(turn, linear);
-    let moved = add(add(linear, scaled_vector(first, a)), scaled_vector(cross(turn, first), b));
-    let [px, py, pz] = add([px, py, pz], rotated_vector(quaternion, moved));
+    let moved = vector_sum(vector_sum(linear, scaled_vector(first, a)), scaled_vector(cross(turn, first), b));
+    let [px, py, pz] = vector_sum([px, py, pz], rotated_vector(quaternion, moved));
     let [qx, qy, qz, qw] = ball_integrate(quaternion, turn);
     [px, py, pz, qx, qy, qz, qw]
 }
 
-/// Returns the `dv`, in the child frame of `q0`, m and rad, with `q0 ⊕ dv = q1`: the logarithm of SE(3) with
-/// the smallest rotation angle.
+/// Returns the displacement of a free joint between two poses: `dv`, in the child frame of `q0`, m and rad,
+/// with `q0 ⊕ dv = q1`. It is the logarithm of SE(3) with the smallest rotation angle.
 pub fn free_difference<T: Real>(q0: [T; 7], q1: [T; 7]) -> [T; 6] {
     let [x0, y0, z0, qx0, qy0, qz0, qw0] = q0;
     let [x1, y1, z1, qx1, qy1, qz1, qw1] = q1;
@@ -279,34 +284,35 @@ pub fn free_difference<T: Real>(q0: [T; 7], q1: [T; 7]) -> [T; 6] {
     let turn = ball_difference(start, [qx1, qy1, qz1, qw1]);
     let moved = rotated_vector(conjugate(start), [x1 - x0, y1 - y0, z1 - z0]);
     let first = cross(turn, moved);
-    let second = scaled_vector(cross(turn, first), second_bracket(dot(turn, turn)));
-    let [x, y, z] = add(add(moved, scaled_vector(first, constant(-0.5))), second);
+    let second = scaled_vector(cross(turn, first), second_bracket_factor(dot(turn, turn)));
+    let [x, y, z] = vector_sum(vector_sum(moved, scaled_vector(first, constant(-0.5))), second);
     let [rx, ry, rz] = turn;
     [x, y, z, rx, ry, rz]
 }
 
-/// Returns the rate of `dv` such that `q ⊕ dv` moves with the body-frame velocity `v` (linear, m/s, then
-/// angular, rad/s): `v + ½ [dv, v] + 1/12 [dv, [dv, v]] − …`, summed in closed form. Not finite at an angular
-/// part of 2π.
+/// Returns the rate of the displacement `dv` of a free joint such that `q ⊕ dv` moves with the body-frame
+/// velocity `v` (linear, m/s, then angular, rad/s): `v + ½ [dv, v] + 1/12 [dv, [dv, v]] − …`, summed in
+/// closed form. Not finite at an angular part of 2π.
 ///
 /// Source: Hairer, Lubich and Wanner, *Geometric Numerical Integration* (2006), III.4.
 pub fn free_tangent_rate<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
     let [_, _, _, rx, ry, rz] = dv;
     let turn = [rx, ry, rz];
-    let [second, fourth] = even_brackets(dot(turn, turn));
+    let [second, fourth] = even_bracket_factors(dot(turn, turn));
     let first = lie_bracket(dv, v);
     let twice = lie_bracket(dv, first);
     let four_times = lie_bracket(dv, lie_bracket(dv, twice));
     plus_scaled(plus_scaled(plus_scaled(v, constant(0.5), first), second, twice), fourth, four_times)
 }
 
-/// Returns the velocity `v`, in the child frame of `q`, expressed in the child frame of `q ⊕ dv`.
+/// Returns the angular velocity `v` of a ball joint, given in the child frame of `q`, in the child frame of
+/// `q ⊕ dv`.
 pub fn ball_carry<T: Real>(dv: [T; 3], v: [T; 3]) -> [T; 3] {
     rotated_vector(conjugate(quaternion_exponential(dv)), v)
 }
 
-/// Returns the velocity `v` (linear, then angular), in the child frame of `q`, expressed in the child frame
-/// of `q ⊕ dv`.
+/// Returns the velocity `v` (linear, then angular) of a free joint, given in the child frame of `q`, in the
+/// child frame of `q ⊕ dv`.
 pub fn free_carry<T: Real>(dv: [T; 6], v: [T; 6]) -> [T; 6] {
     let [_, _, _, rx, ry, rz] = dv;
     let [x, y, z, wx, wy, wz] = v;

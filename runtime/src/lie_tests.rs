@@ -5,7 +5,7 @@ const AXIS: [f64; 3] = [0.36, -0.48, 0.8];
 const QUATERNION: [f64; 4] = [0.1, -0.5, 0.7, 0.5];
 const POSE: [f64; 7] = [1.0, -2.0, 0.5, 0.1, -0.5, 0.7, 0.5];
 
-fn difference<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
+fn largest_difference<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
     a.iter().zip(b).fold(0.0, |largest: f64, (a, b)| largest.max((a - b).abs()))
 }
 
@@ -15,11 +15,11 @@ fn twist_from_parts(linear: [f64; 3], turn: [f64; 3]) -> [f64; 6] {
 }
 
 #[test]
-fn ball_exponential_is_a_turn_about_the_axis() {
+fn ball_exponential_rotates_about_axis() {
     for angle in ANGLES.into_iter().chain([10.0, 1e3]) {
         let q = ball_integrate([0.0, 0.0, 0.0, 1.0], scaled_vector(AXIS, angle));
         let [x, y, z] = scaled_vector(AXIS, (angle / 2.0).sin());
-        assert!(difference(q, [x, y, z, (angle / 2.0).cos()]) < 4e-16 * (1.0 + angle), "{angle}");
+        assert!(largest_difference(q, [x, y, z, (angle / 2.0).cos()]) < 4e-16 * (1.0 + angle), "{angle}");
     }
 }
 
@@ -29,22 +29,24 @@ fn ball_difference_inverts_integrate() {
         let dv = scaled_vector(AXIS, angle);
         let q = normalised_quaternion(QUATERNION);
         let found = ball_difference(q, ball_integrate(q, dv));
-        assert!(difference(found, dv) <= 4e-15 * (angle + 1e-1), "{angle}: {found:?}");
+        assert!(largest_difference(found, dv) <= 4e-15 * (angle + 1e-1), "{angle}: {found:?}");
         let [x, y, z, w] = ball_integrate(q, dv);
         let found = ball_difference(q, [-x, -y, -z, -w]);
-        assert!(difference(found, dv) <= 4e-15 * (angle + 1e-1), "antipode of {angle}: {found:?}");
+        assert!(largest_difference(found, dv) <= 4e-15 * (angle + 1e-1), "antipode of {angle}: {found:?}");
     }
 }
 
 #[test]
-fn ball_difference_near_half_a_turn_is_shortest() {
+fn ball_difference_is_shortest_near_half_turn() {
     for excess in [-1e-9, -1e-15, 0.0, 1e-15, 1e-9] {
         let angle = core::f64::consts::PI + excess;
         let q1 = ball_integrate(QUATERNION, scaled_vector(AXIS, angle));
         let found = ball_difference(QUATERNION, q1);
         assert!(dot(found, found).sqrt() <= core::f64::consts::PI + 1e-15);
         let reached = ball_integrate(QUATERNION, found);
-        assert!(difference(reached, q1).min(difference(reached, scaled_quaternion(q1))) < 1e-15);
+        assert!(
+            largest_difference(reached, q1).min(largest_difference(reached, scaled_quaternion(q1))) < 1e-15
+        );
     }
 }
 
@@ -57,33 +59,33 @@ fn free_difference_inverts_integrate() {
     for angle in ANGLES {
         let dv = twist_from_parts([0.3, 2.0, -1.0], scaled_vector(AXIS, angle));
         let found = free_difference(POSE, free_integrate(POSE, dv));
-        assert!(difference(found, dv) < 2e-14, "{angle}: {found:?}");
+        assert!(largest_difference(found, dv) < 2e-14, "{angle}: {found:?}");
     }
 }
 
 #[test]
-fn free_exponential_of_a_screw() {
+fn free_exponential_moves_along_screw() {
     // A screw motion along and about z by a quarter rotation: the end point of a circular arc of radius v /
     // ω.
     let quarter = core::f64::consts::FRAC_PI_2;
     let q = free_integrate([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 3.0, 0.0, 0.0, quarter]);
     let half = core::f64::consts::FRAC_1_SQRT_2;
-    assert!(difference(q, [1.0 / quarter, 1.0 / quarter, 3.0, 0.0, 0.0, half, half]) < 1e-15);
+    assert!(largest_difference(q, [1.0 / quarter, 1.0 / quarter, 3.0, 0.0, 0.0, half, half]) < 1e-15);
 }
 
 #[test]
-fn free_exponential_is_a_flow() {
+fn free_exponential_is_additive_in_time() {
     for angle in ANGLES.into_iter().chain([20.0]) {
         let dv = twist_from_parts([0.3, 2.0, -1.0], scaled_vector(AXIS, angle));
         let half = dv.map(|x| 0.5 * x);
         let twice = free_integrate(free_integrate(POSE, half), half);
-        assert!(difference(free_integrate(POSE, dv), twice) < 4e-15, "{angle}");
+        assert!(largest_difference(free_integrate(POSE, dv), twice) < 4e-15, "{angle}");
     }
 }
 
 /// Checks that along the path φ(t) = dv + t rate the configuration `q ⊕ φ(t)` has the velocity `v` at t = 0.
 #[test]
-fn tangent_rates_give_the_velocity() {
+fn tangent_rates_produce_the_velocity() {
     let v = [0.7, -0.2, 1.1, 0.4, 0.9, -1.3];
     for angle in ANGLES.into_iter().chain([5.5, 7.0]) {
         let dv = twist_from_parts([0.3, 2.0, -1.0], scaled_vector(AXIS, angle));
@@ -95,40 +97,40 @@ fn tangent_rates_give_the_velocity() {
         // Central differences, extrapolated: the error is of order step⁴.
         let (coarse, fine) = (tangent_velocity(step), tangent_velocity(step / 2.0));
         let body = plus_scaled(plus_scaled([0.0; 6], 4.0 / 3.0, fine), -1.0 / 3.0, coarse);
-        assert!(difference(body, v) < 1e-9, "{angle}: {body:?}");
+        assert!(largest_difference(body, v) < 1e-9, "{angle}: {body:?}");
         let [.., rx, ry, rz] = rate;
         let ball = ball_tangent_rate(scaled_vector(AXIS, angle), [0.4, 0.9, -1.3]);
-        assert!(difference(ball, [rx, ry, rz]) < 1e-13, "{angle}");
+        assert!(largest_difference(ball, [rx, ry, rz]) < 1e-13, "{angle}");
     }
 }
 
 #[test]
 fn closed_forms_continue_the_series() {
     let (below, above) = (SERIES_ANGLE - 1e-15, SERIES_ANGLE);
-    assert!((second_bracket(below) - second_bracket(above)).abs() < 1e-14);
-    let (a, b) = (even_brackets(below), even_brackets(above));
+    assert!((second_bracket_factor(below) - second_bracket_factor(above)).abs() < 1e-14);
+    let (a, b) = (even_bracket_factors(below), even_bracket_factors(above));
     assert!((a[0] - b[0]).abs() < 1e-14 && (a[1] - b[1]).abs() < 1e-13);
-    let (a, b) = (left_jacobian(0.05_f64 - 1e-16), left_jacobian(0.05_f64));
+    let (a, b) = (left_jacobian_factors(0.05_f64 - 1e-16), left_jacobian_factors(0.05_f64));
     assert!((a[0] - b[0]).abs() < 1e-15 && (a[1] - b[1]).abs() < 3e-14);
 }
 
 #[test]
-fn single_precision_is_accurate_to_its_rounding() {
+fn single_precision_has_rounding_accuracy() {
     for angle in ANGLES {
         let to_single_precision = |x: f64| x as f32;
         let dv = twist_from_parts([0.3, 2.0, -1.0], scaled_vector(AXIS, angle));
         let v = [0.7, -0.2, 1.1, 0.4, 0.9, -1.3];
         let exact = free_integrate(POSE, dv);
         let found = free_integrate(POSE.map(to_single_precision), dv.map(to_single_precision)).map(f64::from);
-        assert!(difference(found, exact) < 2e-6, "{angle}");
+        assert!(largest_difference(found, exact) < 2e-6, "{angle}");
         let exact = free_tangent_rate(dv, v);
         let found = free_tangent_rate(dv.map(to_single_precision), v.map(to_single_precision)).map(f64::from);
-        assert!(difference(found, exact) < 2e-5, "{angle}");
+        assert!(largest_difference(found, exact) < 2e-5, "{angle}");
     }
 }
 
 #[test]
-fn quaternions_stay_unit() {
+fn quaternions_remain_unit() {
     let mut q = QUATERNION;
     for _ in 0..100_000 {
         q = ball_integrate(q, [0.01, -0.02, 0.03]);

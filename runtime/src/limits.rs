@@ -31,7 +31,7 @@ use nalgebra::{SMatrix, SVector};
 /// ```
 #[diagnostic::on_unimplemented(message = "`{Self}` has no limits", label = "expected a mechanism")]
 pub trait Limits<const NQ: usize, const NV: usize> {
-    /// Scalar type of the mechanism.
+    /// Scalar type of the mechanism, and of the limits.
     type Scalar: Real;
 
     /// Returns the lower limit of the coordinate whose rate is each entry of `v`, m or rad; −∞ if unlimited.
@@ -47,12 +47,12 @@ pub trait Limits<const NQ: usize, const NV: usize> {
         SVector::repeat(constant(f64::INFINITY))
     }
 
-    /// Returns the largest magnitude of each entry of `v`, m/s or rad/s; ∞ if unlimited.
+    /// Returns the limit of the magnitude of each velocity, m/s or rad/s; ∞ if unlimited.
     fn velocity_limits(&self) -> SVector<Self::Scalar, NV> {
         SVector::repeat(constant(f64::INFINITY))
     }
 
-    /// Returns the largest magnitude of each generalized force `τ`, N or N·m; ∞ if unlimited.
+    /// Returns the limit of the magnitude of each generalized force `τ`, N or N·m; ∞ if unlimited.
     fn effort_limits(&self) -> SVector<Self::Scalar, NV> {
         SVector::repeat(constant(f64::INFINITY))
     }
@@ -62,8 +62,9 @@ pub trait Limits<const NQ: usize, const NV: usize> {
         *q
     }
 
-    /// Returns the coordinates in the order of these limits, and the matrix that maps their rates to
-    /// generalized speeds; `None` without declared speeds, when velocities are rates of the coordinates.
+    /// Returns the coordinates in the order of the limits, and the matrix that maps their rates to
+    /// generalized speeds. Returns `None` without declared speeds, when velocities are rates of the
+    /// coordinates.
     #[doc(hidden)]
     #[allow(clippy::type_complexity, reason = "a vector and a matrix")]
     fn limited_coordinates(
@@ -84,18 +85,18 @@ pub trait Limits<const NQ: usize, const NV: usize> {
     }
 }
 
-/// Returns `x` with each entry clamped to the magnitude in `most`.
+/// Returns the vector `x` with the magnitude of each entry limited to that entry of `most`.
 fn clamp_magnitudes<T: Real, const N: usize>(x: &SVector<T, N>, most: &SVector<T, N>) -> SVector<T, N> {
     x.zip_map(most, |x, most| at_most(at_least(x, -most), most))
 }
 
-/// Returns the larger of both; `x` if it is NaN.
+/// Returns the larger of `x` and `bound`; `x` if it is NaN.
 #[inline(always)]
 pub fn at_least<T: Real>(x: T, bound: T) -> T {
     x.clamp(bound, constant(f64::INFINITY))
 }
 
-/// Returns the smaller of both; `x` if it is NaN.
+/// Returns the smaller of `x` and `bound`; `x` if it is NaN.
 #[inline(always)]
 pub fn at_most<T: Real>(x: T, bound: T) -> T {
     x.clamp(constant(f64::NEG_INFINITY), bound)
@@ -148,7 +149,7 @@ impl<M: Limits<NQ, NV> + ?Sized, const NQ: usize, const NV: usize> Limits<NQ, NV
     pass_on!(self => (**self));
 }
 
-/// Implements the trait at an instant; limits do not depend on time.
+/// Implements the limits of a mechanism at a fixed time, which do not depend on time.
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M: Limits<NQ, NV>, T, const NQ: usize, const NV: usize> Limits<NQ, NV> for At<'_, M, T> {
     type Scalar = M::Scalar;

@@ -34,7 +34,7 @@ impl<T: RealField + Copy> Real for T {}
 pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize>:
     Hooks<<Self as Mechanism<NQ, NV, NU>>::Scalar, NQ, NV, NU>
 {
-    /// The scalar type: `f64`, `f32` or the struct's own parameter.
+    /// Scalar type of the mechanism: `f64`, `f32` or the struct's own type parameter.
     type Scalar: Real;
 
     /// Names of the entries of the configuration `q`.
@@ -89,7 +89,7 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize>:
         Ok(self.forward_dynamics(t, q, v, tau))
     }
 
-    /// Returns `τ = M(t, q) a + h(t, q, v)`: the generalized forces, N and N·m, that cause the acceleration
+    /// Returns the generalized forces `τ = M(t, q) a + h(t, q, v)`, N and N·m, that cause the acceleration
     /// `a`.
     fn inverse_dynamics(
         &self,
@@ -143,10 +143,10 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize>:
     /// Returns the configuration with all coordinates zero and identity quaternions.
     fn neutral(&self) -> SVector<Self::Scalar, NQ>;
 
-    /// Returns `q ⊕ dv`: the configuration reached from `q` by moving with the constant velocity `dv` for one
-    /// unit of time. It is a sum for plain coordinates, the exponential of SO(3) for a ball joint and of
-    /// SE(3) for a free joint. Quaternions are normalised. With declared generalized speeds, the constant
-    /// velocities are the joint velocities that correspond to `dv` at `q`.
+    /// Returns the displaced configuration `q ⊕ dv`: the configuration reached from `q` by moving with the
+    /// constant velocity `dv` for one unit of time. It is a sum for ordinary coordinates, the exponential of
+    /// SO(3) for a ball joint and of SE(3) for a free joint. Quaternions are normalised. With declared
+    /// generalized speeds, the constant velocities are the joint velocities that correspond to `dv` at `q`.
     fn integrate(
         &self,
         q: &SVector<Self::Scalar, NQ>,
@@ -162,9 +162,9 @@ pub trait Mechanism<const NQ: usize, const NV: usize, const NU: usize>:
     ) -> SVector<Self::Scalar, NV>;
 
     /// Returns the rate of `dv` such that `q ⊕ dv` moves with velocity `v`: the inverse of the exponential's
-    /// derivative, the identity for plain coordinates. The series `v + ½ [dv, v] + …` is truncated after the
-    /// terms that affect steps of order six (Hairer, Lubich and Wanner, *Geometric Numerical Integration*,
-    /// ch. IV.7).
+    /// derivative, the identity for ordinary coordinates. The series `v + ½ [dv, v] + …` is truncated after
+    /// the terms that affect steps of order six (Hairer, Lubich and Wanner, *Geometric Numerical
+    /// Integration*, ch. IV.7).
     fn tangent_rate(
         &self,
         dv: &SVector<Self::Scalar, NV>,

@@ -20,13 +20,13 @@ pub use inverse::{complete, invert};
 use nalgebra::SMatrix;
 pub use tile::{Tile, Tiling};
 
-/// Whether a column of this length occupies several registers of eight.
+/// Whether a column of this length occupies several SIMD registers of eight numbers.
 const fn is_long(numbers: usize) -> bool {
     registers_of_eight(numbers, true) > 1
 }
 
-/// Returns the number of rows of a matrix that are computed together. It is all rows if that leaves registers
-/// for several columns.
+/// Returns the number of rows of a matrix that are computed together: all rows if enough registers remain for
+/// several columns.
 #[must_use]
 pub const fn rows(numbers: usize, wide: bool) -> usize {
     let most = if wide { 48 } else { 24 };
@@ -38,18 +38,18 @@ pub const fn rows(numbers: usize, wide: bool) -> usize {
 }
 
 /// Half-open range of adjacent rows or columns.
-type Range = (usize, usize);
+type IndexRange = (usize, usize);
 
-/// Neighbouring columns, the rows of the trunk in which their factors are nonzero, and the index of the first
-/// column's factors.
-pub type Run = (Range, Range, usize);
+/// Run of neighbouring columns: their range, the rows of the trunk in which their factors are nonzero, and
+/// the index of the first column's factors.
+pub type Run = (IndexRange, IndexRange, usize);
 
 /// Matrix to be multiplied by another; column and row of the entries to set to zero in it; and half-open
 /// ranges of its columns with the rows that can be nonzero. All other columns are zero.
 pub type Factor<'a, T, const N: usize, const M: usize> =
-    (&'a mut SMatrix<T, N, M>, &'a [(usize, usize)], &'a [(Range, &'a [usize])]);
+    (&'a mut SMatrix<T, N, M>, &'a [(usize, usize)], &'a [(IndexRange, &'a [usize])]);
 
-/// Replaces matrices by minus their products with a matrix.
+/// Replaces each matrix by its negative product with `matrix`.
 #[inline]
 pub fn minus_products<
     A: Arithmetic,
@@ -62,17 +62,17 @@ pub fn minus_products<
     matrix: &SMatrix<T, N, N>,
     factors: [Factor<'_, T, N, M>; COUNT],
 ) {
-    A::run_loop(Products::<T, P, N, M, COUNT> { matrix, factors, parts: PhantomData });
+    A::run_loop(NegativeProducts::<T, P, N, M, COUNT> { matrix, factors, parts: PhantomData });
 }
 
-struct Products<'a, T, P, const N: usize, const M: usize, const COUNT: usize> {
+struct NegativeProducts<'a, T, P, const N: usize, const M: usize, const COUNT: usize> {
     matrix: &'a SMatrix<T, N, N>,
     factors: [Factor<'a, T, N, M>; COUNT],
     parts: PhantomData<P>,
 }
 
 impl<T: Real, P: Tiling<T, N>, const N: usize, const M: usize, const COUNT: usize> VectorLoop
-    for Products<'_, T, P, N, M, COUNT>
+    for NegativeProducts<'_, T, P, N, M, COUNT>
 {
     const IS_LONG: bool = is_long(N);
 
@@ -82,13 +82,13 @@ impl<T: Real, P: Tiling<T, N>, const N: usize, const M: usize, const COUNT: usiz
             clear_entries(b, zeros);
             for ((first, end), rows) in groups {
                 let some = b.data.0.get_mut(*first..*end).unwrap_or(&mut []);
-                P::multiply::<A>(self.matrix, some, rows);
+                P::negate_products::<A>(self.matrix, some, rows);
             }
         }
     }
 }
 
-/// Sets entries, given by column and row, to zero.
+/// Sets entries of a matrix, listed by column and row, to zero.
 #[inline(always)]
 fn clear_entries<T: Real, const N: usize, const M: usize>(
     matrix: &mut SMatrix<T, N, M>,

@@ -86,13 +86,13 @@ pub struct Quadratic<T, const NV: usize, const NU: usize> {
     pub u: SVector<T, NU>,
     /// Block of the Hessian of the costs: second derivatives with respect to the configuration.
     pub qq: SMatrix<T, NV, NV>,
-    /// Block of the Hessian: configuration (rows) by velocity (columns).
+    /// Block of the Hessian of the costs: mixed derivatives, configuration (rows) by velocity (columns).
     pub qv: SMatrix<T, NV, NV>,
     /// Block of the Hessian of the costs: second derivatives with respect to the velocity.
     pub vv: SMatrix<T, NV, NV>,
-    /// Block of the Hessian: configuration (rows) by inputs (columns).
+    /// Block of the Hessian of the costs: mixed derivatives, configuration (rows) by inputs (columns).
     pub qu: SMatrix<T, NV, NU>,
-    /// Block of the Hessian: velocity (rows) by inputs (columns).
+    /// Block of the Hessian of the costs: mixed derivatives, velocity (rows) by inputs (columns).
     pub vu: SMatrix<T, NV, NU>,
     /// Block of the Hessian of the costs: second derivatives with respect to the inputs.
     pub uu: SMatrix<T, NU, NU>,
@@ -107,7 +107,7 @@ pub struct Value<T, const NV: usize> {
     pub v: SVector<T, NV>,
     /// Block of the Hessian of the cost-to-go: second derivatives with respect to the configuration.
     pub qq: SMatrix<T, NV, NV>,
-    /// Block of the Hessian: configuration (rows) by velocity (columns).
+    /// Block of the Hessian of the cost-to-go: mixed derivatives, configuration (rows) by velocity (columns).
     pub qv: SMatrix<T, NV, NV>,
     /// Block of the Hessian of the cost-to-go: second derivatives with respect to the velocity.
     pub vv: SMatrix<T, NV, NV>,
@@ -267,15 +267,16 @@ impl<T: Real, const NV: usize> Value<T, NV> {
         Self { q: SVector::zeros(), v: SVector::zeros(), qq: zero, qv: zero, vv: zero }
     }
 
-    /// Returns the Hessian of the cost-to-go with respect to `x = (δq, δv)` as one matrix. `NX` is `2 NV`,
-    /// inferred from the requested type; any other value is a compile error.
+    /// Returns the Hessian of the cost-to-go with respect to the state `x = (δq, δv)` as one matrix. `NX` is
+    /// `2 NV`, inferred from the requested type; any other value is a compile error.
     pub fn hessian<const NX: usize>(&self) -> SMatrix<T, NX, NX> {
         const { assert!(NX == 2 * NV, "the matrix has twice as many rows as there are velocities") };
         let vq = transposed(&self.qv);
         SMatrix::from_fn(|i, j| entry_of_blocks([[&self.qq, &self.qv], [&vq, &self.vv]], i, j))
     }
 
-    /// Returns the additional cost-to-go of a state displaced by `dq` and `dv`.
+    /// Returns the change of the cost-to-go for a state displaced by `dq` and `dv`, by its second-order
+    /// model.
     pub fn at(&self, dq: &SVector<T, NV>, dv: &SVector<T, NV>) -> T {
         let quadratic = dq.dot(&product(&self.qq, dq)) + dv.dot(&product(&self.vv, dv));
         self.q.dot(dq) + self.v.dot(dv) + dq.dot(&product(&self.qv, dv)) + quadratic * constant(0.5)
@@ -359,7 +360,8 @@ pub fn backward_within<T: Real, const NQ: usize, const NV: usize, const NU: usiz
     )
 }
 
-/// Returns the costs as a function of the state before a step and the inputs, with the cost-to-go after it.
+/// Returns the sum of the costs of a step and the cost-to-go after it, as a function of the state before the
+/// step and the inputs.
 fn accumulate_costs<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     step: &Transition<T, NQ, NV, NU>,
     cost: &Quadratic<T, NV, NU>,
@@ -384,21 +386,22 @@ fn add_general_cost_to_go<T: Real, const NQ: usize, const NV: usize, const NU: u
     let (q_by_q, v_by_q) = (transposed(&step.q_by_q), transposed(&step.v_by_q));
     let (q_by_v, v_by_v) = (transposed(&step.q_by_v), transposed(&step.v_by_v));
     let (q_by_u, v_by_u) = (transposed(&step.q_by_u), transposed(&step.v_by_u));
-    add_both(&mut before.qq, &q_by_q, &v_by_q, &hessian_rows(after, &vq, &step.q_by_q, &step.v_by_q));
+    add_two_products(&mut before.qq, &q_by_q, &v_by_q, &hessian_rows(after, &vq, &step.q_by_q, &step.v_by_q));
     let by_v = hessian_rows(after, &vq, &step.q_by_v, &step.v_by_v);
-    add_both(&mut before.qv, &q_by_q, &v_by_q, &by_v);
-    add_both(&mut before.vv, &q_by_v, &v_by_v, &by_v);
+    add_two_products(&mut before.qv, &q_by_q, &v_by_q, &by_v);
+    add_two_products(&mut before.vv, &q_by_v, &v_by_v, &by_v);
     let by_u = hessian_rows(after, &vq, &step.q_by_u, &step.v_by_u);
-    add_both(&mut before.qu, &q_by_q, &v_by_q, &by_u);
-    add_both(&mut before.vu, &q_by_v, &v_by_v, &by_u);
-    add_both(&mut before.uu, &q_by_u, &v_by_u, &by_u);
+    add_two_products(&mut before.qu, &q_by_q, &v_by_q, &by_u);
+    add_two_products(&mut before.vu, &q_by_v, &v_by_v, &by_u);
+    add_two_products(&mut before.uu, &q_by_u, &v_by_u, &by_u);
     let gradient = (after.q, after.v);
-    add_both(&mut before.q, &q_by_q, &v_by_q, &gradient);
-    add_both(&mut before.v, &q_by_v, &v_by_v, &gradient);
-    add_both(&mut before.u, &q_by_u, &v_by_u, &gradient);
+    add_two_products(&mut before.q, &q_by_q, &v_by_q, &gradient);
+    add_two_products(&mut before.v, &q_by_v, &v_by_v, &gradient);
+    add_two_products(&mut before.u, &q_by_u, &v_by_u, &gradient);
 }
 
-/// Returns the configuration rows and the velocity rows of `S X`, with the Hessian `S` of the cost-to-go.
+/// Returns the product `S X` with the Hessian `S` of the cost-to-go: first its configuration rows, then its
+/// velocity rows.
 fn hessian_rows<T: Real, const NV: usize, const C: usize>(
     after: &Value<T, NV>,
     vq: &SMatrix<T, NV, NV>,
@@ -411,8 +414,8 @@ fn hessian_rows<T: Real, const NV: usize, const C: usize>(
     (of_q, of_v)
 }
 
-/// Adds `q of_q + v of_v`, the products with the configuration and velocity rows, to `sum`.
-fn add_both<T: Real, const R: usize, const NV: usize, const C: usize>(
+/// Adds the matrix products `q of_q + v of_v` of configuration rows and velocity rows to `sum`.
+fn add_two_products<T: Real, const R: usize, const NV: usize, const C: usize>(
     sum: &mut SMatrix<T, R, C>,
     q: &SMatrix<T, R, NV>,
     v: &SMatrix<T, R, NV>,
@@ -424,7 +427,7 @@ fn add_both<T: Real, const R: usize, const NV: usize, const C: usize>(
 
 /// Adds the cost-to-go after a step with `q⁺ = q ⊕ h v⁺` to the costs before it. With the derivatives `G` of
 /// `v⁺`, and `E` and `D` of `⊕`, the step is `A = [E 0; 0 0] + H G_x` and `B = H G_u`, `H = [h D; 1]`.
-/// Therefore `W = Hᵀ S H` replaces `S`.
+/// Therefore `W = Hᵀ S H` replaces the Hessian `S`.
 fn add_chained_cost_to_go<T: Real, const NQ: usize, const NV: usize, const NU: usize>(
     before: &mut Quadratic<T, NV, NU>,
     step: &Transition<T, NQ, NV, NU>,
@@ -502,7 +505,8 @@ fn change_variables_of_value<T: Real, const NQ: usize, const NV: usize>(
     [of_q, after.v + of_dv * h]
 }
 
-/// Computes the change of the inputs that minimises the costs, and the resulting cost-to-go.
+/// Writes the change of the inputs that minimises the costs, with its feedback gains, and the resulting
+/// cost-to-go.
 fn minimise_over_inputs<T: Real, const NV: usize, const NU: usize>(
     before: &mut Quadratic<T, NV, NU>,
     regularisation: T,

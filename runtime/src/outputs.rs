@@ -12,7 +12,7 @@ use nalgebra::{SMatrix, SVector};
     note = "`#[output(expression)] name: Scalar` declares one; reactions are left out"
 )]
 pub trait Outputs<const NQ: usize, const NV: usize, const NU: usize, const NY: usize> {
-    /// Scalar type of the mechanism.
+    /// Scalar type of the mechanism, and of its outputs.
     type Scalar: Real;
 
     /// Name of every entry: that of the output, with `.x`, `.y` and `.z` appended for the components of a
@@ -34,7 +34,7 @@ pub trait Outputs<const NQ: usize, const NV: usize, const NU: usize, const NY: u
     ) -> SVector<Self::Scalar, NY>;
 }
 
-/// Derivatives of all outputs. `#[mechanism(…, derivatives)]` implements it.
+/// Mechanisms with derivatives of all outputs. `#[mechanism(…, derivatives)]` implements this trait.
 #[diagnostic::on_unimplemented(
     message = "the outputs of `{Self}` have no derivatives",
     note = "enable them with the option: `#[mechanism(…, derivatives)]`"
@@ -53,7 +53,7 @@ pub trait OutputDerivatives<const NQ: usize, const NV: usize, const NU: usize, c
     ) -> OutputJacobians<Self::Scalar, NY, NV, NU>;
 }
 
-/// Implements the trait at the instant of the mechanism; the argument `t` is ignored.
+/// Implements the trait for a mechanism at a fixed time. The argument `t` of the functions is ignored.
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NY: usize> Outputs<NQ, NV, NU, NY>
     for At<'_, M, T>
 where
@@ -98,11 +98,11 @@ where
 /// Column `i` of `by_q` is the derivative along `q ⊕ ε eᵢ`, in body axes for ball and free joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutputJacobians<T, const NY: usize, const NV: usize, const NU: usize> {
-    /// Derivative with respect to the configuration, per m and rad.
+    /// Partial derivative of the outputs with respect to the configuration, per m and rad.
     pub by_q: SMatrix<T, NY, NV>,
-    /// Derivative with respect to the velocity, per m/s and rad/s.
+    /// Partial derivative of the outputs with respect to the velocity, per m/s and rad/s.
     pub by_v: SMatrix<T, NY, NV>,
-    /// Derivative with respect to the acceleration, per m/s² and rad/s².
+    /// Partial derivative of the outputs with respect to the acceleration, per m/s² and rad/s².
     pub by_a: SMatrix<T, NY, NV>,
     /// Partial derivative of the outputs with respect to the inputs.
     pub by_u: SMatrix<T, NY, NU>,
@@ -115,7 +115,7 @@ impl<T: Real, const NY: usize, const NV: usize, const NU: usize> OutputJacobians
         Self { by_q: state, by_v: state, by_a: state, by_u }
     }
 
-    /// Writes the derivatives of other outputs to the rows from `first` on; rows beyond the last are dropped.
+    /// Writes the derivatives of other outputs to the rows from `first` on. Rows that do not fit are dropped.
     pub fn put_rows<const R: usize>(&mut self, first: usize, other: &OutputJacobians<T, R, NV, NU>) {
         crate::private::put_rows(&mut self.by_q, first, &other.by_q);
         crate::private::put_rows(&mut self.by_v, first, &other.by_v);

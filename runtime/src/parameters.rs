@@ -37,9 +37,9 @@ pub struct ParameterError {
     pub figure: &'static str,
     /// Names of the parameters on which the value depends.
     pub parameters: &'static [&'static str],
-    /// Value in SI units. For a range: its lower end minus its upper end. For an inertia: the sum of the two
-    /// smaller principal moments minus the largest. NaN if the value is not a number or differs between SIMD
-    /// lanes.
+    /// Checked value in SI units. For a range: its lower end minus its upper end. For an inertia: the sum of
+    /// the two smaller principal moments minus the largest. NaN if the value is not a number or differs
+    /// between SIMD lanes.
     pub value: f64,
 }
 
@@ -49,22 +49,23 @@ pub struct ParameterError {
 pub enum Fault {
     /// The checked value is infinite or NaN.
     NotFinite,
-    /// The value is negative. Masses, sizes and coefficients of friction or damping must be zero or positive.
-    Negative,
-    /// The value is zero or negative. Sizes of surfaces and the velocities of smooth friction laws must be
+    /// The checked value is negative. Masses, sizes and coefficients of friction or damping must be zero or
     /// positive.
+    Negative,
+    /// The checked value is zero or negative. Sizes of surfaces and the velocities of smooth friction laws
+    /// must be positive.
     NotPositive,
     /// The checked value is so large that products with it overflow.
     TooLarge,
-    /// The value is not zero, but so small that its reciprocal overflows.
+    /// The checked value is not zero, but so small that its reciprocal overflows.
     TooSmall,
-    /// The half angle of a cone is not between zero and a right angle.
+    /// The checked half angle of a cone is not between zero and a right angle.
     NotHalfAngle,
-    /// The squared norm of a unit quaternion or vector is not one.
+    /// The checked squared norm of a unit quaternion or vector is not one.
     NotUnit,
-    /// The coefficient of restitution is below zero or above one.
+    /// The checked coefficient of restitution is below zero or above one.
     NotFraction,
-    /// The upper end of a range is below its lower end.
+    /// The upper end of the checked range is below its lower end.
     EmptyRange,
     /// No rigid body has this inertia: a principal moment is negative, or exceeds the sum of the other two.
     Inertia,
@@ -113,8 +114,7 @@ impl fmt::Display for ParameterError {
 
 impl core::error::Error for ParameterError {}
 
-/// Check of the values of parameters that generated code performs: of one value, or of several values
-/// together.
+/// Check of parameter values that generated code performs: one value, or several values together.
 #[derive(Clone, Copy, Debug)]
 pub struct Figure {
     /// Condition that the values must satisfy.
@@ -125,7 +125,7 @@ pub struct Figure {
     pub parameters: &'static [&'static str],
 }
 
-/// Conditions on parameter values; the compiler documents them.
+/// Conditions that parameter values must satisfy; the compiler's documentation explains them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "no part of the public interface")]
 pub enum Rule {
@@ -152,8 +152,8 @@ impl Rule {
     }
 }
 
-/// Checks all conditions of `figures`; `values` contains the values of each condition in the same order, one
-/// after another.
+/// Checks all conditions of `figures`. The list `values` contains the values of each condition in the same
+/// order, one after another.
 ///
 /// # Errors
 ///
@@ -171,8 +171,9 @@ pub fn validate<T: Real>(figures: &[Figure], values: &[T]) -> Result<(), Paramet
     Ok(())
 }
 
-/// Limits of magnitudes for a scalar type. The compiler checks constants against the same limits.
-struct Range {
+/// Limits of the magnitudes of parameters for a scalar type. The compiler checks constants against the same
+/// limits.
+struct MagnitudeLimits {
     /// Maximum mass and moment of inertia that the check accepts, kg and kg·m².
     most: f64,
     /// Maximum length that the check accepts, m.
@@ -183,12 +184,12 @@ struct Range {
     tolerance: f64,
 }
 
-impl Range {
-    fn of_scalar<T: Real>() -> Range {
+impl MagnitudeLimits {
+    fn limits_of_scalar<T: Real>() -> MagnitudeLimits {
         if epsilon::<T>() > constant(1e-10) {
-            return Range { most: 1e18, length: 1e9, least: 1e-36, tolerance: 1e-5 };
+            return MagnitudeLimits { most: 1e18, length: 1e9, least: 1e-36, tolerance: 1e-5 };
         }
-        Range { most: 1e150, length: 1e75, least: 1e-300, tolerance: 1e-6 }
+        MagnitudeLimits { most: 1e150, length: 1e75, least: 1e-300, tolerance: 1e-6 }
     }
 }
 
@@ -200,12 +201,12 @@ const NOTHING: f64 = 1e-18;
 /// zero.
 const SMALLEST: f64 = 1e-16;
 
-/// Returns the violated condition, if any, and the value to report.
+/// Returns the fault and the value to report, if the values violate the condition.
 fn violated_condition<T: Real>(rule: Rule, values: &[T]) -> Option<(Fault, f64)> {
     if let Some(x) = values.iter().find(|x| !is_finite(**x)) {
         return Some((Fault::NotFinite, to_f64(*x)));
     }
-    let Range { most, length, least, tolerance } = Range::of_scalar::<T>();
+    let MagnitudeLimits { most, length, least, tolerance } = MagnitudeLimits::limits_of_scalar::<T>();
     let zero = T::zero();
     let fault_unless = |holds: bool, fault: Fault, value: T| (!holds).then(|| (fault, to_f64(value)));
     match (rule, values) {
@@ -231,7 +232,7 @@ fn violated_condition<T: Real>(rule: Rule, values: &[T]) -> Option<(Fault, f64)>
             let moments = [*xx, *yy, *zz, *xy, *xz, *yz];
             let large = moments.iter().find(|x| !is_at_most(x.abs(), constant(most)));
             large.map(|x| (Fault::TooLarge, to_f64(*x))).or_else(|| {
-                let holds = is_of_a_body(moments, *m, tolerance);
+                let holds = is_physical_inertia(moments, *m, tolerance);
                 (!holds).then(|| (Fault::Inertia, triangle_rule_excess(moments.map(to_f64))))
             })
         }
@@ -264,7 +265,7 @@ fn is_zero_or_at_least<T: Real>(m: T, least: T) -> bool {
 /// second moments of its mass, is positive semidefinite (Wensing, Kim and Slotine, *Linear matrix
 /// inequalities for physically consistent inertial parameter identification*, 2018). The pivots tested are
 /// those of the matrix with the tolerance added to its diagonal.
-fn is_of_a_body<T: Real>([xx, yy, zz, xy, xz, yz]: [T; 6], m: T, tolerance: f64) -> bool {
+fn is_physical_inertia<T: Real>([xx, yy, zz, xy, xz, yz]: [T; 6], m: T, tolerance: f64) -> bool {
     let half = (xx + yy + zz) * constant(0.5);
     let nothing = m.max(T::zero()) * constant(SMALLEST) + constant(NOTHING);
     let size = half.abs() + nothing;
@@ -278,7 +279,8 @@ fn is_of_a_body<T: Real>([xx, yy, zz, xy, xz, yz]: [T; 6], m: T, tolerance: f64)
     a > T::zero() && second > T::zero() && third > T::zero()
 }
 
-/// Returns the sum of the two smaller principal moments minus the largest (Jacobi rotations).
+/// Returns the sum of the two smaller principal moments of inertia minus the largest, computed by Jacobi
+/// rotations.
 fn triangle_rule_excess([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> f64 {
     // Diagonal entries xx, yy, zz, and the off-diagonal entries opposite to them: yz, xz, xy.
     let (mut d, mut o) = ([xx, yy, zz], [yz, xz, xy]);
@@ -300,7 +302,7 @@ fn triangle_rule_excess([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> f64 {
     d.into_iter().sum::<f64>() - 2.0 * largest
 }
 
-/// Returns the square root, also without the standard library.
+/// Returns the square root of `x`, also if the standard library is not available.
 fn sqrt(x: f64) -> f64 {
     nalgebra::ComplexField::sqrt(x)
 }
@@ -315,7 +317,7 @@ mod tests {
         validate(&[Figure { rule, name: "x", parameters: &["p"] }], &values).err().map(|error| error.fault)
     }
 
-    /// Rules and values, with the fault that each must report in every scalar type.
+    /// Conditions and values, with the fault that each must report in every scalar type.
     const TABLE: [(Rule, &[f64], Option<Fault>); 26] = [
         (Rule::Finite, &[-1.0], None),
         (Rule::Finite, &[f64::NAN], Some(Fault::NotFinite)),
@@ -348,7 +350,7 @@ mod tests {
     ];
 
     #[test]
-    fn figures_are_judged_in_all_types_of_numbers() {
+    fn faults_agree_in_all_scalar_types() {
         for (rule, values, fault) in TABLE {
             assert_eq!(fault_of_values::<f64>(rule, values), fault, "{rule:?} {values:?}");
             assert_eq!(
@@ -361,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn one_lane_suffices_for_a_fault() {
+    fn fault_in_one_lane_is_reported() {
         let figure_with_rule = |rule| [Figure { rule, name: "x", parameters: &[] }];
         for (rule, values, fault) in TABLE {
             // The other lanes contain values that every rule except `Order` admits.
@@ -380,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_are_those_of_the_type() {
+    fn magnitude_limits_follow_scalar_type() {
         assert_eq!(fault_of_values::<f64>(Rule::Mass, &[1e30]), None);
         assert_eq!(fault_of_values::<f32>(Rule::Mass, &[1e30]), Some(Fault::TooLarge));
         assert_eq!(fault_of_values::<f64>(Rule::Length, &[-1e80]), Some(Fault::TooLarge));
@@ -388,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn the_message_says_how_much_is_lacking() {
+    fn message_contains_missing_amount() {
         // Rotated by 45° about z, then about x: principal moments 0.1, 0.2, 0.5.
         let (a, b) = (core::f64::consts::FRAC_1_SQRT_2, 0.5);
         let axes = [[a, a, 0.0], [-b, b, a], [b, -b, a]];

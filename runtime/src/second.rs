@@ -2,24 +2,31 @@
 //! trajectories.
 
 use crate::blocks::{add_multiple, add_product, is_zero, product, transposed};
-use crate::constraint::{CurvatureVisitor, FrozenCurvature};
+use crate::constraint::{CurvatureVisitor, FrozenCurvatureVisitor};
 use crate::forward::each_function;
 use crate::private::constant;
 use crate::{At, Derivatives, Real, Scleronomic};
 use nalgebra::{SMatrix, SVector};
 
-/// Square matrix with one row and one column for each of the `NV` velocities.
-type Square<T, const NV: usize> = SMatrix<T, NV, NV>;
+/// Square matrix with one row and one column for each of the `NV` velocities of a mechanism.
+type SquareMatrix<T, const NV: usize> = SMatrix<T, NV, NV>;
 
 /// Second derivatives contracted with factors `λ`: with respect to configuration twice; configuration (rows)
 /// and velocity; velocity twice; configuration (rows) and a third argument of the function (acceleration,
 /// force or input).
-pub type SecondOrder<T, const NV: usize> = (Square<T, NV>, Square<T, NV>, Square<T, NV>, Square<T, NV>);
+pub type SecondOrder<T, const NV: usize> =
+    (SquareMatrix<T, NV>, SquareMatrix<T, NV>, SquareMatrix<T, NV>, SquareMatrix<T, NV>);
 
 /// Second derivatives contracted with factors `λ`: with respect to configuration twice; configuration (rows)
 /// and velocity; velocity twice; configuration (rows) and input; velocity (rows) and input; input twice.
-pub type InputSecondOrder<T, const NV: usize, const NU: usize> =
-    (Square<T, NV>, Square<T, NV>, Square<T, NV>, SMatrix<T, NV, NU>, SMatrix<T, NV, NU>, SMatrix<T, NU, NU>);
+pub type InputSecondOrder<T, const NV: usize, const NU: usize> = (
+    SquareMatrix<T, NV>,
+    SquareMatrix<T, NV>,
+    SquareMatrix<T, NV>,
+    SMatrix<T, NV, NU>,
+    SMatrix<T, NV, NU>,
+    SMatrix<T, NU, NU>,
+);
 
 /// Second derivatives of a mechanism's functions, contracted with factors `λ`: Hessians of `λᵀ f`, in blocks
 /// of `NV` by `NV` (and by `NU`). `#[mechanism(…, second_derivatives)]` implements the trait, with and
@@ -72,13 +79,13 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
     ) -> InputSecondOrder<Self::Scalar, NV, NU>;
 
     /// Returns `(∂²/∂dv∂dv, ∂²/∂dv∂v)` of `λᵀ` [`tangent_rate`](crate::Mechanism::tangent_rate); the rows of
-    /// the mixed derivatives are `dv`. Zero for plain coordinates.
+    /// the mixed derivatives belong to `dv`. Zero for coordinates whose rates are the velocities.
     fn tangent_rate_second_derivatives(
         &self,
         _dv: &SVector<Self::Scalar, NV>,
         _v: &SVector<Self::Scalar, NV>,
         _lambda: &SVector<Self::Scalar, NV>,
-    ) -> (Square<Self::Scalar, NV>, Square<Self::Scalar, NV>) {
+    ) -> (SquareMatrix<Self::Scalar, NV>, SquareMatrix<Self::Scalar, NV>) {
         (SMatrix::zeros(), SMatrix::zeros())
     }
 
@@ -143,12 +150,12 @@ pub trait SecondDerivatives<const NQ: usize, const NV: usize, const NU: usize>:
     }
 }
 
-/// Returns the second derivatives of `λᵀ v̇`, from the first derivatives of `v̇` and a function that returns
-/// those of `μᵀ τ` of inverse dynamics for factors `μ`.
+/// Returns the second derivatives of `λᵀ v̇`, given the first derivatives of `v̇` and a function that returns
+/// the second derivatives of `μᵀ τ` of inverse dynamics for factors `μ`.
 ///
 /// They follow from differentiating the identity `τ(q, v, v̇(q, v, τ)) = τ` twice, with `μ = M⁻ᵀ λ`.
 pub fn forward_second_derivatives<T: Real, const NV: usize>(
-    (by_q, by_v, inverse): &(Square<T, NV>, Square<T, NV>, Square<T, NV>),
+    (by_q, by_v, inverse): &(SquareMatrix<T, NV>, SquareMatrix<T, NV>, SquareMatrix<T, NV>),
     lambda: &SVector<T, NV>,
     inverse_dynamics: impl FnOnce(&SVector<T, NV>) -> SecondOrder<T, NV>,
 ) -> SecondOrder<T, NV> {
@@ -187,6 +194,6 @@ where
     where
         V: CurvatureVisitor<T, NQ, NV, NU>,
     {
-        self.mechanism.visit_constraint_curvature(FrozenCurvature { visitor, t: self.t })
+        self.mechanism.visit_constraint_curvature(FrozenCurvatureVisitor { visitor, t: self.t })
     }
 }

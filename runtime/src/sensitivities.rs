@@ -15,7 +15,7 @@ use nalgebra::{SMatrix, SVector};
 pub trait Sensitivities<const NQ: usize, const NV: usize, const NU: usize, const NP: usize>:
     Mechanism<NQ, NV, NU>
 {
-    /// Names of the parameters.
+    /// Names of the parameters of the mechanism, in the order of the columns of the derivatives.
     const PARAMETERS: [&'static str; NP];
 
     /// Returns `∂τ/∂p` of [`inverse_dynamics`](Mechanism::inverse_dynamics), N and N·m per unit of the

@@ -10,18 +10,20 @@ mod event;
 mod run;
 mod start;
 
-pub use event::{Action, Crossing, Event, Events, Flow, Hit, Impact, NoEvents, Report, Stop, Undefined};
+pub use event::{
+    Action, Crossing, Event, EventHit, EventOutcome, EventSearchError, Events, Impact, NoEvents, Report, Stop,
+};
 pub use start::Start;
 
 use crate::integrate::{
     ContinuousInputs, DormandPrince, Error, Inputs, Method, NoInputs, SampledInputs, State, System,
-    check_positive, not_negative,
+    check_not_negative, check_positive,
 };
 use crate::private::to_f64;
 use crate::{Mechanism, Real};
 use core::fmt;
 use nalgebra::SVector;
-use run::Progress;
+use run::RunProgress;
 
 /// Creates a simulation of a mechanism. By default, it starts from the neutral configuration at rest at t = 0
 /// and uses no inputs and the method [`DormandPrince`]. The methods of [`Simulation`] change these settings.
@@ -59,16 +61,16 @@ where
         start,
         overlaps: Overlaps::Refuse,
         duration: None,
-        samples: Samples::Steps,
+        samples: SampleTimes::Steps,
         progress: None,
         over: false,
     }
 }
 
-/// List of the events `E` extended by one more event.
-type With<E, T, G, A> = (E, Event<T, G, A>);
+/// List of the events `E`, extended by one event.
+type EventsWith<E, T, G, A> = (E, Event<T, G, A>);
 /// List of the events `E` extended by one more event whose effect is an impact.
-type WithImpact<E, T, G, F> = With<E, T, G, Impact<F>>;
+type WithImpact<E, T, G, F> = EventsWith<E, T, G, Impact<F>>;
 
 /// Sample of a simulation: state and inputs at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,9 +86,9 @@ pub struct Sample<T, const NQ: usize, const NV: usize, const NU: usize> {
     pub u: SVector<T, NU>,
     /// Index of the event that this sample reports, in the order of declaration; `None` for other samples.
     pub event: Option<usize>,
-    /// Largest violation of the contact conditions in the steps since the sample before, as a contact
-    /// velocity, m/s or rad/s: a few roundings where contact impulses were found that satisfy the conditions,
-    /// and zero without contacts ([guide](crate::guide::contact)).
+    /// Largest violation of the contact conditions in the steps since the previous sample, as a contact
+    /// velocity, m/s or rad/s: at rounding level if the contact impulses satisfy the conditions, and zero
+    /// without contacts ([guide](crate::guide::contact)).
     pub violation: T,
 }
 
@@ -138,12 +140,12 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Sample<T, NQ, N
 
 /// Times at which a simulation emits samples.
 #[derive(Clone, Copy, Debug)]
-enum Samples<'m, T> {
+enum SampleTimes<'m, T> {
     /// Samples at the end of every step.
     Steps,
     /// Samples at equal intervals of this length, s.
     Every(T),
-    /// Samples at these times, s.
+    /// Samples at listed times, s.
     At(&'m [T]),
 }
 
@@ -183,8 +185,8 @@ where
     start: State<T, NQ, NV>,
     overlaps: Overlaps,
     duration: Option<T>,
-    samples: Samples<'m, T>,
-    progress: Option<Progress<T, S::Memory<NV>, NQ, NV>>,
+    samples: SampleTimes<'m, T>,
+    progress: Option<RunProgress<T, S::Memory<NV>, NQ, NV>>,
     over: bool,
 }
 
@@ -246,17 +248,17 @@ where
         Self { duration: Some(duration), ..self.reset_simulation() }
     }
 
-    /// Samples every `interval` seconds; the `k`-th sample is exactly at start + k · interval. Fixed-step
-    /// methods divide the interval into equal steps, adaptive methods interpolate. By default, every step of
-    /// the integrator is a sample.
+    /// Selects samples every `interval` seconds; the `k`-th sample is exactly at start + k · interval.
+    /// Fixed-step methods divide the interval into equal steps, adaptive methods interpolate. By default,
+    /// every step of the integrator is a sample.
     pub fn sample_every(self, interval: T) -> Self {
-        Self { samples: Samples::Every(interval), ..self.reset_simulation() }
+        Self { samples: SampleTimes::Every(interval), ..self.reset_simulation() }
     }
 
-    /// Samples at these times of the run, s. The times must increase, and none may be before the start; the
-    /// initial state is a sample only if its time is listed. The run ends at the last time, or at the end of
-    /// the [`duration`](Self::duration), which is then a sample, too. Fixed-step methods end steps at these
-    /// times, adaptive methods interpolate.
+    /// Selects samples at these times of the run, s. The times must increase, and none may be before the
+    /// start; the initial state is a sample only if its time is listed. The run ends at the last time, or at
+    /// the end of the [`duration`](Self::duration), which is then a sample, too. Fixed-step methods end steps
+    /// at these times, adaptive methods interpolate.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -279,7 +281,7 @@ where
     /// # Ok::<(), Error>(())
     /// ```
     pub fn sample_at(self, times: &'m [T]) -> Self {
-        Self { samples: Samples::At(times), ..self.reset_simulation() }
+        Self { samples: SampleTimes::At(times), ..self.reset_simulation() }
     }
 
     /// Sets the inputs `u` of the mechanism to a function `|t, q, v|` that is continuous in time, and
@@ -317,7 +319,7 @@ where
 
     /// Ends the run when `function(t, q, v)` crosses zero in either direction; the last sample is at the
     /// crossing.
-    pub fn until<G>(self, function: G) -> Simulation<'m, M, T, I, S, With<E, T, G, Stop>, NQ, NV, NU>
+    pub fn until<G>(self, function: G) -> Simulation<'m, M, T, I, S, EventsWith<E, T, G, Stop>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
     {
@@ -330,7 +332,7 @@ where
         self,
         crossing: Crossing,
         function: G,
-    ) -> Simulation<'m, M, T, I, S, With<E, T, G, Stop>, NQ, NV, NU>
+    ) -> Simulation<'m, M, T, I, S, EventsWith<E, T, G, Stop>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
     {
@@ -348,7 +350,7 @@ where
         self,
         crossing: Crossing,
         function: G,
-    ) -> Simulation<'m, M, T, I, S, With<E, T, G, Report>, NQ, NV, NU>
+    ) -> Simulation<'m, M, T, I, S, EventsWith<E, T, G, Report>, NQ, NV, NU>
     where
         G: FnMut(T, &SVector<T, NQ>, &SVector<T, NV>) -> T,
     {
@@ -377,7 +379,7 @@ where
         self.with_event(Event::new(function, crossing, Impact(after)))
     }
 
-    /// Runs to the end and returns the last sample.
+    /// Runs the simulation to its end and returns the last sample.
     ///
     /// # Errors
     ///
@@ -388,7 +390,7 @@ where
         I: Inputs<T, NQ, NV, NU>,
         E: Events<T, NQ, NV>,
     {
-        if self.duration.is_none() && !E::STOPS && !matches!(self.samples, Samples::At(_)) {
+        if self.duration.is_none() && !E::STOPS && !matches!(self.samples, SampleTimes::At(_)) {
             return Err(Error::Endless);
         }
         let mut run = self.begin_run()?;
@@ -416,7 +418,7 @@ where
     fn with_event<G, A>(
         self,
         event: Event<T, G, A>,
-    ) -> Simulation<'m, M, T, I, S, With<E, T, G, A>, NQ, NV, NU> {
+    ) -> Simulation<'m, M, T, I, S, EventsWith<E, T, G, A>, NQ, NV, NU> {
         let Self { system, method, events, start, overlaps, duration, samples, .. } = self;
         let events = (events, event);
         Simulation { system, method, events, start, overlaps, duration, samples, progress: None, over: false }

@@ -4,20 +4,20 @@
 //! Column `i` of the matrix `G(q, u)` is the change of `Z(q) u` at constant `u` along the configurations that
 //! move with speed `i`.
 
-use crate::discrete::eliminated;
+use crate::discrete::eliminate_with_pivoting;
 use crate::private::{constant, epsilon};
 use crate::{Derivatives, Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
-type Square<T, const N: usize> = SMatrix<T, N, N>;
+type SquareMatrix<T, const N: usize> = SMatrix<T, N, N>;
 
 /// Maximum number of iterations for a displacement; each reduces the error by a factor of about the angle
 /// through which the axes of the speeds rotate.
 const MOST_ITERATIONS: usize = 50;
 
-/// Returns the displacement `ξ = s ξ̇(ξ, v)` after `s` seconds, given the speeds `v` at its end and the rate
-/// `ξ̇` of a displacement. Midpoints of the implicit midpoint rule have this form. The result is `s v` if the
-/// speeds are joint velocities.
+/// Returns the displacement `ξ = s ξ̇(ξ, v)` after `s` seconds, given the generalized speeds `v` at its end
+/// and the rate `ξ̇` of a displacement. Midpoints of the implicit midpoint rule have this form. The result is
+/// `s v` if the speeds are joint velocities.
 ///
 /// If the iteration does not converge, the last iterate is returned: integration methods check their own
 /// equations.
@@ -41,8 +41,9 @@ pub(crate) fn displacement_from_end_speeds<T: Real, const N: usize>(
     way
 }
 
-/// Returns the displacement [`displacement_from_end_speeds`] for the displacement rate of a mechanism.
-pub(crate) fn way_of<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+/// Returns the displacement of a mechanism after `s` seconds, given the velocity at its end (see
+/// [`displacement_from_end_speeds`]).
+pub(crate) fn displacement_of_mechanism<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<T, NQ>,
     v: &SVector<T, NV>,
@@ -61,7 +62,7 @@ where
 
 /// Returns the velocity of the midpoint of a displacement that takes `2 s` seconds, given the mean rate of
 /// the displacement.
-pub(crate) fn at_midpoint<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+pub(crate) fn midpoint_velocity<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<T, NQ>,
     mean: SVector<T, NV>,
@@ -76,7 +77,7 @@ where
     }
     // The rate of a displacement is linear in the velocity.
     let (.., by_v) = m.displacement_rate_derivatives(q, &(mean * s), &mean);
-    eliminated(by_v, mean)
+    eliminate_with_pivoting(by_v, mean)
 }
 
 /// Returns the derivatives of the configurations reached from `q` with the midpoint velocity `v` after `s`
@@ -87,35 +88,35 @@ pub(crate) fn reached_configurations<M, T, const NQ: usize, const NV: usize, con
     q: &SVector<T, NQ>,
     v: &SVector<T, NV>,
     s: T,
-) -> [(Square<T, NV>, Square<T, NV>); 2]
+) -> [(SquareMatrix<T, NV>, SquareMatrix<T, NV>); 2]
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     let two = constant::<T>(2.0);
-    let way = way_of(m, q, v, s);
+    let way = displacement_of_mechanism(m, q, v, s);
     if !m.features().speeds {
         return [m.integrate_derivatives(&way), m.integrate_derivatives(&(v * (s * two)))];
     }
     // δξ = s (∂ξ̇/∂q δq + ∂ξ̇/∂ξ δξ + ∂ξ̇/∂v δv)
     let (by_q, by_way, by_v) = m.displacement_rate_derivatives(q, &way, v);
-    let own = Square::<T, NV>::identity() - by_way * s;
-    let (by_q, by_v) = (eliminated(own, by_q * s), eliminated(own, by_v));
-    let derivatives_at = |times: T| {
+    let own = SquareMatrix::<T, NV>::identity() - by_way * s;
+    let (by_q, by_v) = (eliminate_with_pivoting(own, by_q * s), eliminate_with_pivoting(own, by_v));
+    let derivatives_after = |times: T| {
         let (turned, moves) = m.integrate_derivatives_at(q, &(way * times));
         (turned + moves * by_q * times, moves * by_v)
     };
-    [derivatives_at(T::one()), derivatives_at(two)]
+    [derivatives_after(T::one()), derivatives_after(two)]
 }
 
-/// Returns `(∂/∂q, ∂/∂dv)` of `q₁ = q ⊕ Z(q) dv`, from `Z(q)`, `Y(q₁)`, the derivatives for the joints'
-/// displacement, and `G(q, dv)`.
+/// Returns the derivatives `(∂/∂q, ∂/∂dv)` of the displaced configuration `q₁ = q ⊕ Z(q) dv` in generalized
+/// speeds, from `Z(q)`, `Y(q₁)`, the derivatives for the joints' displacement, and `G(q, dv)`.
 pub fn integrate_derivatives_in_speeds<T: Real, const N: usize>(
-    z: &Square<T, N>,
-    y: &Square<T, N>,
-    (by_q, by_dv): &(Square<T, N>, Square<T, N>),
-    changes: &Square<T, N>,
-) -> (Square<T, N>, Square<T, N>) {
+    z: &SquareMatrix<T, N>,
+    y: &SquareMatrix<T, N>,
+    (by_q, by_dv): &(SquareMatrix<T, N>, SquareMatrix<T, N>),
+    changes: &SquareMatrix<T, N>,
+) -> (SquareMatrix<T, N>, SquareMatrix<T, N>) {
     (y * (by_q * z + by_dv * changes), y * by_dv * z)
 }
 
@@ -123,11 +124,11 @@ pub fn integrate_derivatives_in_speeds<T: Real, const N: usize>(
 /// which `q₁ = q ⊕ dv` moves with the generalized speeds `v`. Arguments are `Y(q)`, `Z(q)` and `Z(q₁)`; the
 /// derivatives of `R` and of `q₁`; and `G(q, dv)`, `G(q, f)` and `G(q₁, v)`.
 pub fn displacement_rate_derivatives_in_speeds<T: Real, const N: usize>(
-    [y, z, z_there]: [&Square<T, N>; 3],
-    (by_way, by_rates): &(Square<T, N>, Square<T, N>),
-    (moved_by_q, moved_by_dv): &(Square<T, N>, Square<T, N>),
-    [changes, changes_of_rate, changes_there]: [&Square<T, N>; 3],
-) -> (Square<T, N>, Square<T, N>, Square<T, N>) {
+    [y, z, z_there]: [&SquareMatrix<T, N>; 3],
+    (by_way, by_rates): &(SquareMatrix<T, N>, SquareMatrix<T, N>),
+    (moved_by_q, moved_by_dv): &(SquareMatrix<T, N>, SquareMatrix<T, N>),
+    [changes, changes_of_rate, changes_there]: [&SquareMatrix<T, N>; 3],
+) -> (SquareMatrix<T, N>, SquareMatrix<T, N>, SquareMatrix<T, N>) {
     let turned = by_rates * changes_there;
     (
         y * (by_way * changes + turned * moved_by_q - changes_of_rate),

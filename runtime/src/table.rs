@@ -60,26 +60,26 @@ pub struct Table<const N: usize> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TableError {
-    /// An axis of the table has fewer than two grid points.
+    /// Error: an axis of the table has fewer than two grid points.
     TooFewPoints {
         /// Index of the invalid axis, counted from zero.
         axis: usize,
     },
-    /// A point of an axis is not greater than the point before it, or is infinite or NaN.
+    /// Error: a point of an axis is not greater than the point before it, or is infinite or NaN.
     NotIncreasing {
         /// Index of the invalid axis, counted from zero.
         axis: usize,
         /// Index of the grid point on the axis that does not increase or is not finite.
         place: usize,
     },
-    /// The number of values differs from the number of grid points.
+    /// Error: the number of values differs from the number of grid points.
     Size {
         /// Number of grid points, which is the expected number of values.
         expected: usize,
         /// Number of values that were provided.
         found: usize,
     },
-    /// A value of the table is infinite or NaN.
+    /// Error: a value of the table is infinite or NaN.
     NotFinite {
         /// Index of the value that is infinite or NaN.
         place: usize,
@@ -87,7 +87,7 @@ pub enum TableError {
 }
 
 impl TableError {
-    /// Returns a message without the indices, as a constant: constants cannot use formatting.
+    /// Returns the error message without the indices, as a constant, because constants cannot use formatting.
     #[must_use]
     pub const fn message(self) -> &'static str {
         match self {
@@ -174,7 +174,7 @@ impl<const N: usize> Table<N> {
         Table { smooth: true, ..self }
     }
 
-    /// Returns the table extrapolated linearly beyond its grid, with the slopes of the edge.
+    /// Returns the table with linear extrapolation beyond its grid, with the slopes at the edge.
     #[must_use]
     pub const fn extrapolated(self) -> Table<N> {
         Table { extrapolated: true, ..self }
@@ -186,14 +186,15 @@ impl<const N: usize> Table<N> {
         &self.axes
     }
 
-    /// Returns the value at `x`; NaN if an entry of `x` is NaN.
+    /// Returns the interpolated value of the table at `x`; NaN if an entry of `x` is NaN.
     #[must_use]
     pub fn value<T: Real>(&self, x: [T; N]) -> T {
         self.derivative(x, [0; N])
     }
 
-    /// Returns the slope with respect to variable `k` at `x`. The slope is zero where the table is constant
-    /// beyond its edge, and for `k ≥ N`. At a grid point of a linear table it is the slope to the right.
+    /// Returns the slope of the table with respect to variable `k` at `x`. The slope is zero where the table
+    /// is constant beyond its edge, and for `k ≥ N`. At a grid point of a linear table it is the slope to the
+    /// right.
     #[must_use]
     pub fn slope<T: Real>(&self, x: [T; N], k: usize) -> T {
         if k >= N {
@@ -207,13 +208,13 @@ impl<const N: usize> Table<N> {
     /// table; higher than third ones are zero for every table.
     #[must_use]
     pub fn derivative<T: Real>(&self, x: [T; N], orders: [u8; N]) -> T {
-        let mut all = [Weights::one(); 3];
+        let mut all = [AxisWeights::constant_weight(); 3];
         let mut cells = [[0, 1]; 3];
         let axes = self.axes.iter().zip(x).zip(orders);
         for (((points, x), order), (weights, range)) in axes.zip(all.iter_mut().zip(&mut cells)) {
             let place = AxisPosition::locate_on_axis(points, x);
             *range = place.possible_cells(points);
-            *weights = Weights { place: Some(place), order };
+            *weights = AxisWeights { place: Some(place), order };
         }
         let [first, second, third] = cells;
         let mut sum = T::zero();
@@ -237,15 +238,15 @@ impl<const N: usize> Table<N> {
         axis: usize,
         cell: usize,
         range: [usize; 2],
-        all: &[Weights<T>; 3],
+        all: &[AxisWeights<T>; 3],
     ) -> [T; 4] {
         let only = [T::zero(), T::one(), T::zero(), T::zero()];
-        let (Some(points), Some(Weights { place: Some(place), order })) =
+        let (Some(points), Some(AxisWeights { place: Some(place), order })) =
             (self.axes.get(axis), all.get(axis))
         else {
             return only;
         };
-        let shape = Shape { smooth: self.smooth, extrapolated: self.extrapolated };
+        let shape = TableShape { smooth: self.smooth, extrapolated: self.extrapolated };
         let weights = place.weights_of_points(points, cell, *order, shape);
         if range[1] - range[0] <= 1 {
             return weights;
@@ -254,7 +255,7 @@ impl<const N: usize> Table<N> {
         weights.map(|w| w * share)
     }
 
-    /// Returns the range of the four weights of an axis that can be nonzero.
+    /// Returns the range of indices, among the four interpolation weights of an axis, that can be nonzero.
     fn nonzero_weight_slots(&self, axis: usize) -> core::ops::Range<usize> {
         match (axis < N, self.smooth) {
             (false, _) => 1..2,
@@ -263,7 +264,7 @@ impl<const N: usize> Table<N> {
         }
     }
 
-    /// Returns the weighted sum of the values around a cell.
+    /// Returns the weighted sum of the grid values around a cell of the table.
     fn weighted_block_sum<T: Real>(&self, cells: [usize; 3], weights: [&[T; 4]; 3]) -> T {
         let axis_length = |axis: usize| self.axes.get(axis).map_or(1, |points| points.len());
         // Slot 0 of the weights is the point before the cell.
@@ -288,9 +289,9 @@ impl<const N: usize> Table<N> {
     }
 }
 
-/// Interpolation between, and extrapolation beyond, the points of a table.
+/// Kinds of interpolation between the points of a table, and of extrapolation beyond them.
 #[derive(Clone, Copy)]
-struct Shape {
+struct TableShape {
     smooth: bool,
     extrapolated: bool,
 }
@@ -298,14 +299,14 @@ struct Shape {
 /// Position on an axis and order of the derivative, from which the weights of the axis are computed; no
 /// position for an axis that the table does not have.
 #[derive(Clone, Copy)]
-struct Weights<T> {
+struct AxisWeights<T> {
     place: Option<AxisPosition<T>>,
     order: u8,
 }
 
-impl<T> Weights<T> {
-    fn one() -> Weights<T> {
-        Weights { place: None, order: 0 }
+impl<T> AxisWeights<T> {
+    fn constant_weight() -> AxisWeights<T> {
+        AxisWeights { place: None, order: 0 }
     }
 }
 
@@ -318,8 +319,8 @@ struct AxisPosition<T> {
     within: T,
 }
 
-/// Returns the unit step of each lane: one for a nonnegative number and zero for a negative one.
-fn step<T: Real>(x: T) -> T {
+/// Returns the unit step of `x` in each lane: one for a nonnegative number and zero for a negative one.
+fn unit_step<T: Real>(x: T) -> T {
     (T::one() + x.signum()) * constant(0.5)
 }
 
@@ -330,7 +331,11 @@ impl<T: Real> AxisPosition<T> {
         let inner = x.max(low).min(high);
         // `max` and `min` of NaN and a number are the number: adding `x · 0` restores the NaN.
         let nothing = x * T::zero();
-        AxisPosition { x: inner + nothing, beyond: x - inner, within: step(x - low) * step(high - x) }
+        AxisPosition {
+            x: inner + nothing,
+            beyond: x - inner,
+            within: unit_step(x - low) * unit_step(high - x),
+        }
     }
 
     /// Returns the half-open range of grid cells that can contain the argument: a single cell, or all cells
@@ -355,15 +360,16 @@ impl<T: Real> AxisPosition<T> {
 
     /// Returns one in each lane in which the grid cell contains the argument, and zero in others.
     fn share_of_cell(&self, points: &[f64], cell: usize) -> T {
-        let step_at_point = |k: usize| points.get(k).map_or(T::zero(), |p| step(self.x - constant(*p)));
+        let step_at_point = |k: usize| points.get(k).map_or(T::zero(), |p| unit_step(self.x - constant(*p)));
         let last = cell + 2 >= points.len();
         let low = if cell == 0 { T::one() } else { step_at_point(cell) };
         low - if last { T::zero() } else { step_at_point(cell + 1) }
     }
 
-    /// Returns the weights of the four points around a cell, for a derivative of the given order.
-    fn weights_of_points(&self, points: &[f64], cell: usize, order: u8, shape: Shape) -> [T; 4] {
-        let around = Around::new(points, cell, shape.smooth);
+    /// Returns the interpolation weights of the four grid points around a cell, for a derivative of the given
+    /// order.
+    fn weights_of_points(&self, points: &[f64], cell: usize, order: u8, shape: TableShape) -> [T; 4] {
+        let around = CellGeometry::new(points, cell, shape.smooth);
         let s = (self.x - constant(around.start)) / constant(around.width);
         let weights_of_order = |order| around.weights_at_fraction(s, order);
         match (order, shape.extrapolated) {
@@ -380,14 +386,14 @@ impl<T: Real> AxisPosition<T> {
 
 /// Cell of an axis: its start, its width and, for smooth tables, the weights of the four points around it
 /// that yield the slopes at both ends times the width.
-struct Around {
+struct CellGeometry {
     start: f64,
     width: f64,
     slopes: Option<[[f64; 4]; 2]>,
 }
 
-impl Around {
-    fn new(points: &[f64], cell: usize, smooth: bool) -> Around {
+impl CellGeometry {
+    fn new(points: &[f64], cell: usize, smooth: bool) -> CellGeometry {
         let coordinate_of_point = |k: usize| points.get(k).copied();
         let (start, end) =
             (coordinate_of_point(cell).unwrap_or(0.0), coordinate_of_point(cell + 1).unwrap_or(1.0));
@@ -411,10 +417,11 @@ impl Around {
             };
             [first, second]
         });
-        Around { start, width: h, slopes }
+        CellGeometry { start, width: h, slopes }
     }
 
-    /// Returns the weights at the fraction `s` of the width, for a derivative of the given order.
+    /// Returns the interpolation weights at the fraction `s` of the cell's width, for a derivative of the
+    /// given order.
     fn weights_at_fraction<T: Real>(&self, s: T, order: u8) -> [T; 4] {
         let c = constant::<T>;
         let zero = T::zero();

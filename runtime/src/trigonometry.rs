@@ -22,38 +22,39 @@ pub(crate) const LARGEST: f64 = 1e5;
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub fn sin_cos_all<A: Registers, T: Real, const N: usize>(x: [T; N]) -> ([T; N], [T; N]) {
     if let Some(x) = same_type_reference::<_, [f64; N]>(&x)
-        && let (s, c) = sines_of_doubles::<A, N>(x)
+        && let (s, c) = sin_cos_of_doubles::<A, N>(x)
         && let (Some(s), Some(c)) = (same_type_reference(&s), same_type_reference(&c))
     {
         return (*s, *c);
     }
     if let Some(x) = same_type_reference::<_, [f32; N]>(&x)
-        && let (s, c) = sines_of_doubles::<A, N>(&x.map(f64::from))
+        && let (s, c) = sin_cos_of_doubles::<A, N>(&x.map(f64::from))
         && let (Some(s), Some(c)) =
             (same_type_reference(&s.map(|s| s as f32)), same_type_reference(&c.map(|c| c as f32)))
     {
         return (*s, *c);
     }
     #[cfg(feature = "std")]
-    if let Some(done) = crate::lanes::angles::of_lanes::<A, T, N>(&x) {
+    if let Some(done) = crate::lanes::angles::sin_cos_of_lanes::<A, T, N>(&x) {
         return done;
     }
-    one_by_one(&x)
+    sin_cos_one_by_one(&x)
 }
 
 /// Value that is aligned to cache lines. A function with such a value on its stack aligns the whole stack
-/// frame, so that spilled registers never cross a cache line.
+/// frame, so that registers saved there never cross a cache line.
 #[repr(align(64))]
-pub(crate) struct Aligned<T>(pub(crate) T);
+pub(crate) struct CacheAligned<T>(pub(crate) T);
 
-/// Returns a reference as another type if both types are the same; decided at compile time.
+/// Returns a reference as another type if both types are the same, otherwise `None`. The decision is made at
+/// compile time.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn same_type_reference<A: 'static, B: 'static>(a: &A) -> Option<&B> {
     (a as &dyn Any).downcast_ref()
 }
 
-fn one_by_one<T: Real, const N: usize>(x: &[T; N]) -> ([T; N], [T; N]) {
+fn sin_cos_one_by_one<T: Real, const N: usize>(x: &[T; N]) -> ([T; N], [T; N]) {
     let (mut s, mut c) = ([T::zero(); N], [T::zero(); N]);
     for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
         (*s, *c) = x.sin_cos();
@@ -63,36 +64,37 @@ fn one_by_one<T: Real, const N: usize>(x: &[T; N]) -> ([T; N], [T; N]) {
 
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn sines_of_doubles<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
+fn sin_cos_of_doubles<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut s, mut c) = ([0.0; N], [0.0; N]);
     let mut large = false;
     for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
         large |= x.abs() > LARGEST;
-        (*s, *c) = small_angle::<A>(*x);
+        (*s, *c) = sin_cos_of_small_angle::<A>(*x);
     }
     if large {
         // A copy: passing the angles themselves would force them through memory even if none is large.
-        let copy = Aligned(*x);
+        let copy = CacheAligned(*x);
         (s, c) = A::sin_cos_of_large(&copy.0);
     }
     (s, c)
 }
 
-/// Returns sines and cosines with the library's values for large angles, so that each result depends on its
-/// own angle alone.
+/// Returns sines and cosines of angles, rad, with the library's values for large angles, so that each result
+/// depends on its own angle alone.
 #[inline(always)]
-pub(crate) fn with_large<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
+pub(crate) fn sin_cos_with_large_angles<A: Registers, const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut s, mut c) = ([0.0; N], [0.0; N]);
     for ((x, s), c) in x.iter().zip(&mut s).zip(&mut c) {
-        (*s, *c) = if x.abs() > LARGEST { ComplexField::sin_cos(*x) } else { small_angle::<A>(*x) };
+        (*s, *c) =
+            if x.abs() > LARGEST { ComplexField::sin_cos(*x) } else { sin_cos_of_small_angle::<A>(*x) };
     }
     (s, c)
 }
 
-/// Returns sine and cosine of an angle within the range of the reduction.
+/// Returns sine and cosine of an angle, rad, within the range of the fast argument reduction.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn small_angle<A: Registers>(x: f64) -> (f64, f64) {
+fn sin_cos_of_small_angle<A: Registers>(x: f64) -> (f64, f64) {
     let (s, c, shifted) = reduced_sine_and_cosine::<A, _>(x);
     rotate_quadrant(s, c, shifted)
 }
@@ -120,7 +122,8 @@ const COSINE: [f64; 6] = [
     -1.135_964_755_778_819_482_65e-11,
 ];
 
-/// Returns sine and cosine of the reduced angle, and the number whose last bits are the quadrant.
+/// Returns sine and cosine of the reduced angle, and the number whose last bits are the quadrant of the
+/// angle.
 ///
 /// Cody and Waite's reduction by multiples of π/2, with the rounding error of the reduced angle as a
 /// correction term; Taylor-like polynomials in double precision. With fused multiply-add, fewer operations
@@ -184,7 +187,7 @@ fn reduce_angle<A: Registers, X: Number<A>>(x: X, quarters: X) -> (X, X) {
 }
 
 /// Converts sine and cosine of the reduced angle to those of the angle by its quadrant. An odd quadrant
-/// exchanges them, and bits of the quadrant determine their signs.
+/// exchanges sine and cosine, and bits of the quadrant determine their signs.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn rotate_quadrant(s: f64, c: f64, shifted: f64) -> (f64, f64) {
@@ -204,7 +207,7 @@ fn linear_polynomial<A: Registers, X: Number<A>>(z: X, a: f64, b: f64) -> X {
     A::mul_add(X::constant(b), z, X::constant(a))
 }
 
-/// Returns `a + b z + c z² + d z³`.
+/// Returns the cubic polynomial `a + b z + c z² + d z³`; `square` is `z²`.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn cubic_polynomial<A: Registers, X: Number<A>>(z: X, square: X, [a, b, c, d]: [f64; 4]) -> X {

@@ -27,12 +27,13 @@ pub struct Cart {
     push: Force,
 }
 
-/// Position of the cart, m, angle of the lower pole and angle between both poles, rad; or their rates.
+/// Position of the cart, m, angle of the lower pole and angle between both poles, rad; or the rates of these
+/// three.
 pub type State = SVector<f64, { Cart::NV }>;
 /// Feedback policy from the state to the force on the cart.
 pub type Regulator = Policy<f64, { Cart::NV }, { Cart::NU }>;
 
-/// Returns the weights of one period: displacement, angles, rates and force.
+/// Returns the costs of one control period, with weights of displacement, angles, rates and force.
 pub fn quadratic_costs() -> Quadratic<f64, { Cart::NV }, { Cart::NU }> {
     Quadratic {
         qq: SMatrix::from_diagonal(&[10.0, 100.0, 100.0].into()),

@@ -15,11 +15,11 @@ use linkwork::optimal::Value;
 use linkwork::prelude::*;
 use regulator::linear_quadratic_regulator;
 
-/// Period of the controller, s.
+/// Period of the cart's controller, s.
 const PERIOD: f64 = 0.005;
 
-/// End of a run that starts with inclined poles.
-struct Run {
+/// Final state of a run that starts with inclined poles, and its costs.
+struct BalancingRun {
     q: State,
     v: State,
     strongest: f64,
@@ -27,7 +27,12 @@ struct Run {
 }
 
 /// Simulates the controlled cart for some seconds from rest, with the poles at these angles.
-fn simulate_from_angles(regulator: &Regulator, lower: f64, upper: f64, seconds: f64) -> Result<Run, Error> {
+fn simulate_from_angles(
+    regulator: &Regulator,
+    lower: f64,
+    upper: f64,
+    seconds: f64,
+) -> Result<BalancingRun, Error> {
     let (cart, method, rate) = (Cart {}, Rk4::step(PERIOD), quadratic_costs());
     // The angle of the upper hinge is relative to the lower pole.
     let (mut q, mut v) = (State::from([0.0, lower, upper - lower]), State::zeros());
@@ -41,14 +46,14 @@ fn simulate_from_angles(regulator: &Regulator, lower: f64, upper: f64, seconds: 
             break; // The poles lie on the rail.
         }
     }
-    Ok(Run { q, v, strongest, costs })
+    Ok(BalancingRun { q, v, strongest, costs })
 }
 
 /// Prints the runs from three initial states, and compares their costs with the predicted ones.
-fn three_starts(regulator: &Regulator, to_go: &Value<f64, { Cart::NV }>) -> Result<(), Error> {
+fn print_three_runs(regulator: &Regulator, to_go: &Value<f64, { Cart::NV }>) -> Result<(), Error> {
     println!("lower, rad   upper, rad   strongest push, N   costs   promised   left after 6 s");
     for (lower, upper) in [(0.01, 0.0), (0.1, 0.1), (0.2, -0.05)] {
-        let Run { q, v, strongest, costs } = simulate_from_angles(regulator, lower, upper, 6.0)?;
+        let BalancingRun { q, v, strongest, costs } = simulate_from_angles(regulator, lower, upper, 6.0)?;
         let promised = to_go.at(&[0.0, lower, upper - lower].into(), &State::zeros());
         let left = q.amax().max(v.amax());
         println!("{lower:10.2} {upper:12.2} {strongest:19.2} {costs:7.3} {promised:10.3} {left:16.1e}");
@@ -87,7 +92,7 @@ fn main() -> Result<(), Error> {
         linear_quadratic_regulator(&Cart {}, &Rk4::step(PERIOD), &upright, &still, &quadratic_costs());
     let (regulator, to_go) = found.expect("a push on the cart can keep both poles upright");
     println!("push = {:.2?} · q + {:.2?} · v\n", regulator.by_q.as_slice(), regulator.by_v.as_slice());
-    three_starts(&regulator, &to_go)?;
+    print_three_runs(&regulator, &to_go)?;
 
     let caught = print_basin_of_attraction(&regulator)?;
     // The table is symmetric; small angles return, large ones do not.
@@ -102,6 +107,6 @@ fn main() -> Result<(), Error> {
 }
 
 #[test]
-fn it_holds() -> Result<(), Error> {
+fn regulator_balances_both_poles() -> Result<(), Error> {
     main()
 }

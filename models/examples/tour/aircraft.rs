@@ -9,12 +9,12 @@ use linkwork_design::{Mode, StateSpace, picture};
 use linkwork_models::CruisingAircraft;
 
 const TRANSPORT: CruisingAircraft = CruisingAircraft::BOEING_747;
-/// Head-on gust, m/s.
+/// Speed of the head-on gust, m/s.
 const GUST: f64 = 5.0;
-/// Duration of more than two phugoid periods, s.
+/// Duration of the simulated flight, more than two phugoid periods, s.
 const DURATION: f64 = 240.0;
 
-/// Published eigenvalues (Etkin and Reid, *Dynamics of Flight*, 1996, ch. 6), 1/s.
+/// Published eigenvalues of the aircraft's modes (Etkin and Reid, *Dynamics of Flight*, 1996, ch. 6), 1/s.
 const PUBLISHED: [(&str, f64, f64); 5] = [
     ("short period", -0.3719, 0.8875),
     ("phugoid", -0.003289, 0.06723),
@@ -49,7 +49,7 @@ pub fn run_aircraft_tour() -> Result<Section, Box<dyn std::error::Error>> {
     let off = off.fold(0.0, |most: f64, x| if x.is_nan() { x } else { most.max(x) });
 
     let along = system.of_states(&LONGITUDINAL)?;
-    let (speed, linear, apart) = after_a_gust(&trim, &along)?;
+    let (speed, linear, apart) = simulate_gust_response(&trim, &along)?;
     let checks = vec![
         Check::new("eigenvalues against those of Etkin and Reid, relative", off, 4e-3),
         Check::new("trim: elevator, rad", trim.u[0].abs(), 1e-9),
@@ -90,7 +90,7 @@ pub fn run_aircraft_tour() -> Result<Section, Box<dyn std::error::Error>> {
     })
 }
 
-/// Returns a declaration without its many parameters.
+/// Returns the text of a mechanism's declaration without its parameters.
 fn elements_of_declaration(declaration: &str) -> String {
     let is_parameter = |line: &&str| line.starts_with("    pub ") || line.starts_with("    #[unit");
     declaration.lines().filter(|line| !is_parameter(line)).collect::<Vec<_>>().join("\n")
@@ -113,25 +113,25 @@ fn mode_table_row(name: &str, mode: &Mode) -> Vec<String> {
     ]
 }
 
-type Points = Vec<(f64, f64)>;
+type CurvePoints = Vec<(f64, f64)>;
 
-/// Returns the change of speed after a gust by the nonlinear and by the linear equations, and the largest
-/// difference relative to the gust.
-fn after_a_gust(
+/// Returns the change of airspeed after a gust by the nonlinear and by the linear equations, and their
+/// largest difference relative to the gust.
+fn simulate_gust_response(
     trim: &SteadyState<7, 6, 4>,
     along: &StateSpace,
-) -> Result<(Points, Points, f64), Box<dyn std::error::Error>> {
+) -> Result<(CurvePoints, CurvePoints, f64), Box<dyn std::error::Error>> {
     let (u, mut v) = (trim.u, trim.v);
     v[0] += GUST;
     let run = simulate(&TRANSPORT).from(trim.q, v).inputs(|_, _, _| u).duration(DURATION).sample_every(0.5);
     let samples: Vec<_> = run.collect::<Result<_, _>>()?;
-    let speed: Points =
+    let speed: CurvePoints =
         samples.iter().map(|s| (s.t, s.v.fixed_rows::<3>(0).norm() - TRANSPORT.cruise)).collect();
     let start =
         DVector::from_fn(along.order(), |k, _| if along.states()[k].name == "u" { GUST } else { 0.0 });
     let times: Vec<f64> = samples.iter().map(|s| s.t).collect();
     let motion = along.initial_response(start.as_slice(), &times)?;
-    let linear: Points = times.into_iter().zip(motion.output("u")?).collect();
+    let linear: CurvePoints = times.into_iter().zip(motion.output("u")?).collect();
     let apart = speed.iter().zip(&linear).map(|(a, b)| (a.1 - b.1).abs()).fold(0.0, f64::max) / GUST;
     Ok((speed, linear, apart))
 }

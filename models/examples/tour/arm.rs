@@ -10,20 +10,20 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 use std::hint::black_box;
 use std::time::Instant;
 
-type Seven = SVector<f64, 7>;
+type JointVector = SVector<f64, 7>;
 
 /// Initial joint angles: elbow up, hand vertically down.
 const HOME: [f64; 7] = [0.0, -0.3, 0.0, -2.2, 0.0, 1.9, FRAC_PI_4];
-/// Mass of the load, kg.
+/// Mass of the load in the hand, kg.
 const LOAD: f64 = 1.5;
 /// Period of the control loop, s.
 const PERIOD: f64 = 1e-3;
 const DURATION: f64 = 10.0;
-/// Duration of drawing the eight twice, s; the arm rests afterwards.
+/// Time in which the arm draws the eight twice, s; the arm rests afterwards.
 const DRAWING: f64 = 8.5;
 /// Half width and half height of the eight, m.
 const EIGHT: [f64; 2] = [0.28, 0.14];
-/// Stiffness and damping of the error, 1/s² and 1/s: critically damped at 20 rad/s.
+/// Gains of the position error and of the velocity error, 1/s² and 1/s: critically damped at 20 rad/s.
 const STIFFNESS: f64 = 400.0;
 const DAMPING: f64 = 40.0;
 /// Bandwidth of the disturbance observer, 1/s.
@@ -32,26 +32,26 @@ const BANDWIDTH: f64 = 60.0;
 const RATE: f64 = 50.0;
 
 /// Results of one run of the arm.
-struct Run {
+struct ArmRun {
     samples: Vec<Sample<f64, 7, 7, 7>>,
     /// Distance of the fingertips from their desired position, m.
     error: Vec<f64>,
     /// Final torques of the disturbance observer, N·m.
-    felt: Seven,
-    /// Nanoseconds of each control step.
+    felt: JointVector,
+    /// Computing time of each control step, ns.
     cost: Vec<f64>,
 }
 
 /// Computed-torque control in the task space of the hand, with the model without a load.
-struct Controller {
-    /// Whether the disturbance observer is used.
+struct ArmController {
+    /// Whether the controller uses the disturbance observer.
     observing: bool,
     /// Desired orientation of the hand.
     home: IsometryMatrix3<f64>,
     /// External torques, as estimated by the observer.
-    felt: Seven,
-    /// Momentum that the observer's model predicts.
-    momentum: Seven,
+    felt: JointVector,
+    /// Generalized momentum that the observer's model predicts.
+    momentum: JointVector,
 }
 
 pub fn run_arm_tour() -> Result<Section, Box<dyn std::error::Error>> {
@@ -60,7 +60,7 @@ pub fn run_arm_tour() -> Result<Section, Box<dyn std::error::Error>> {
         ("unknown load", simulate_drawing(LOAD, false)?),
         ("unknown load, observed", simulate_drawing(LOAD, true)?),
     ];
-    let table_row_of_run = |(name, run): &(&str, Run)| {
+    let table_row_of_run = |(name, run): &(&str, ArmRun)| {
         let weighed = estimate_load_mass(run);
         let last = run.error.last().copied().unwrap_or(f64::NAN);
         vec![
@@ -69,7 +69,7 @@ pub fn run_arm_tour() -> Result<Section, Box<dyn std::error::Error>> {
             format_number(1e3 * run.largest_error()),
             format_number(1e3 * last),
             if run.felt.amax() > 0.0 { format!("{weighed:.3} kg") } else { "–".into() },
-            format!("{:.1} µs", 1e-3 * median(&run.cost)),
+            format!("{:.1} µs", 1e-3 * median_time(&run.cost)),
         ]
     };
     let table = Table {
@@ -87,7 +87,7 @@ pub fn run_arm_tour() -> Result<Section, Box<dyn std::error::Error>> {
             0.01,
         ),
         Check::new("largest torque / limit of the joint", observed.largest_relative_torque(), 1.0),
-        Check::new("median time of a control step, µs", 1e-3 * median(&observed.cost), 1e6 * PERIOD),
+        Check::new("median time of a control step, µs", 1e-3 * median_time(&observed.cost), 1e6 * PERIOD),
     ];
     let table_row_of_timing = |(name, times): (&str, [f64; 2])| {
         [vec![name.to_string()], times.map(|ns| format!("{ns:.0} ns")).to_vec()].concat()
@@ -97,7 +97,7 @@ pub fn run_arm_tour() -> Result<Section, Box<dyn std::error::Error>> {
         rows: function_timings(&observed.samples).map(table_row_of_timing).into(),
     };
     let scene = scene_of_run(observed);
-    let add_error_curve = |chart: Chart, (name, run): &(&str, Run)| {
+    let add_error_curve = |chart: Chart, (name, run): &(&str, ArmRun)| {
         chart.curve(*name, run.samples.iter().zip(&run.error).skip(1).map(|(s, e)| (s.t, 1e3 * e)))
     };
     let add_torque_curve = |chart: Chart, k: usize| {
@@ -148,7 +148,7 @@ fn desired_figure_eight(t: f64) -> [Vector3<f64>; 3] {
     [at, along * rate, along * growth + curved * rate * rate]
 }
 
-fn pose_of_hand(q: &Seven) -> IsometryMatrix3<f64> {
+fn pose_of_hand(q: &JointVector) -> IsometryMatrix3<f64> {
     PandaArm.frame_placement(frame!(PandaArm, "panda_hand_tcp"), q)
 }
 
@@ -159,13 +159,18 @@ fn small_rotation_between(from: &IsometryMatrix3<f64>, to: &IsometryMatrix3<f64>
     (0..3).map(|k| axis_of_frame(from, k).cross(&axis_of_frame(to, k))).sum::<Vector3<f64>>() / 2.0
 }
 
-impl Controller {
+impl ArmController {
     fn new(observing: bool) -> Self {
-        Self { observing, home: pose_of_hand(&HOME.into()), felt: Seven::zeros(), momentum: Seven::zeros() }
+        Self {
+            observing,
+            home: pose_of_hand(&HOME.into()),
+            felt: JointVector::zeros(),
+            momentum: JointVector::zeros(),
+        }
     }
 
-    /// Returns the torques for one period of the control loop.
-    fn control_torques(&mut self, t: f64, q: &Seven, v: &Seven) -> Seven {
+    /// Returns the joint torques for one period of the control loop.
+    fn control_torques(&mut self, t: f64, q: &JointVector, v: &JointVector) -> JointVector {
         let arm = PandaArm;
         let tip = frame!(PandaArm, "panda_hand_tcp");
         let [at, velocity, acceleration] = desired_figure_eight(t);
@@ -180,13 +185,13 @@ impl Controller {
         let wanted = stack_vectors(acceleration, Vector3::zeros())
             + DAMPING * (stack_vectors(velocity, Vector3::zeros()) - twist)
             + STIFFNESS * stack_vectors(offset, turn);
-        let drift = arm.frame_acceleration(tip, q, v, &Seven::zeros());
+        let drift = arm.frame_acceleration(tip, q, v, &JointVector::zeros());
 
         // Joint accelerations with this hand acceleration; the redundant degree of freedom keeps the elbow
         // near its initial posture.
         let square = jacobian * jacobian.transpose() + SMatrix::<f64, 6, 6>::identity() * 1e-6;
         let inverse = square.try_inverse().unwrap_or_default();
-        let posture = -20.0 * (q - Seven::from(HOME)) - 9.0 * v;
+        let posture = -20.0 * (q - JointVector::from(HOME)) - 9.0 * v;
         let a = posture + jacobian.transpose() * (inverse * (wanted - drift - jacobian * posture));
         let tau = arm.inverse_dynamics(q, v, &a) - self.felt;
 
@@ -202,12 +207,12 @@ impl Controller {
     }
 }
 
-fn simulate_drawing(load: f64, observing: bool) -> Result<Run, Error> {
+fn simulate_drawing(load: f64, observing: bool) -> Result<ArmRun, Error> {
     let arm = LoadedPanda { load };
-    let mut controller = Controller::new(observing);
+    let mut controller = ArmController::new(observing);
     let mut cost = Vec::new();
     let run = simulate(&arm)
-        .from(HOME, Seven::zeros())
+        .from(HOME, JointVector::zeros())
         .control_every(PERIOD, |t, q, v| {
             let start = Instant::now();
             let tau = controller.control_torques(t, q, v);
@@ -222,10 +227,10 @@ fn simulate_drawing(load: f64, observing: bool) -> Result<Run, Error> {
     let tracking_error = |s: &Sample<f64, 7, 7, 7>| {
         (pose_of_hand(&s.q).translation.vector - home - desired_figure_eight(s.t)[0]).norm()
     };
-    Ok(Run { error: samples.iter().map(tracking_error).collect(), felt: controller.felt, samples, cost })
+    Ok(ArmRun { error: samples.iter().map(tracking_error).collect(), felt: controller.felt, samples, cost })
 }
 
-impl Run {
+impl ArmRun {
     fn rms_error(&self) -> f64 {
         (self.error.iter().map(|e| e * e).sum::<f64>() / self.error.len() as f64).sqrt()
     }
@@ -245,26 +250,26 @@ impl Run {
 }
 
 /// Returns the mass whose weight at the fingertips fits the estimated torques best.
-fn estimate_load_mass(run: &Run) -> f64 {
+fn estimate_load_mass(run: &ArmRun) -> f64 {
     let Some(last) = run.samples.last() else { return f64::NAN };
     let jacobian = PandaArm.frame_jacobian(frame!(PandaArm, "panda_hand_tcp"), &last.q);
     let lift = jacobian.row(2).transpose();
     -run.felt.dot(&lift) / (9.81 * lift.norm_squared())
 }
 
-fn median(times: &[f64]) -> f64 {
+fn median_time(times: &[f64]) -> f64 {
     let mut sorted = times.to_vec();
     sorted.sort_by(f64::total_cmp);
     sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// Returns the time per call of some generated functions, ns: median and minimum over batches, each over the
-/// states of the motion.
+/// Returns the time per call of some generated functions, ns: median and minimum over batches of calls with
+/// all states of the motion.
 fn function_timings(samples: &[Sample<f64, 7, 7, 7>]) -> [(&'static str, [f64; 2]); 4] {
     let arm = PandaArm;
-    let states: Vec<(Seven, Seven, Seven)> =
+    let states: Vec<(JointVector, JointVector, JointVector)> =
         samples.iter().step_by(100).map(|s| (s.q, s.v, s.u * 0.1)).collect();
-    let time_per_call = |f: &dyn Fn(&Seven, &Seven, &Seven) -> f64| {
+    let time_per_call = |f: &dyn Fn(&JointVector, &JointVector, &JointVector) -> f64| {
         let time_batch = || {
             let start = Instant::now();
             for (q, v, a) in &states {
@@ -273,7 +278,7 @@ fn function_timings(samples: &[Sample<f64, 7, 7, 7>]) -> [(&'static str, [f64; 2
             start.elapsed().as_nanos() as f64 / states.len() as f64
         };
         let times: Vec<f64> = (0..400).map(|_| time_batch()).collect();
-        [median(&times), times.iter().copied().fold(f64::INFINITY, f64::min)]
+        [median_time(&times), times.iter().copied().fold(f64::INFINITY, f64::min)]
     };
     let tip = frame!(PandaArm, "panda_hand_tcp");
     [
@@ -284,7 +289,7 @@ fn function_timings(samples: &[Sample<f64, 7, 7, 7>]) -> [(&'static str, [f64; 2
     ]
 }
 
-fn scene_of_run(run: &Run) -> Scene {
+fn scene_of_run(run: &ArmRun) -> Scene {
     let frame_index_of_name = |name: &str| PandaArm::frame_index(name).unwrap_or(0);
     let joints: [usize; 7] = std::array::from_fn(|k| frame_index_of_name(&format!("panda_link{}", k + 1)));
     let (flange, palm) = (frame_index_of_name("panda_link8"), frame_index_of_name("panda_hand"));

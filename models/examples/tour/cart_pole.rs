@@ -16,7 +16,7 @@ const CART_POLE: CartPole = CartPole { cart_mass: 1.0, pole_mass: 0.3, pole_leng
 const STRENGTH: f64 = 15.0;
 /// Period of the digital controller, s.
 const PERIOD: f64 = 0.005;
-/// Time of a disturbance on the cart, s, and its force, N.
+/// Time interval of a disturbance on the cart, s. The constant below is its force, N.
 const SHOVE: std::ops::Range<f64> = 8.0..8.1;
 const SHOVING: f64 = 18.0;
 const DURATION: f64 = 12.0;
@@ -25,8 +25,8 @@ const RATE: f64 = 50.0;
 
 type State = SVector<f64, 2>;
 
-/// Swings the pole up, and switches to the regulator near the upright position.
-struct Controller {
+/// Controller that swings the pole up, and switches to the regulator near the upright position.
+struct SwingUpController {
     gains: SMatrix<f64, 1, 4>,
     /// Time of the last switch to the regulator, s.
     caught: Option<f64>,
@@ -37,7 +37,7 @@ pub fn run_cart_pole_tour() -> Result<Section, Box<dyn std::error::Error>> {
     // Riccati's equation for inputs that are constant over a period.
     let best = upright_system.lqr_held(&Cost::diagonal(&[20.0, 10.0, 1.0, 1.0], &[0.05]), PERIOD)?;
     let gains = SMatrix::<f64, 1, 4>::from_iterator(best.gain.iter().copied());
-    let mut controller = Controller { gains, caught: None };
+    let mut controller = SwingUpController { gains, caught: None };
     let mut forces = Vec::new();
     let run = simulate(&CART_POLE)
         .from([0.0, PI - 0.05], [0.0, 0.0])
@@ -115,7 +115,7 @@ pub fn run_cart_pole_tour() -> Result<Section, Box<dyn std::error::Error>> {
     })
 }
 
-impl Controller {
+impl SwingUpController {
     fn force_on_cart(&mut self, t: f64, q: &State, v: &State) -> f64 {
         let x = SVector::from([q[0], angle_from_upright(q[1]), v[0], v[1]]);
         let hold = -(self.gains * x)[0];
@@ -145,7 +145,7 @@ impl Controller {
     }
 }
 
-/// Returns the angle from the upright position, between −π and π.
+/// Returns the angle of the pole from the upright position, between −π and π.
 fn angle_from_upright(angle: f64) -> f64 {
     (angle + PI).rem_euclid(TAU) - PI
 }

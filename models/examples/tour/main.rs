@@ -26,11 +26,11 @@ use std::time::Instant;
 use std::{env, fs};
 
 /// Function that runs one section of the tour.
-type Stop = fn() -> Result<Section, Box<dyn Error>>;
+type SectionFunction = fn() -> Result<Section, Box<dyn Error>>;
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
     let start = Instant::now();
-    let stops: [Stop; 6] = [
+    let stops: [SectionFunction; 6] = [
         pendulum::run_pendulum_tour,
         cart_pole::run_cart_pole_tour,
         arm::run_arm_tour,

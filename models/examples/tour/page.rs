@@ -1,9 +1,9 @@
-//! Report as one self-contained web page: text, tables, SVG plots and animated scenes.
+//! Report of the tour as one self-contained web page: text, tables, SVG plots and animated scenes.
 
 use crate::report::{Section, Table, format_number};
 use std::fmt::Write;
 
-/// Returns the complete page.
+/// Returns the complete report as an HTML page.
 pub fn page_html(sections: &[Section]) -> String {
     let all_checks = || sections.iter().flat_map(|s| &s.checks);
     let (held, total) = (all_checks().filter(|check| check.is_below_bound()).count(), all_checks().count());

@@ -17,13 +17,14 @@ const DURATION: f64 = 1000.0;
 const INTERVAL: f64 = 0.05;
 const WINDOW: f64 = 5.0;
 
-/// Errors and cost of one integrator.
-struct Run {
-    /// Largest error of the energy in each window, relative to m g l.
+/// Errors and computing time of one integrator.
+struct PendulumRun {
+    /// End time, s, of each time window, and the largest error of the energy in the window, relative to m g
+    /// l.
     energy: Vec<[f64; 2]>,
     /// End time, s, of each time window, and the largest error of the angle in the window, rad.
     angle: Vec<[f64; 2]>,
-    /// Computing time, ms.
+    /// Computing time of the run, ms.
     cost: f64,
 }
 
@@ -33,7 +34,7 @@ pub fn run_pendulum_tour() -> Result<Section, Box<dyn std::error::Error>> {
         ("implicit midpoint", "10 ms", simulate_swing(ImplicitMidpoint::step(0.01))?),
         ("Dormand–Prince", "adaptive", simulate_swing(DormandPrince::new())?),
     ];
-    let table_row_of_method = |(name, step, run): &(&str, &str, Run)| {
+    let table_row_of_method = |(name, step, run): &(&str, &str, PendulumRun)| {
         vec![
             name.to_string(),
             step.to_string(),
@@ -62,14 +63,15 @@ pub fn run_pendulum_tour() -> Result<Section, Box<dyn std::error::Error>> {
         ),
     ];
     let energy = Picture::over_time("Energy error of the pendulum", "|E − E₀| / mgl", |chart| {
-        let add_energy_curve = |chart: Chart, (name, _, run): &(&str, &str, Run)| {
+        let add_energy_curve = |chart: Chart, (name, _, run): &(&str, &str, PendulumRun)| {
             chart.curve(*name, pairs_of_curve(&run.energy))
         };
         methods.iter().fold(chart.logarithmic(), add_energy_curve)
     })?;
     let phase = Picture::over_time("Angle against the exact solution", "|θ − θ exact|, rad", |chart| {
-        let add_angle_curve =
-            |chart: Chart, (name, _, run): &(&str, &str, Run)| chart.curve(*name, pairs_of_curve(&run.angle));
+        let add_angle_curve = |chart: Chart, (name, _, run): &(&str, &str, PendulumRun)| {
+            chart.curve(*name, pairs_of_curve(&run.angle))
+        };
         methods.iter().fold(chart.logarithmic(), add_angle_curve)
     })?;
     Ok(Section {
@@ -89,7 +91,7 @@ pub fn run_pendulum_tour() -> Result<Section, Box<dyn std::error::Error>> {
     })
 }
 
-fn simulate_swing(method: impl Method<f64>) -> Result<Run, Error> {
+fn simulate_swing(method: impl Method<f64>) -> Result<PendulumRun, Error> {
     let total_energy = |q: &SVector<f64, 1>, v: &SVector<f64, 1>| {
         PENDULUM.kinetic_energy(q, v) + PENDULUM.potential_energy(q)
     };
@@ -114,7 +116,7 @@ fn simulate_swing(method: impl Method<f64>) -> Result<Run, Error> {
             .map(worst_error_in_window)
             .collect::<Vec<_>>()
     };
-    Ok(Run {
+    Ok(PendulumRun {
         energy: worst_errors_in_windows(&|s| (total_energy(&s.q, &s.v) - e0).abs() / scale),
         angle: worst_errors_in_windows(&|s| (s.q[0] - exact_angle(s.t)).abs()),
         cost,
@@ -125,8 +127,8 @@ fn worst_error(errors: &[[f64; 2]]) -> f64 {
     errors.iter().map(|e| e[1]).fold(0.0, f64::max)
 }
 
-/// Returns the exact angle: `sin ½θ = k cd(ω t)` with `k = sin ½θ₀` and `ω² = g/l`. Jacobi's functions follow
-/// by the descending Landen transformation (Abramowitz and Stegun, 16.4).
+/// Returns the exact angle of the pendulum: `sin ½θ = k cd(ω t)` with `k = sin ½θ₀` and `ω² = g/l`. Jacobi's
+/// functions follow by the descending Landen transformation (Abramowitz and Stegun, 16.4).
 fn exact_angle(t: f64) -> f64 {
     let k = (START / 2.0).sin();
     let (mut a, mut b) = (1.0, (START / 2.0).cos());

@@ -11,7 +11,7 @@ use linkwork::prelude::*;
 use linkwork_design::picture::Chart;
 use linkwork_models::Solo12;
 
-type Sample12 = Sample<f64, 19, 18, 12>;
+type QuadrupedSample = Sample<f64, 19, 18, 12>;
 
 const G: f64 = 9.81;
 /// Velocity of the centre of mass at take-off, m/s, and the time until it returns to the same height, s.
@@ -39,7 +39,7 @@ pub fn run_quadruped_tour() -> Result<Section, Box<dyn std::error::Error>> {
         ),
     ];
     let worst_error = |errors: &[[f64; 2]]| errors.iter().map(|e| e[1]).fold(0.0, f64::max);
-    let table_row_of_method = |(name, step, samples): &(&str, &str, Vec<Sample12>)| {
+    let table_row_of_method = |(name, step, samples): &(&str, &str, Vec<QuadrupedSample>)| {
         let errors = [distance_from_parabola(samples), angular_momentum_drift(samples)]
             .map(|e| format_number(worst_error(&e)));
         [vec![name.to_string(), step.to_string()], errors.to_vec()].concat()
@@ -104,7 +104,7 @@ pub fn run_quadruped_tour() -> Result<Section, Box<dyn std::error::Error>> {
     })
 }
 
-/// Returns the desired joint angles at a time.
+/// Returns the desired joint angles of the legs at a time.
 fn desired_posture(t: f64) -> SVector<f64, 12> {
     let part = t / FLIGHT;
     let smooth_step_between = |[from, to]: [f64; 2], part: f64| {
@@ -124,8 +124,8 @@ fn desired_posture(t: f64) -> SVector<f64, 12> {
     })
 }
 
-/// Returns the state at take-off, with the feet on the floor and the desired velocities of centre of mass and
-/// trunk.
+/// Returns the state of the quadruped at take-off, with the feet on the floor and the desired velocities of
+/// centre of mass and trunk.
 fn take_off(spin: Vector3<f64>) -> (SVector<f64, 19>, SVector<f64, 18>) {
     let robot = Solo12;
     let mut q = robot.neutral();
@@ -141,7 +141,7 @@ fn take_off(spin: Vector3<f64>) -> (SVector<f64, 19>, SVector<f64, 18>) {
 /// Radius of a foot, m.
 const FOOT: f64 = 0.018;
 
-fn simulate_flight(spin: Vector3<f64>, method: impl Method<f64>) -> Result<Vec<Sample12>, Error> {
+fn simulate_flight(spin: Vector3<f64>, method: impl Method<f64>) -> Result<Vec<QuadrupedSample>, Error> {
     let (q, v) = take_off(spin);
     simulate(&Solo12)
         .from(q, v)
@@ -182,7 +182,7 @@ fn find_takeoff_spin() -> Result<(Vector3<f64>, f64), Box<dyn std::error::Error>
 }
 
 /// Returns the distance of the centre of mass from its free-fall parabola over time, m.
-fn distance_from_parabola(samples: &[Sample12]) -> Vec<[f64; 2]> {
+fn distance_from_parabola(samples: &[QuadrupedSample]) -> Vec<[f64; 2]> {
     let start = Solo12.center_of_mass(&samples[0].q);
     let free_fall_position = |t: f64| start + Vector3::from(TAKE_OFF) * t - Vector3::z() * (G * t * t / 2.0);
     samples
@@ -193,17 +193,17 @@ fn distance_from_parabola(samples: &[Sample12]) -> Vec<[f64; 2]> {
 }
 
 /// Returns the relative change of the angular momentum about the centre of mass over time.
-fn angular_momentum_drift(samples: &[Sample12]) -> Vec<[f64; 2]> {
-    let angular_momentum = |s: &Sample12| Solo12.momentum(&s.q, &s.v).fixed_rows::<3>(3).into_owned();
+fn angular_momentum_drift(samples: &[QuadrupedSample]) -> Vec<[f64; 2]> {
+    let angular_momentum = |s: &QuadrupedSample| Solo12.momentum(&s.q, &s.v).fixed_rows::<3>(3).into_owned();
     let start = angular_momentum(&samples[0]);
     samples.iter().skip(1).map(|s| [s.t, (angular_momentum(s) - start).norm() / start.norm()]).collect()
 }
 
-fn scene_of_samples(samples: &[Sample12]) -> Scene {
+fn scene_of_samples(samples: &[QuadrupedSample]) -> Scene {
     let frame_index_of_link =
         |leg: &str, link: &str| Solo12::frame_index(&format!("{leg}_{link}")).unwrap_or(0);
     let legs = ["FL", "FR", "HL", "HR"];
-    let points_of_frame = |s: &Sample12| {
+    let points_of_frame = |s: &QuadrupedSample| {
         let at = Solo12.frame_placements(&s.q);
         let trunk = Solo12.frame_placement(frame!(Solo12, "base_link"), &s.q);
         let mut points: Vec<Point> = corners_of_box(&trunk, [0.0; 3], [0.2, 0.055, 0.028]).to_vec();

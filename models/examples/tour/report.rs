@@ -4,21 +4,21 @@ use crate::scene::Scene;
 use linkwork_design::picture::Chart;
 use std::fmt::Write;
 
-/// Results of one section.
+/// Results of one section of the tour.
 pub struct Section {
     /// Heading of the section.
     pub title: String,
-    /// Description in a few sentences.
+    /// Description of the section in a few sentences.
     pub text: String,
     /// Source text of the mechanism's declaration.
     pub declaration: String,
-    /// Equations of motion, or an empty string if they are too long to print.
+    /// Equations of motion of the mechanism, or an empty string if they are too long to print.
     pub equations: &'static str,
-    /// Tables of results.
+    /// Tables of results of the section.
     pub tables: Vec<Table>,
-    /// Checks of the section's results.
+    /// Comparisons of the results in a section of the report with expected values.
     pub checks: Vec<Check>,
-    /// Animated scenes.
+    /// Animated scenes of the section.
     pub scenes: Vec<Scene>,
     /// Plots of the section.
     pub pictures: Vec<Picture>,
@@ -33,7 +33,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Creates a plot of curves over time with a label for their quantity; `draw` adds the curves.
+    /// Creates a plot of curves over time with a label for their quantity. The function `draw` adds the
+    /// curves.
     pub fn over_time(
         title: &'static str,
         y: &str,
@@ -50,29 +51,29 @@ pub fn pairs_of_curve(points: &[[f64; 2]]) -> impl Iterator<Item = (f64, f64)> {
 
 /// Table whose first column holds names, and whose other columns hold values.
 pub struct Table {
-    /// Headings of the columns.
+    /// Headings of the columns of the table.
     pub head: Vec<&'static str>,
-    /// Cells of the rows.
+    /// Cells of the table, row by row.
     pub rows: Vec<Vec<String>>,
 }
 
-/// Value that must be below a bound.
+/// Check that a value is below a bound.
 pub struct Check {
-    /// Name of the value, with its unit.
+    /// Name of the checked value, with its unit.
     pub what: &'static str,
     /// Measured value of the quantity.
     pub value: f64,
-    /// Upper bound of the value.
+    /// Upper bound of the checked value.
     pub bound: f64,
 }
 
 impl Check {
-    /// Creates a check.
+    /// Creates a check of a value against its upper bound.
     pub fn new(what: &'static str, value: f64, bound: f64) -> Self {
         Self { what, value, bound }
     }
 
-    /// Whether the value is below its bound; NaN is not.
+    /// Whether the checked value is below its bound; NaN is not.
     pub fn is_below_bound(&self) -> bool {
         self.value < self.bound
     }
@@ -105,7 +106,7 @@ pub fn declaration_of_mechanism(file: &str, name: &str) -> String {
     kept.copied().collect::<Vec<_>>().join("\n")
 }
 
-/// Width of the text in the terminal, characters.
+/// Width of the report in the terminal, characters.
 const WIDTH: usize = 100;
 
 impl Section {

@@ -6,7 +6,7 @@ use std::fmt::Write;
 /// Point in space: x to the right, y away from the viewer, z up, m.
 pub type Point = [f64; 3];
 
-/// Animated scene.
+/// Animated scene of a mechanism: moving points, and parts drawn between them.
 pub struct Scene {
     /// Title of the scene.
     pub title: &'static str,
@@ -14,13 +14,13 @@ pub struct Scene {
     pub rate: f64,
     /// Simulated seconds per second of playback.
     pub speed: f64,
-    /// Drawn parts, which refer to points by index.
+    /// Drawn parts of the scene, which refer to points by index.
     pub parts: Vec<Part>,
-    /// Positions of the points in each frame.
+    /// Positions of all points in each frame of the animation.
     pub frames: Vec<Vec<Point>>,
-    /// Time of the frame that is shown without animation, s.
+    /// Time of the frame that is shown while the animation is stopped, s.
     pub still: f64,
-    /// Captions, each with its first frame.
+    /// Captions of the scene, each with its first frame.
     pub captions: Vec<(usize, String)>,
     /// Fixed lines of the scene, as lists of points.
     pub guides: Vec<Vec<Point>>,
@@ -34,7 +34,7 @@ pub struct Scene {
 pub enum Part {
     /// Cylinder between two points with its radius, m.
     Rod(usize, usize, f64, Tone),
-    /// Sphere with its radius, m.
+    /// Sphere about a point with its radius, m.
     Ball(usize, f64, Tone),
     /// Polygon with these points as corners.
     Face(Vec<usize>, Tone),
@@ -45,7 +45,7 @@ pub enum Part {
 /// Colour of a part, whose appearance the page defines.
 #[derive(Clone, Copy)]
 pub enum Tone {
-    /// Colour of the main body.
+    /// Colour of the main body of the mechanism.
     Body,
     /// Colour of joints and other small parts.
     Dark,
@@ -55,7 +55,7 @@ pub enum Tone {
     Second,
 }
 
-/// Viewpoint of a scene.
+/// Viewpoint from which a scene is drawn.
 pub struct View {
     /// Point at the centre of the view, m.
     pub target: Point,
@@ -126,7 +126,7 @@ fn join_point_lists(lists: &[Vec<Point>]) -> String {
     lists.iter().map(join_coordinates).collect::<Vec<_>>().join(",")
 }
 
-/// Returns a point of a body in ground coordinates.
+/// Returns a point of a body, given in body axes, in ground coordinates.
 pub fn point_in_ground(body: &IsometryMatrix3<f64>, at: Point) -> Point {
     (body * Point3::from(at)).coords.into()
 }

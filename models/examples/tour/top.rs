@@ -8,11 +8,11 @@ use linkwork_models::HeavyTop;
 use std::f64::consts::TAU;
 
 const TOP: HeavyTop<f64> = HeavyTop { g: 9.81, mass: 0.3, height: 0.05, axial: 2.4e-4, transverse: 1.8e-4 };
-/// Initial inclination, rad.
+/// Initial inclination of the top, rad.
 const TILT: f64 = 0.5;
-/// Spin about the axis, rad/s.
+/// Spin of the top about its axis, rad/s.
 const SPIN: f64 = 150.0;
-/// Number of turns of steady precession.
+/// Number of revolutions of steady precession that are simulated.
 const TURNS: f64 = 10.0;
 /// Duration of the released top's animation, s.
 const SHOWN: f64 = 2.8;
@@ -53,10 +53,10 @@ pub fn run_top_tour() -> Result<Section, Box<dyn std::error::Error>> {
     let (a2, b) = ((spin / across) * (spin / across), 2.0 * weight / across);
     let lowest = (a2 - (a2 * a2 - 4.0 * b * (a2 * TILT.cos() - b)).sqrt()) / (2.0 * b);
     let released = simulate(&TOP).from(q, [0.0, 0.0, SPIN]).method(method);
-    let falling = |_: f64, q: &SVector<f64, 4>, v: &SVector<f64, 3>| {
+    let axis_height_rate = |_: f64, q: &SVector<f64, 4>, v: &SVector<f64, 3>| {
         (rotation_of_top(q) * Vector3::new(v.y, -v.x, 0.0)).z
     };
-    let bottom = released.until_crossing(Crossing::Rising, falling).finish()?;
+    let bottom = released.until_crossing(Crossing::Rising, axis_height_rate).finish()?;
     compare(
         "released: lowest inclination",
         "lowest inclination, relative error",
@@ -123,7 +123,7 @@ fn axis_of_top(q: &SVector<f64, 4>) -> Vector3<f64> {
     rotation_of_top(q) * Vector3::z()
 }
 
-/// Returns the precession rate of the axis about the vertical, rad/s.
+/// Returns the precession rate of the top's axis about the vertical, rad/s.
 fn precession_rate(s: &Sample<f64, 4, 3, 0>) -> f64 {
     let (at, rate) = (axis_of_top(&s.q), rotation_of_top(&s.q) * Vector3::new(s.v.y, -s.v.x, 0.0));
     (at.x * rate.y - at.y * rate.x) / (at.x * at.x + at.y * at.y)

@@ -1,5 +1,5 @@
-//! Tables of the fighter: one row for each elevator angle, sideslip or Mach number, one column for each angle
-//! of attack or height.
+//! Aerodynamic and engine tables of the fighter: one row for each elevator angle, sideslip or Mach number,
+//! one column for each angle of attack or height.
 
 use super::Fighter;
 use linkwork::Table;
@@ -13,13 +13,13 @@ const SLUG: f64 = 14.593_902_937_206_36;
 /// Force of a pound, N.
 const POUND: f64 = SLUG * FOOT;
 
-/// Angles of attack, degrees.
+/// Angles of attack of the tables' grid, degrees.
 static ALPHA: [f64; 12] = [-10.0, -5.0, 0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0];
 static ELEVATOR: [f64; 5] = [-24.0, -12.0, 0.0, 12.0, 24.0];
 static BETA: [f64; 13] = [-30.0, -25.0, -20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0];
 static WIDE_BETA: [f64; 7] = [-30.0, -20.0, -10.0, 0.0, 10.0, 20.0, 30.0];
 
-/// Heights in m, every 10 000 ft.
+/// Heights of the thrust tables' grid in m, every 10 000 ft.
 static HEIGHT: [f64; 6] = [0.0, 3048.0, 6096.0, 9144.0, 12192.0, 15240.0];
 static MACH: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
 static POWER: [f64; 3] = [0.0, 50.0, 100.0];
@@ -43,7 +43,7 @@ static CM: [f64; 60] = [
 static CZ: [f64; 12] =
     [0.77, 0.241, -0.1, -0.416, -0.731, -1.053, -1.366, -1.646, -1.917, -2.12, -2.248, -2.229];
 
-/// Rolling moment for sideslip from 5° to 30°; it is odd in the sideslip.
+/// Rolling moment coefficients for sideslip from 5° to 30°; the function is odd in the sideslip.
 const ROLL: [f64; 72] = [
     -0.001, -0.004, -0.008, -0.012, -0.016, -0.019, -0.02, -0.02, -0.015, -0.008, -0.013, -0.015, -0.003,
     -0.009, -0.017, -0.024, -0.03, -0.034, -0.04, -0.037, -0.016, -0.002, -0.01, -0.019, -0.001, -0.01,
@@ -53,7 +53,7 @@ const ROLL: [f64; 72] = [
     -0.074, -0.079, -0.091, -0.076, -0.077, -0.076,
 ];
 
-/// Yawing moment for sideslip from 5° to 30°; it is odd in the sideslip.
+/// Yawing moment coefficients for sideslip from 5° to 30°; the function is odd in the sideslip.
 const YAW: [f64; 72] = [
     0.018, 0.019, 0.018, 0.019, 0.019, 0.018, 0.013, 0.007, 0.004, -0.014, -0.017, -0.033, 0.038, 0.042,
     0.042, 0.042, 0.043, 0.039, 0.03, 0.017, 0.004, -0.035, -0.047, -0.057, 0.056, 0.057, 0.059, 0.058,
@@ -123,21 +123,21 @@ static CN_R: [f64; 12] =
 
 static CN_P: [f64; 12] = [0.061, 0.052, 0.052, -0.012, -0.013, -0.024, 0.05, 0.15, 0.13, 0.158, 0.24, 0.15];
 
-/// Idle thrust in pounds.
+/// Thrust of the idling engine in pounds, over Mach number and height.
 const IDLE: [f64; 36] = [
     1060.0, 670.0, 880.0, 1140.0, 1500.0, 1860.0, 635.0, 425.0, 690.0, 1010.0, 1330.0, 1700.0, 60.0, 25.0,
     345.0, 755.0, 1130.0, 1525.0, -1020.0, -710.0, -300.0, 350.0, 910.0, 1360.0, -2700.0, -1900.0, -1300.0,
     -247.0, 600.0, 1100.0, -3600.0, -1400.0, -595.0, -342.0, -200.0, 700.0,
 ];
 
-/// Military thrust in pounds.
+/// Military thrust of the engine (maximum without afterburner) in pounds, over Mach number and height.
 const MILITARY: [f64; 36] = [
     12680.0, 9150.0, 6200.0, 3950.0, 2450.0, 1400.0, 12680.0, 9150.0, 6313.0, 4040.0, 2470.0, 1400.0,
     12610.0, 9312.0, 6610.0, 4290.0, 2600.0, 1560.0, 12640.0, 9839.0, 7090.0, 4660.0, 2840.0, 1660.0,
     12390.0, 10176.0, 7750.0, 5320.0, 3250.0, 1930.0, 11680.0, 9848.0, 8050.0, 6100.0, 3800.0, 2310.0,
 ];
 
-/// Thrust with afterburner in pounds.
+/// Thrust of the engine with afterburner in pounds, over Mach number and height.
 const AFTERBURNER: [f64; 36] = [
     20000.0, 15000.0, 10800.0, 7000.0, 4000.0, 2500.0, 21420.0, 15700.0, 11225.0, 7323.0, 4435.0, 2600.0,
     22700.0, 16860.0, 12250.0, 8154.0, 5000.0, 2835.0, 24240.0, 18910.0, 13760.0, 9285.0, 5700.0, 3215.0,
@@ -146,7 +146,7 @@ const AFTERBURNER: [f64; 36] = [
 
 static CL: [f64; 156] = odd_function_rows(&ROLL);
 static CN: [f64; 156] = odd_function_rows(&YAW);
-static THRUST: [f64; 108] = by_power();
+static THRUST: [f64; 108] = thrust_by_power();
 
 /// Returns the rows from −30° to 30° of an odd function whose rows from 5° to 30° are given.
 const fn odd_function_rows(right: &[f64; 72]) -> [f64; 156] {
@@ -165,7 +165,7 @@ const fn odd_function_rows(right: &[f64; 72]) -> [f64; 156] {
     all
 }
 
-const fn by_power() -> [f64; 108] {
+const fn thrust_by_power() -> [f64; 108] {
     let mut all = [0.0; 108];
     let mut k = 0;
     while k < 36 {
@@ -177,7 +177,7 @@ const fn by_power() -> [f64; 108] {
     all
 }
 
-/// Returns a table with linear extrapolation.
+/// Returns a lookup table with linear extrapolation beyond its grid.
 const fn extrapolated_table<const N: usize>(axes: [&'static [f64]; N], values: &'static [f64]) -> Table<N> {
     match Table::new(axes, values) {
         Ok(table) => table.extrapolated(),

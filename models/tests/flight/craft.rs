@@ -1,6 +1,6 @@
 //! Glider, quadrotor, satellite with wheels, and vehicle over the round Earth, against closed-form solutions.
 
-use crate::{assert_relatively_close, is_at};
+use crate::{assert_eigenvalue, assert_relatively_close};
 use linkwork::nalgebra::{Complex, Quaternion, SVector, UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork::{Mechanism, Outputs};
@@ -35,7 +35,7 @@ const GLIDER: Glider = Glider {
     yaw_r: -0.03,
 };
 
-/// Returns a steady glide, with the elevator angle of this lift coefficient.
+/// Returns a steady glide of the glider, at the elevator angle for this lift coefficient.
 fn steady_glide(glider: &Glider, lift: f64) -> SteadyState<7, 6, 1> {
     let alpha = (lift - glider.cl_0) / glider.cl_alpha;
     let elevator = -glider.cm_alpha * alpha / glider.cm_elevator;
@@ -54,7 +54,7 @@ fn outputs_of_glide(glider: &Glider, found: &SteadyState<7, 6, 1>) -> (f64, f64)
 }
 
 #[test]
-fn a_glider_glides_by_its_polar() {
+fn glider_follows_its_polar() {
     let Glider { g, mass, density, area, cd_0, cd_induced, .. } = GLIDER;
     let best = (cd_0 / cd_induced).sqrt();
     for lift in [0.5 * best, best, 1.3 * best] {
@@ -90,7 +90,7 @@ fn flight_modes_of_glider(glider: &Glider, lift: f64) -> FlightModes {
 /// and `V γ̇ = k_L V² − g cos γ`. About the glide at `tan γ = −C_D / C_L` the trace is
 /// `−3 (g / V) C_D / C_L`, a third of which is due to the slope of the path.
 #[test]
-fn a_glider_has_the_phugoid_of_its_speed_and_drag() {
+fn glider_phugoid_period_and_damping() {
     let (lift, firm) = (0.8, Glider { cm_alpha: -1000.0, ..GLIDER });
     let speed = outputs_of_glide(&firm, &steady_glide(&firm, lift)).0;
     let found = flight_modes_of_glider(&firm, lift);
@@ -112,10 +112,10 @@ fn a_glider_has_the_phugoid_of_its_speed_and_drag() {
     assert!(found.short_period.unwrap().frequency() > 20.0 * phugoid.frequency());
 }
 
-/// The constant term of the characteristic polynomial determines the stability of the spiral (Etkin and Reid,
-/// § 6.8).
+/// Checks the stability of the spiral mode, which the constant term of the characteristic polynomial
+/// determines (Etkin and Reid, § 6.8).
 #[test]
-fn dihedral_makes_a_spiral_stable() {
+fn dihedral_stabilises_the_spiral() {
     let boundary = GLIDER.yaw_beta * GLIDER.roll_r / GLIDER.yaw_r;
     for (part, stable) in [(0.7, false), (1.3, true)] {
         let spiral =
@@ -141,7 +141,7 @@ const QUADROTOR: Quadrotor = Quadrotor {
 };
 
 #[test]
-fn a_quadrotor_hovers_and_answers() {
+fn quadrotor_hovers_and_responds() {
     let Quadrotor { g, mass, ixx, izz, arm, thrust, drag, lag, .. } = QUADROTOR;
     let whole = QUADROTOR.extended();
     let mut v = SVector::<f64, 10>::zeros();
@@ -187,13 +187,13 @@ fn a_quadrotor_hovers_and_answers() {
 const SATELLITE: WheeledSatellite =
     WheeledSatellite { mass: 80.0, ixx: 9.0, iyy: 6.0, izz: 12.0, wheel_mass: 2.0, wheel: 0.03 };
 
-fn at_rest() -> (SVector<f64, 7>, SVector<f64, 6>) {
+fn state_at_rest() -> (SVector<f64, 7>, SVector<f64, 6>) {
     ([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0].into(), SVector::zeros())
 }
 
 #[test]
-fn a_satellite_turns_by_its_wheels() {
-    let (q, v) = at_rest();
+fn reaction_wheels_rotate_the_satellite() {
+    let (q, v) = state_at_rest();
     // Rest-to-rest manoeuvre: acceleration in one direction, then in the opposite one.
     let apply_wheel_torques = |torques: [f64; 3], q, v, duration: f64| {
         let path = simulate(&SATELLITE)
@@ -222,8 +222,8 @@ fn a_satellite_turns_by_its_wheels() {
 }
 
 #[test]
-fn a_satellite_with_a_spinning_wheel_nutates() {
-    let (q, mut v) = at_rest();
+fn satellite_with_spinning_wheel_nutates() {
+    let (q, mut v) = state_at_rest();
     v[4] = 300.0;
     let momentum = SATELLITE.wheel * v[4];
     let system = linear_system(&SATELLITE, &q, &v, &SVector::zeros()).unwrap();
@@ -231,15 +231,15 @@ fn a_satellite_with_a_spinning_wheel_nutates() {
     let nutation = momentum / (across[0] * across[1]).sqrt();
     let found: Vec<_> = system.modes().unwrap().into_iter().filter(|mode| mode.exponent.im > 1e-3).collect();
     assert_eq!(found.len(), 1);
-    is_at(found.first(), 0.0, nutation, 1e-10);
+    assert_eigenvalue(found.first(), 0.0, nutation, 1e-10);
 }
 
-/// A satellite that rotates at `ν` about the axis of its intermediate moment of inertia tumbles. A wheel with
-/// the momentum `h` along that axis stabilises it if `(h + (I₁ − I₂) ν) (h + (I₁ − I₃) ν) > 0`, which divided
-/// by `I₂ I₃` is the square of its nutation frequency (Hughes, § 6.3).
+/// Checks a satellite that rotates at `ν` about the axis of its intermediate moment of inertia and tumbles. A
+/// wheel with the momentum `h` along that axis stabilises it if `(h + (I₁ − I₂) ν) (h + (I₁ − I₃) ν) > 0`,
+/// which divided by `I₂ I₃` is the square of its nutation frequency (Hughes, § 6.3).
 #[test]
-fn a_wheel_holds_a_satellite_that_turns_about_its_middle_axis() {
-    let (q, _) = at_rest();
+fn wheel_stabilises_intermediate_axis() {
+    let (q, _) = state_at_rest();
     let wheel = SATELLITE.wheel;
     let [i2, i3] = [SATELLITE.iyy, SATELLITE.izz].map(|hull| hull + wheel);
     let (i1, rate) = (SATELLITE.ixx + 2.0 * wheel, 0.2);
@@ -277,7 +277,7 @@ const CRAFT: HypersonicGlider = HypersonicGlider {
 };
 
 /// Returns the pose at a position over the Earth with local axes of the craft: forward, right, down.
-fn pose_above(place: Vector3<f64>, forward: Vector3<f64>) -> (SVector<f64, 7>, UnitQuaternion<f64>) {
+fn pose_above_earth(place: Vector3<f64>, forward: Vector3<f64>) -> (SVector<f64, 7>, UnitQuaternion<f64>) {
     let down = -place.normalize();
     let axes = linkwork::nalgebra::Matrix3::from_columns(&[forward, down.cross(&forward), down]);
     let turn = UnitQuaternion::from_matrix(&axes);
@@ -295,11 +295,11 @@ fn acceleration_in_earth_axes(t: f64, q: &SVector<f64, 7>, v: &SVector<f64, 6>, 
 }
 
 #[test]
-fn to_the_east_a_craft_needs_less_lift() {
+fn eastward_flight_needs_less_lift() {
     let r = CRAFT.radius + 40e3;
     let place = Vector3::new(r, 0.0, 0.0);
     for (speed, sign) in [(2000.0, 1.0), (2000.0, -1.0), (5000.0, 1.0), (5000.0, -1.0)] {
-        let (q, _) = pose_above(place, Vector3::new(0.0, sign, 0.0));
+        let (q, _) = pose_above_earth(place, Vector3::new(0.0, sign, 0.0));
         let v = [speed, 0.0, 0.0, 0.0, -speed / r, 0.0].into();
         let inertial: f64 = sign * speed + CRAFT.turning * r;
         let lift = CRAFT.mass * (CRAFT.mu / (r * r) - inertial * inertial / r);
@@ -312,7 +312,7 @@ fn to_the_east_a_craft_needs_less_lift() {
 }
 
 #[test]
-fn over_the_earth_gravity_and_turning_pull() {
+fn gravity_and_inertial_forces_over_earth() {
     for (k, latitude) in [-1.2_f64, -0.4, 0.3, 0.9].into_iter().enumerate() {
         let k = k as f64;
         let (longitude, r) = (0.7 * k - 1.0, CRAFT.radius + 200e3 + 1e4 * k);
@@ -320,7 +320,7 @@ fn over_the_earth_gravity_and_turning_pull() {
             Vector3::new(latitude.cos() * longitude.cos(), latitude.cos() * longitude.sin(), latitude.sin());
         let east = Vector3::z().cross(&up).normalize();
         let forward = UnitQuaternion::from_scaled_axis(up * (0.5 + k)) * east;
-        let (q, turn) = pose_above(up * r, forward);
+        let (q, turn) = pose_above_earth(up * r, forward);
         let v = [3000.0 + 500.0 * k, 20.0, -40.0, 0.01, -0.02, 0.003].into();
         let found = acceleration_in_earth_axes(50.0 * k, &q, &v, [2e4, 0.0, 0.0]);
         let velocity = turn * v.fixed_rows::<3>(0);
@@ -335,12 +335,12 @@ fn over_the_earth_gravity_and_turning_pull() {
     }
 }
 
-/// After a quarter of a polar circle the Earth has rotated below the craft.
+/// Checks that after a quarter of a polar orbit the Earth has rotated below the craft.
 #[test]
-fn an_orbit_goes_west_over_the_ground() {
+fn polar_orbit_drifts_westward() {
     let craft = HypersonicGlider { density: 0.0, ..CRAFT };
     let r = CRAFT.radius + 300e3;
-    let (q, _) = pose_above(Vector3::new(r, 0.0, 0.0), Vector3::z());
+    let (q, _) = pose_above_earth(Vector3::new(r, 0.0, 0.0), Vector3::z());
     let (speed, rate) = ((CRAFT.mu / r).sqrt(), (CRAFT.mu / (r * r * r)).sqrt());
     // Relative to the Earth the craft moves west, to the left of its northward heading.
     let turning = CRAFT.turning;

@@ -1,6 +1,6 @@
 //! Transport and light aircraft given by their stability derivatives.
 
-use crate::{assert_relatively_close, is_at};
+use crate::{assert_eigenvalue, assert_relatively_close};
 use linkwork::nalgebra::DMatrix;
 use linkwork::prelude::*;
 use linkwork_design::StateSpace;
@@ -9,10 +9,10 @@ use linkwork_design::mechanism::measured_system;
 use linkwork_design::steady::equilibrium;
 use linkwork_models::CruisingAircraft;
 
-type State = (SVector<f64, 7>, SVector<f64, 6>, SVector<f64, 4>);
+type CruiseState = (SVector<f64, 7>, SVector<f64, 6>, SVector<f64, 4>);
 
 /// Trims level flight at the cruise speed: pitch, climb, elevator and thrust are unknown.
-fn trim_level_flight(craft: &CruisingAircraft) -> State {
+fn trim_level_flight(craft: &CruisingAircraft) -> CruiseState {
     let found = equilibrium(craft)
         .moving([craft.cruise, 0.0, 0.0, 0.0, 0.0, 0.0].into())
         .with_inputs([0.01, 0.0, 0.0, 1e3].into())
@@ -34,7 +34,7 @@ fn linearized_aircraft(craft: &CruisingAircraft) -> StateSpace {
 const TRANSPORT: CruisingAircraft = CruisingAircraft::BOEING_747;
 
 #[test]
-fn a_transport_cruises() {
+fn transport_aircraft_cruises() {
     let (q, v, u) = trim_level_flight(&TRANSPORT);
     // In cruise the derivatives alone determine the trim: all deflections are zero.
     assert!((v[0] - 235.9).abs() < 1e-12 && v[2].abs() < 1e-9 && q[4].abs() < 1e-12);
@@ -46,7 +46,7 @@ fn a_transport_cruises() {
 /// Checks the state-space matrices of a transport aircraft. They equal an independent computation from
 /// Etkin's derivatives to 1e-9, and Etkin's printed matrices (ft and s) to their digits.
 #[test]
-fn a_transport_has_the_matrices_of_etkin_and_reid() {
+fn transport_matches_etkin_and_reid_matrices() {
     let system = linearized_aircraft(&TRANSPORT);
     let part = system.of_states(&["u", "w", "q", "theta"]).unwrap();
     let own = [
@@ -96,18 +96,18 @@ fn a_transport_has_the_matrices_of_etkin_and_reid() {
 /// Checks that the modes of a transport aircraft have the published eigenvalues of Etkin and Reid, and those
 /// of an independent computation.
 #[test]
-fn a_transport_has_the_modes_of_etkin_and_reid() {
+fn transport_matches_etkin_and_reid_modes() {
     let modes = FlightModes::from_system(&linearized_aircraft(&TRANSPORT)).unwrap();
-    is_at(modes.short_period.as_ref(), -0.37166215649674494, 0.8868788584671381, 1e-9);
-    is_at(modes.phugoid.as_ref(), -0.003289206894193512, 0.06720807985472561, 1e-9);
-    is_at(modes.dutch_roll.as_ref(), -0.033052210108050734, 0.9467852313277423, 1e-9);
-    is_at(modes.roll.as_ref(), -0.5630776981191257, 0.0, 1e-9);
-    is_at(modes.spiral.as_ref(), -0.007277201746158317, 0.0, 1e-9);
-    is_at(modes.short_period.as_ref(), -0.3719, 0.8875, 1e-3);
-    is_at(modes.phugoid.as_ref(), -0.003289, 0.06723, 1e-3);
-    is_at(modes.dutch_roll.as_ref(), -0.033011, 0.94655, 1e-3);
-    is_at(modes.roll.as_ref(), -0.56248, 0.0, 1.2e-3);
-    is_at(modes.spiral.as_ref(), -0.0072973, 0.0, 3e-3);
+    assert_eigenvalue(modes.short_period.as_ref(), -0.37166215649674494, 0.8868788584671381, 1e-9);
+    assert_eigenvalue(modes.phugoid.as_ref(), -0.003289206894193512, 0.06720807985472561, 1e-9);
+    assert_eigenvalue(modes.dutch_roll.as_ref(), -0.033052210108050734, 0.9467852313277423, 1e-9);
+    assert_eigenvalue(modes.roll.as_ref(), -0.5630776981191257, 0.0, 1e-9);
+    assert_eigenvalue(modes.spiral.as_ref(), -0.007277201746158317, 0.0, 1e-9);
+    assert_eigenvalue(modes.short_period.as_ref(), -0.3719, 0.8875, 1e-3);
+    assert_eigenvalue(modes.phugoid.as_ref(), -0.003289, 0.06723, 1e-3);
+    assert_eigenvalue(modes.dutch_roll.as_ref(), -0.033011, 0.94655, 1e-3);
+    assert_eigenvalue(modes.roll.as_ref(), -0.56248, 0.0, 1.2e-3);
+    assert_eigenvalue(modes.spiral.as_ref(), -0.0072973, 0.0, 3e-3);
     // Height is the remaining state: nothing depends on it in air of uniform density.
     let [height] = &modes.others[..] else { panic!("{:?}", modes.others) };
     assert!(height.frequency() < 1e-9);
@@ -117,19 +117,19 @@ fn a_transport_has_the_modes_of_etkin_and_reid() {
 /// Checks that without the derivatives with respect to `α̇` the short period has seven eighths of its damping
 /// ratio.
 #[test]
-fn forces_by_the_rate_of_the_angle_of_attack_damp_the_short_period() {
-    let damping = |craft| {
+fn alpha_rate_forces_damp_short_period() {
+    let short_period_damping = |craft| {
         FlightModes::from_system(&linearized_aircraft(&craft)).unwrap().short_period.unwrap().damping_ratio()
     };
     let without = CruisingAircraft { cz_alpha_rate: 0.0, cm_alpha_rate: 0.0, ..TRANSPORT };
-    let ratio = damping(without) / damping(TRANSPORT);
+    let ratio = short_period_damping(without) / short_period_damping(TRANSPORT);
     assert!((ratio - 7.0 / 8.0).abs() < 0.01, "{ratio}");
 }
 
 /// Checks that dimensionless derivatives, computed from the dimensional derivatives of an aircraft, equal the
 /// declared ones.
 #[test]
-fn derivatives_without_dimension_are_those_declared() {
+fn dimensionless_derivatives_match_declared() {
     let craft = TRANSPORT;
     let (q, v, u) = trim_level_flight(&craft);
     let found = Derivatives::at_state(&craft, &q, &v, &u).unwrap();
@@ -174,24 +174,24 @@ fn derivatives_without_dimension_are_those_declared() {
     assert!(found.of_force("M", "flaps").unwrap_err().to_string().contains("elevator"));
 }
 
-/// The Navion has the printed eigenvalues (Nelson, *Flight Stability and Automatic Control*, 1998, ch. 4 and
-/// 5).
+/// Checks that the Navion has the printed eigenvalues (Nelson, *Flight Stability and Automatic Control*,
+/// 1998, ch. 4 and 5).
 #[test]
-fn a_light_aircraft_has_the_modes_of_nelson() {
+fn navion_matches_nelson_modes() {
     let modes = FlightModes::from_system(&linearized_aircraft(&CruisingAircraft::NAVION)).unwrap();
-    is_at(modes.short_period.as_ref(), -2.51, 2.59, 1e-2);
-    is_at(modes.phugoid.as_ref(), -0.017, 0.213, 1e-2);
-    is_at(modes.dutch_roll.as_ref(), -0.487, 2.335, 1e-2);
-    is_at(modes.roll.as_ref(), -8.435, 0.0, 1e-2);
-    is_at(modes.spiral.as_ref(), -0.00877, 0.0, 2e-1);
+    assert_eigenvalue(modes.short_period.as_ref(), -2.51, 2.59, 1e-2);
+    assert_eigenvalue(modes.phugoid.as_ref(), -0.017, 0.213, 1e-2);
+    assert_eigenvalue(modes.dutch_roll.as_ref(), -0.487, 2.335, 1e-2);
+    assert_eigenvalue(modes.roll.as_ref(), -8.435, 0.0, 1e-2);
+    assert_eigenvalue(modes.spiral.as_ref(), -0.00877, 0.0, 2e-1);
 }
 
-/// The DC-8 at 468.2 ft/s in 15 000 ft (Teper, *Aircraft Stability and Control Data*, 1969, as in Cook,
-/// *Flight Dynamics Principles*, 2007, ch. 7). Its lateral derivatives, per ft/s and rad/s, give the
-/// characteristic polynomial `(s + 0.0065) (s + 1.329) (s² + 0.254 s + 1.433)`. The mass, moments of inertia,
-/// area and span that make them dimensionless cancel.
+/// Checks the modes of the DC-8 at 468.2 ft/s in 15 000 ft (Teper, *Aircraft Stability and Control Data*,
+/// 1969, as in Cook, *Flight Dynamics Principles*, 2007, ch. 7). Its lateral derivatives, per ft/s and rad/s,
+/// give the characteristic polynomial `(s + 0.0065) (s + 1.329) (s² + 0.254 s + 1.433)`. The mass, moments of
+/// inertia, area and span that make them dimensionless cancel.
 #[test]
-fn an_airliner_has_the_modes_of_cook() {
+fn dc8_matches_cook_modes() {
     let (feet, speed) = (0.3048, 468.2 * 0.3048);
     let base = CruisingAircraft { g: 32.2 * feet, cruise: speed, product: 0.0, ..TRANSPORT };
     let CruisingAircraft { mass, ixx, izz, density, area, span, .. } = base;
@@ -214,15 +214,15 @@ fn an_airliner_has_the_modes_of_cook() {
     let dutch_roll = modes.dutch_roll.unwrap();
     assert_relatively_close(2.0 * dutch_roll.damping_ratio() * dutch_roll.frequency(), 0.254, 2e-3);
     assert_relatively_close(dutch_roll.frequency().powi(2), 1.433, 1e-3);
-    is_at(modes.roll.as_ref(), -1.329, 0.0, 1e-3);
-    is_at(modes.spiral.as_ref(), -0.0065, 0.0, 5e-3);
+    assert_eigenvalue(modes.roll.as_ref(), -1.329, 0.0, 1e-3);
+    assert_eigenvalue(modes.spiral.as_ref(), -0.0065, 0.0, 5e-3);
 }
 
-/// The A-7A at 20 000 ft and 676 ft/s (Mach 0.6), in body axes that climb at 13.3° to the wind (Cook, *Flight
-/// Dynamics Principles*, 2007, ch. 5). The printed state matrix gives
+/// Checks the modes of the A-7A at 20 000 ft and 676 ft/s (Mach 0.6), in body axes that climb at 13.3° to the
+/// wind (Cook, *Flight Dynamics Principles*, 2007, ch. 5). The printed state matrix gives
 /// `(s² + 0.033 s + 0.020) (s² + 0.902 s + 2.666)`.
 #[test]
-fn modes_of_printed_matrices_are_named() {
+fn printed_matrices_yield_named_modes() {
     let a = DMatrix::from_row_slice(
         4,
         4,
@@ -243,7 +243,7 @@ fn modes_of_printed_matrices_are_named() {
 }
 
 #[test]
-fn off_a_steady_state_the_error_says_by_how_much() {
+fn error_off_steady_state_states_the_rate() {
     let (q, mut v, u) = trim_level_flight(&TRANSPORT);
     v[4] = 0.01;
     let error = flight::linear_system(&TRANSPORT, &q, &v, &u).unwrap_err().to_string();

@@ -1,6 +1,6 @@
 //! Fighter: rates in a published state, trimmed flight, and its linear motion.
 
-use crate::is_at;
+use crate::assert_eigenvalue;
 use linkwork::nalgebra::{DMatrix, SVector, UnitQuaternion};
 use linkwork::prelude::*;
 use linkwork_design::StateSpace;
@@ -28,7 +28,7 @@ fn velocity_and_power(speed: f64, alpha: f64, beta: f64, [p, q, r]: [f64; 3], po
 /// Checks that the time derivatives of all states of the F-16 model equal the published ones, in a state far
 /// from any trim (Stevens, Lewis and Johnson, table 3.5-2).
 #[test]
-fn all_rates_are_those_of_the_book() {
+fn state_rates_match_the_book() {
     let fighter = Fighter { place: 0.4, ..Fighter::F16 };
     let (speed, alpha, beta) = (500.0 * FOOT, 0.5, -0.2);
     let q = pose_coordinates([1000.0 * FOOT, 900.0 * FOOT, -10000.0 * FOOT], [-1.0, 1.0, -1.0]);
@@ -65,14 +65,14 @@ fn all_rates_are_those_of_the_book() {
     }
 }
 
-struct Level {
+struct LevelFlight {
     q: SVector<f64, 7>,
     v: SVector<f64, 7>,
     u: SVector<f64, 4>,
 }
 
 /// Trims level flight at sea level: angle of attack, throttle, power and elevator are unknown.
-fn trim_level_flight(fighter: &Fighter, speed: f64) -> Level {
+fn trim_level_flight(fighter: &Fighter, speed: f64) -> LevelFlight {
     let whole = fighter.extended();
     let found = equilibrium(&whole)
         .from(pose_coordinates([0.0; 3], [0.0, 0.1, 0.0]))
@@ -85,13 +85,13 @@ fn trim_level_flight(fighter: &Fighter, speed: f64) -> Level {
         .output("airspeed", speed * FOOT)
         .find()
         .unwrap();
-    Level { q: found.q, v: found.v, u: found.u }
+    LevelFlight { q: found.q, v: found.v, u: found.u }
 }
 
-/// Throttle, angle of attack and elevator (degrees) as functions of the speed (ft/s) in level flight at sea
-/// level equal table 3.6-2.
+/// Checks that throttle, angle of attack and elevator (degrees) as functions of the speed (ft/s) in level
+/// flight at sea level equal table 3.6-2 of Stevens, Lewis and Johnson.
 #[test]
-fn trimmed_flight_is_that_of_the_book() {
+fn trimmed_flight_matches_the_book() {
     let published = [
         (170.0, 0.464, 27.2, 0.621),
         (200.0, 0.287, 19.7, 0.723),
@@ -108,7 +108,7 @@ fn trimmed_flight_is_that_of_the_book() {
         (800.0, 0.378, -0.045, -0.943),
     ];
     for (speed, throttle, alpha, elevator) in published {
-        let Level { v, u, .. } = trim_level_flight(&Fighter::F16, speed);
+        let LevelFlight { v, u, .. } = trim_level_flight(&Fighter::F16, speed);
         let found = [u[0], v[2].atan2(v[0]).to_degrees(), u[1]];
         for (found, (expected, digits)) in
             found.into_iter().zip([(throttle, 0.0012), (alpha, 0.05), (elevator, 0.006)])
@@ -120,16 +120,16 @@ fn trimmed_flight_is_that_of_the_book() {
     for (place, throttle, alpha, elevator) in
         [(0.35, 0.1385, 0.03691, -0.7588), (0.3, 0.1485, 0.03936, -1.931), (0.38, 0.1325, 0.03544, -0.0559)]
     {
-        let Level { v, u, .. } = trim_level_flight(&Fighter { place, ..Fighter::F16 }, 502.0);
+        let LevelFlight { v, u, .. } = trim_level_flight(&Fighter { place, ..Fighter::F16 }, 502.0);
         assert!((u[0] - throttle).abs() < 2e-4, "{u}");
         assert!((v[2].atan2(v[0]) - alpha).abs() < 2e-5, "{v}");
         assert!((u[1] - elevator).abs() < 1e-3, "{u}");
     }
 }
 
-/// A coordinated turn of 0.3 rad/s at 502 ft/s equals table 3.6-3.
+/// Checks that a coordinated turn of 0.3 rad/s at 502 ft/s equals table 3.6-3 of Stevens, Lewis and Johnson.
 #[test]
-fn a_fighter_turns_as_in_the_book() {
+fn coordinated_turn_matches_the_book() {
     let fighter = Fighter { place: 0.3, ..Fighter::F16 };
     let whole = fighter.extended();
     let (bank, pitch, turning) = (1.367_f64, 0.05185_f64, 0.3);
@@ -175,12 +175,13 @@ fn a_fighter_turns_as_in_the_book() {
     }
 }
 
-fn linearized_fighter(fighter: &Fighter, at_rest: &Level) -> StateSpace {
+fn linearized_fighter(fighter: &Fighter, at_rest: &LevelFlight) -> StateSpace {
     let whole = fighter.extended();
     flight::linear_system(&at(&whole, 0.0), &at_rest.q, &at_rest.v, &at_rest.u).unwrap()
 }
 
-/// Matrix of speed (ft/s), angle of attack, pitch and pitch rate at 502 ft/s at sea level (example 3.7-1).
+/// Published matrix for speed (ft/s), angle of attack, pitch and pitch rate at 502 ft/s at sea level (example
+/// 3.7-1).
 const LONGITUDINAL: [[f64; 4]; 4] = [
     [-1.9311e-2, 8.8157, -32.170, -0.57499],
     [-2.5389e-4, -1.0189, 0.0, 0.90506],
@@ -188,13 +189,13 @@ const LONGITUDINAL: [[f64; 4]; 4] = [
     [0.0, 0.82225, 0.0, -1.0774],
 ];
 
-/// Rows of sideslip, roll rate and yaw rate in the same flight, with the columns sideslip, roll rate, yaw
-/// rate and bank (example 5.3-1).
+/// Published rows for sideslip, roll rate and yaw rate at 502 ft/s at sea level, with the columns sideslip,
+/// roll rate, yaw rate and bank (example 5.3-1).
 const ACROSS: [[f64; 4]; 3] =
     [[-0.3220, 0.0364, -0.9917, 0.0640], [-30.6492, -3.6784, 0.6646, 0.0], [8.5396, -0.0254, -0.4764, 0.0]];
 
 #[test]
-fn linear_motion_is_that_of_the_book() {
+fn linearised_fighter_matches_the_book() {
     let trim = trim_level_flight(&Fighter::F16, 502.0);
     let system = linearized_fighter(&Fighter::F16, &trim);
     let part = system.of_states(&["u", "w", "theta", "q"]).unwrap();
@@ -229,7 +230,7 @@ fn linear_motion_is_that_of_the_book() {
 /// them unstable; with a forward centre of mass it has a short period. The engine is a separate mode with a
 /// lag of one second.
 #[test]
-fn the_centre_of_mass_decides_on_the_modes_of_a_fighter() {
+fn centre_of_mass_determines_pitch_modes() {
     let modes_with_center_of_mass = |place| {
         let fighter = Fighter { place, ..Fighter::F16 };
         FlightModes::from_system(&linearized_fighter(&fighter, &trim_level_flight(&fighter, 502.0))).unwrap()
@@ -239,7 +240,7 @@ fn the_centre_of_mass_decides_on_the_modes_of_a_fighter() {
     assert!(stable.others.iter().all(|mode| mode.exponent.re < 0.0));
     let engine =
         stable.others.iter().find(|mode| mode.participation_of("power").is_some_and(|part| part > 0.99));
-    is_at(engine, -1.0, 0.0, 1e-9);
+    assert_eigenvalue(engine, -1.0, 0.0, 1e-9);
     assert!(unstable.short_period.is_none());
     let growing: Vec<_> = unstable.others.iter().filter(|mode| mode.exponent.re > 0.0).collect();
     assert!(
@@ -255,7 +256,7 @@ fn the_centre_of_mass_decides_on_the_modes_of_a_fighter() {
     let real =
         |from: f64, to: f64| published.iter().find(|e| e.im == 0.0 && from < e.re && e.re < to).unwrap();
     let wave = published.iter().find(|e| e.im > 0.0).unwrap();
-    is_at(found.dutch_roll.as_ref(), wave.re, wave.im, 1e-3);
-    is_at(found.roll.as_ref(), real(-5.0, -1.0).re, 0.0, 1e-3);
-    is_at(found.spiral.as_ref(), real(-0.1, 0.0).re, 0.0, 3e-2);
+    assert_eigenvalue(found.dutch_roll.as_ref(), wave.re, wave.im, 1e-3);
+    assert_eigenvalue(found.roll.as_ref(), real(-5.0, -1.0).re, 0.0, 1e-3);
+    assert_eigenvalue(found.spiral.as_ref(), real(-0.1, 0.0).re, 0.0, 3e-2);
 }

@@ -3,7 +3,7 @@ use linkwork::nalgebra::{UnitQuaternion, Vector3};
 use linkwork::prelude::*;
 use linkwork_models::Aircraft;
 
-/// Parameters of a light aircraft with linear aerodynamics.
+/// Parameters of the tested aircraft: a light aircraft with linear aerodynamics.
 const A: Aircraft = Aircraft {
     g: 9.81,
     mass: 1050.0,
@@ -37,7 +37,7 @@ fn aircraft_state(
 /// Checks that the accelerations are zero in trimmed level flight, with angle of attack, thrust and elevator
 /// calculated by hand.
 #[test]
-fn level_flight() {
+fn trimmed_level_flight_has_zero_acceleration() {
     let (alpha, weight) = (0.06_f64, A.mass * A.g);
     let cl = A.cl_0 + A.cl_alpha * alpha;
     let cd = A.cd_0 + A.cd_induced * cl * cl;
@@ -63,7 +63,7 @@ fn level_flight() {
 
 /// Checks that a glider without drag has a constant velocity in body axes in a level turn.
 #[test]
-fn level_turn() {
+fn glider_keeps_velocity_in_level_turn() {
     let smooth = Aircraft { cd_0: 0.0, cd_induced: 0.0, ..A };
     let (alpha, bank) = (0.06_f64, 0.7_f64);
     let load = A.mass * A.g / bank.cos() / (A.cl_0 + A.cl_alpha * alpha);

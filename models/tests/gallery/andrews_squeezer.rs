@@ -2,8 +2,8 @@ use crate::testing::precise_integrator;
 use linkwork::prelude::*;
 use linkwork_models::AndrewsSqueezer;
 
-/// Angles at t = 0.03 s, recomputed with an extrapolation method in 160-bit arithmetic; the published digits
-/// are accurate to 1e-10.
+/// Reference angles of the mechanism at t = 0.03 s, recomputed with an extrapolation method in 160-bit
+/// arithmetic; the published digits are accurate to 1e-10.
 const END: [f64; 7] = [
     15.810_771_195_153_707,
     -15.756_371_058_411_84,

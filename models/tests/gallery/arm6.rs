@@ -1,11 +1,11 @@
-use crate::testing::{about_x, about_z, assert_near};
+use crate::testing::{assert_near, pose_about_x, pose_about_z};
 use linkwork::nalgebra::Isometry3;
 use linkwork::prelude::*;
 use linkwork_models::Ur5;
 use std::f64::consts::FRAC_PI_2;
 
 #[test]
-fn tool_by_denavit_and_hartenberg() {
+fn ur5_tool_matches_denavit_hartenberg() {
     let robot = Ur5;
     let q = SVector::from([0.4, -1.1, 1.7, -0.6, 2.2, 0.9]);
     let d = [0.089159, 0.0, 0.0, 0.10915, 0.09465, 0.0823];
@@ -13,7 +13,7 @@ fn tool_by_denavit_and_hartenberg() {
     let alpha = [FRAC_PI_2, 0.0, 0.0, FRAC_PI_2, -FRAC_PI_2, 0.0];
     let mut tool = Isometry3::identity();
     for k in 0..6 {
-        tool = tool * about_z(q[k], d[k]) * about_x(alpha[k], a[k]);
+        tool = tool * pose_about_z(q[k], d[k]) * pose_about_x(alpha[k], a[k]);
     }
     let base = robot.frame_placement(frame!(Ur5, "base"), &q);
     let found = base.inverse() * robot.frame_placement(frame!(Ur5, "tool0"), &q);
@@ -21,7 +21,7 @@ fn tool_by_denavit_and_hartenberg() {
 }
 
 #[test]
-fn weight_of_the_stretched_arm() {
+fn stretched_arm_weight_torques() {
     // At zero the arm is stretched out horizontally along x: the lift joint carries m₂, m₃ and the three
     // wrist bodies.
     let robot = Ur5;

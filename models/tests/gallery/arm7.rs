@@ -1,4 +1,4 @@
-use crate::testing::{about_x, about_z, assert_near};
+use crate::testing::{assert_near, pose_about_x, pose_about_z};
 use linkwork::nalgebra::Isometry3;
 use linkwork::prelude::*;
 use linkwork_models::{LoadedPanda, Panda, PandaArm};
@@ -7,34 +7,34 @@ use std::f64::consts::FRAC_PI_2;
 const Q: [f64; 7] = [0.4, -0.7, 0.3, -2.1, 1.2, 1.9, -0.8];
 
 #[test]
-fn flange_by_denavit_and_hartenberg() {
+fn panda_flange_matches_denavit_hartenberg() {
     let d = [0.333, 0.0, 0.316, 0.0, 0.384, 0.0, 0.0];
     let a = [0.0, 0.0, 0.0, 0.0825, -0.0825, 0.0, 0.088];
     let alpha = [0.0, -1.0, 1.0, 1.0, -1.0, 1.0, 1.0].map(|sign| sign * FRAC_PI_2);
     let mut flange = Isometry3::identity();
     for k in 0..7 {
-        flange = flange * about_x(alpha[k], a[k]) * about_z(Q[k], d[k]);
+        flange = flange * pose_about_x(alpha[k], a[k]) * pose_about_z(Q[k], d[k]);
     }
-    flange *= about_z(0.0, 0.107);
+    flange *= pose_about_z(0.0, 0.107);
     let found = PandaArm.frame_placement(frame!(PandaArm, "panda_link8"), &Q.into());
     assert_near(found.to_homogeneous(), flange.to_homogeneous(), 1e-14);
     let tip = PandaArm.frame_placement(frame!(PandaArm, "panda_hand_tcp"), &Q.into());
-    let expected = flange * about_z(-FRAC_PI_2 / 2.0, 0.1034);
+    let expected = flange * pose_about_z(-FRAC_PI_2 / 2.0, 0.1034);
     assert_near(tip.to_homogeneous(), expected.to_homogeneous(), 1e-14);
 }
 
-/// Locked fingers do not move: the mass matrix is the upper left part of the full robot's.
+/// Checks that locked fingers do not move: the mass matrix is the upper left part of the full robot's.
 #[test]
-fn locked_fingers() {
+fn locked_fingers_do_not_move() {
     let mut full = Panda.neutral();
     full.fixed_rows_mut::<7>(0).copy_from(&SVector::from(Q));
     let part = Panda.mass_matrix(&full).fixed_view::<7, 7>(0, 0).into_owned();
     assert_near(PandaArm.mass_matrix(&Q.into()), part, 1e-14);
 }
 
-/// The load adds `Jᵀ m J` to the mass matrix and `−Jᵀ m g` to the bias forces.
+/// Checks that the load adds `Jᵀ m J` to the mass matrix and `−Jᵀ m g` to the bias forces.
 #[test]
-fn load_by_its_jacobian() {
+fn load_adds_its_jacobian_terms() {
     let (arm, loaded) = (PandaArm, LoadedPanda { load: 2.5 });
     let q = SVector::from(Q);
     let jacobian = arm.frame_jacobian(frame!(PandaArm, "panda_hand_tcp"), &q);

@@ -14,7 +14,7 @@ fn ball_configuration(theta: f64) -> SVector<f64, 7> {
 /// Checks that large oscillations of the ball have the period given by an elliptic integral, and small ones
 /// the frequency `√(5 g / (7 (R − r)))`.
 #[test]
-fn swings_like_a_longer_pendulum() -> Result<(), Error> {
+fn ball_in_bowl_has_pendulum_period() -> Result<(), Error> {
     assert_eq!((BallInBowl::NC, BallInBowl::NS), (3, 3));
     for theta in [1.1_f64, 1e-3] {
         let angular_speed = |v: &SVector<f64, 6>| v[4];
@@ -33,7 +33,7 @@ fn swings_like_a_longer_pendulum() -> Result<(), Error> {
 }
 
 #[test]
-fn circles_with_spin() -> Result<(), Error> {
+fn spinning_ball_circles_in_bowl() -> Result<(), Error> {
     let (theta, reach) = (0.8_f64, B.bowl - B.radius);
     for spin in [0.0, 40.0, -15.0] {
         let (square, linear) = (1.4 * reach * theta.cos(), 0.4 * B.radius * spin);

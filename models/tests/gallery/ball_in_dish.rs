@@ -21,7 +21,7 @@ fn ball_state(u: f64, w: f64, along: [f64; 2], spin: f64) -> (SVector<f64, 9>, S
 }
 
 #[test]
-fn circles_level() -> Result<(), Error> {
+fn ball_circles_at_constant_height_in_dish() -> Result<(), Error> {
     assert_eq!((BallInDish::NC, BallInDish::NH, BallInDish::NP, BallInDish::NS), (5, 3, 5, 3));
     let u = 0.2;
     let slope = Vector3::new(1.0, 0.0, u / B.curvature).normalize();
@@ -50,11 +50,11 @@ fn circles_level() -> Result<(), Error> {
     Ok(())
 }
 
-/// Accelerations satisfy Newton's and Euler's equations without the contact force. With the centre on the
-/// parallel surface, `v = (r ω) × n` and the weight, `(7/5) a` along the tangents equals the terms of gravity
-/// and of the normal's rotation.
+/// Checks that accelerations satisfy Newton's and Euler's equations without the contact force. With the
+/// centre on the parallel surface, `v = (r ω) × n` and the weight, `(7/5) a` along the tangents equals the
+/// terms of gravity and of the normal's rotation.
 #[test]
-fn accelerations() {
+fn ball_in_dish_satisfies_newton_and_euler() {
     for (u, w, along, spin) in [(0.1, 0.15, [0.3, -0.2], 20.0), (-0.2, 0.05, [-0.5, 0.9], -35.0)] {
         let (q, v) = ball_state(u, w, along, spin);
         let a = B.forward_dynamics(&q, &v, &SVector::zeros());
@@ -78,7 +78,7 @@ fn accelerations() {
 }
 
 #[test]
-fn keeps_its_energy() -> Result<(), Error> {
+fn ball_in_dish_conserves_energy() -> Result<(), Error> {
     let (q, v) = ball_state(0.2, -0.1, [0.4, 0.7], 30.0);
     let total_energy = |q: &_, v: &_| B.kinetic_energy(q, v) + B.potential_energy(q);
     let run = simulate(&B).from(q, v).method(precise_integrator()).duration(3.0).sample_every(0.25);

@@ -18,7 +18,7 @@ fn ball_state(rho: f64, rate: f64, sinking: f64, spin: f64) -> (SVector<f64, 7>,
 }
 
 #[test]
-fn circles_level() -> Result<(), Error> {
+fn ball_circles_at_constant_height_in_funnel() -> Result<(), Error> {
     assert_eq!((BallInFunnel::NC, BallInFunnel::NH, BallInFunnel::NS), (3, 1, 3));
     let (s, c) = B.half_angle.sin_cos();
     let rho = 0.15;
@@ -38,10 +38,10 @@ fn circles_level() -> Result<(), Error> {
     Ok(())
 }
 
-/// The two integrals of motion of a surface of revolution, in closed form for a cone, are constant while the
-/// ball descends and rises.
+/// Checks that the two integrals of motion of a surface of revolution, in closed form for a cone, are
+/// constant while the ball descends and rises.
 #[test]
-fn keeps_its_integrals() -> Result<(), Error> {
+fn ball_in_funnel_conserves_integrals() -> Result<(), Error> {
     let (s, c) = B.half_angle.sin_cos();
     let integrals_of_motion = |q: &SVector<f64, 7>, v: &SVector<f64, 6>| {
         let turn = UnitQuaternion::from_quaternion([q[3], q[4], q[5], q[6]].into());

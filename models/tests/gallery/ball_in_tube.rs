@@ -5,7 +5,7 @@ use linkwork_models::BallInTube;
 const B: BallInTube = BallInTube { g: 9.81, mass: 0.046, radius: 0.021, tube: 0.054 };
 
 #[test]
-fn rises_again() -> Result<(), Error> {
+fn ball_in_tube_rises_again() -> Result<(), Error> {
     let (around, sinking, spin) = (30.0, -0.2, 4.0);
     let (reach, r) = (B.tube - B.radius, B.radius);
     let q = [reach, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];

@@ -4,16 +4,16 @@ use linkwork_models::BallOnTurntable;
 
 const B: BallOnTurntable = BallOnTurntable { g: 9.81, mass: 0.2, radius: 0.03, spin: 7.0 };
 
-/// The ball moves on a circle at the predicted rate, for any mass and size.
+/// Checks that the ball moves on a circle at the predicted rate, for any mass and size.
 #[test]
-fn goes_round_in_circles() -> Result<(), Error> {
+fn ball_on_turntable_moves_in_circles() -> Result<(), Error> {
     for ball in [B, BallOnTurntable { mass: 7.3, radius: 0.11, ..B }] {
-        goes_round(ball)?;
+        check_circular_motion(ball)?;
     }
     Ok(())
 }
 
-fn goes_round(ball: BallOnTurntable) -> Result<(), Error> {
+fn check_circular_motion(ball: BallOnTurntable) -> Result<(), Error> {
     // Velocity of the centre, and the angular velocity for which the contact point moves with the table.
     let (place, velocity, twist) = ([0.3, -0.1], [0.5, 0.2], 3.0);
     let table = [-ball.spin * place[1], ball.spin * place[0]];

@@ -3,12 +3,14 @@ use linkwork::nalgebra::{Matrix2, Matrix4};
 use linkwork::prelude::*;
 use linkwork_models::Bicycle;
 
-/// Entries of `v`: roll rate of the frame, rotation of the rear wheel, steering rate.
+/// Index of the frame's roll rate in the velocity `v`. The constants below are those of the rear wheel's
+/// rotation and of the steering rate.
 const LEAN: usize = 3;
 const WHEEL: usize = 6;
 const STEER: usize = 7;
 
-/// Returns `A` of `ẋ = A x` in lean, steer and their rates at a speed, and the inverse of the mass matrix.
+/// Returns the matrix `A` of the linearised motion `ẋ = A x` in lean, steer and their rates at a speed, and
+/// the inverse of the mass matrix.
 fn linearized_bicycle(speed: f64) -> (Matrix4<f64>, Matrix2<f64>) {
     let bicycle = Bicycle::BENCHMARK;
     let q = bicycle.neutral();
@@ -37,7 +39,7 @@ fn linearized_bicycle(speed: f64) -> (Matrix4<f64>, Matrix2<f64>) {
 }
 
 #[test]
-fn matrices_are_the_published_ones() {
+fn bicycle_matches_published_matrices() {
     assert_eq!((Bicycle::NV, Bicycle::NC, Bicycle::NP, Bicycle::NS), (9, 6, 7, 3));
     let m = Matrix2::new(80.817_22, 2.319_413_322_087_091, 2.319_413_322_087_091, 0.297_841_881_996_855_5);
     let c1 = Matrix2::new(0.0, 33.866_413_914_924_94, -0.850_356_414_569_784_4, 1.685_403_973_975_596_7);
@@ -56,8 +58,8 @@ fn matrices_are_the_published_ones() {
     }
 }
 
-/// Real and imaginary parts of the eigenvalues, 1/s, for each speed, m/s; recomputed from the published
-/// parameters with 40 digits.
+/// Reference eigenvalues (real and imaginary parts, 1/s) of the bicycle for each speed, m/s, recomputed from
+/// the published parameters with 40 digits.
 const EIGENVALUES: [(f64, [(f64, f64); 4]); 11] = [
     (
         0.0,
@@ -161,7 +163,7 @@ const EIGENVALUES: [(f64, [(f64, f64); 4]); 11] = [
 ];
 
 #[test]
-fn eigenvalues_are_the_published_ones() {
+fn bicycle_matches_published_eigenvalues() {
     for (speed, expected) in EIGENVALUES {
         let found = linearized_bicycle(speed).0.complex_eigenvalues();
         for (re, im) in expected {
@@ -172,7 +174,7 @@ fn eigenvalues_are_the_published_ones() {
 }
 
 #[test]
-fn weave_and_capsize_speeds() {
+fn bicycle_weave_and_capsize_speeds() {
     let largest_growth_rate = |speed: f64, weaving: bool| {
         let exponents = linearized_bicycle(speed).0.complex_eigenvalues();
         let of = exponents.iter().filter(|e| (e.im.abs() > 1e-6) == weaving).map(|e| e.re);

@@ -10,7 +10,7 @@ fn start_configuration() -> SVector<f64, 7> {
 }
 
 #[test]
-fn accelerations_follow_the_slip() {
+fn friction_accelerations_follow_slip() {
     assert_eq!((BowlingBall::NC, BowlingBall::NH, BowlingBall::NS), (1, 1, 5));
     for regular_speed in [1e-3, 0.5] {
         let ball = BowlingBall { regular_speed, ..B };
@@ -29,10 +29,10 @@ fn accelerations_follow_the_slip() {
     }
 }
 
-/// The ball slides, then rolls. Because of the regularised friction, slip velocities of the order of the
-/// regularisation speed take slightly longer to decay.
+/// Checks that the ball slides, then rolls. Because of the regularised friction, slip velocities of the order
+/// of the regularisation speed take slightly longer to decay.
 #[test]
-fn slides_and_then_rolls() -> Result<(), Error> {
+fn bowling_ball_slides_then_rolls() -> Result<(), Error> {
     let speed = 5.0;
     let time = 2.0 * speed / (7.0 * B.friction * B.g);
     let roll_for_duration = |t: f64| {
@@ -56,7 +56,7 @@ fn slides_and_then_rolls() -> Result<(), Error> {
 
 /// Checks that a bowling ball with spin transverse to its path moves along a parabola while it slides.
 #[test]
-fn hooks() -> Result<(), Error> {
+fn spinning_bowling_ball_follows_parabola() -> Result<(), Error> {
     let v = SVector::from([4.0, 0.0, 0.0, 30.0, 0.0, 0.0]);
     let slip = [4.0, 30.0 * B.radius];
     let size = slip[0].hypot(slip[1]);

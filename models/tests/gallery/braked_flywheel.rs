@@ -5,7 +5,7 @@ use linkwork_models::BrakedFlywheel;
 const W: BrakedFlywheel = BrakedFlywheel { inertia: 0.3, brake_torque: 0.9, creep: 0.5 };
 
 #[test]
-fn runs_down() -> Result<(), Error> {
+fn braked_flywheel_runs_down() -> Result<(), Error> {
     let start = 12.0_f64;
     for sample in
         simulate(&W).from([0.0], [start]).method(precise_integrator()).duration(5.0).sample_every(0.5)
@@ -18,7 +18,7 @@ fn runs_down() -> Result<(), Error> {
 }
 
 #[test]
-fn motor_against_the_brake() {
+fn motor_drives_against_the_brake() {
     let tau = W.generalized_forces(&[0.0].into(), &[2.4].into());
     let a = W.forward_dynamics(&[0.0].into(), &[100.0].into(), &tau);
     assert_close(a[0], (2.4 - 0.9) / 0.3, 1e-14);

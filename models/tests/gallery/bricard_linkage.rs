@@ -6,7 +6,7 @@ const B: BricardLinkage = BricardLinkage { g: 9.81, mass: 1.0, length: 1.0 };
 
 /// Checks that the rods of the linkage initially lie along edges of a cube of one metre, as in the benchmark.
 #[test]
-fn starts_along_the_edges_of_a_cube() {
+fn bricard_rods_start_along_cube_edges() {
     let q = B.neutral();
     let placed = [
         (B.frame_placement(frame!(BricardLinkage, "rod1"), &q), [0.0, 0.0, 0.0]),
@@ -21,7 +21,7 @@ fn starts_along_the_edges_of_a_cube() {
 }
 
 #[test]
-fn one_condition_follows_from_the_others() {
+fn bricard_has_one_dependent_constraint() {
     assert_eq!((BricardLinkage::NV, BricardLinkage::NP, BricardLinkage::NS), (5, 1, 1));
     let q = B.neutral();
     assert!(B.constraint_residuals(&q).amax() < 1e-15);
@@ -33,7 +33,7 @@ fn one_condition_follows_from_the_others() {
 /// Checks that the linkage, released from the cube, conserves its energy for ten seconds and passes
 /// configurations with all rods in one plane.
 #[test]
-fn swings() -> Result<(), Error> {
+fn bricard_linkage_conserves_energy() -> Result<(), Error> {
     let start = B.potential_energy(&B.neutral());
     let run = simulate(&B).method(precise_integrator()).duration(10.0).sample_every(0.25);
     let mut farthest = 0.0_f64;

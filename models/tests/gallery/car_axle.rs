@@ -2,8 +2,8 @@ use crate::testing::precise_integrator;
 use linkwork::prelude::*;
 use linkwork_models::CarAxle;
 
-/// The configuration at t = 3 s, recomputed at 160 and at 230 bits; the published digits are accurate to
-/// 2e-13 and 5e-12.
+/// Reference configuration of the car axle at t = 3 s, recomputed at 160 and at 230 bits; the published
+/// digits are accurate to 2e-13 and 5e-12.
 #[test]
 fn car_axle_ends_where_published() -> Result<(), Error> {
     let start = ([0.0, 0.5, 1.0, 0.5], [-0.5, 0.0, -0.5, 0.0]);

@@ -2,9 +2,10 @@ use crate::testing::precise_integrator;
 use linkwork::prelude::*;
 use linkwork_models::ChaplyginSleigh;
 
-/// The speed has the closed form `V tanh(a V t / b² + c₀)`; the values are recomputed with 40 digits.
+/// Checks that the speed of the sleigh has the closed form `V tanh(a V t / b² + c₀)`; the values are
+/// recomputed with 40 digits.
 #[test]
-fn chaplygin_sleigh_turns_as_in_closed_form() -> Result<(), Error> {
+fn chaplygin_sleigh_has_closed_form_speed() -> Result<(), Error> {
     let sleigh = ChaplyginSleigh { m: 1.0, j: 0.5, a: 0.3 };
     assert_eq!((ChaplyginSleigh::NC, ChaplyginSleigh::NH), (1, 0));
     let expected = [

@@ -5,14 +5,14 @@ use linkwork_models::ChargedParticle;
 const P: ChargedParticle = ChargedParticle { mass: 0.2, charge: 0.8, electric: 1.5, magnetic: 3.0 };
 
 #[test]
-fn lorentz_force() {
+fn charged_particle_has_lorentz_force() {
     let v = SVector::from([0.4, -0.7, 2.0]);
     let force = 0.8 * SVector::from([3.0 * v[1], 1.5 - 3.0 * v[0], 0.0]);
     assert_near(P.bias_forces(&SVector::zeros(), &v), -force, 1e-15);
 }
 
 #[test]
-fn circles_about_a_drifting_centre() -> Result<(), Error> {
+fn charged_particle_circles_and_drifts() -> Result<(), Error> {
     let (omega, drift) = (P.charge * P.magnetic / P.mass, P.electric / P.magnetic);
     // Start at the origin with the drift velocity and 2 m/s more along x.
     let run = simulate(&P).from([0.0; 3], [drift + 2.0, 0.0, 0.3]).method(precise_integrator());

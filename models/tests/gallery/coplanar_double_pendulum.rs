@@ -5,7 +5,7 @@ use linkwork_models::CoplanarDoublePendulum;
 const P: CoplanarDoublePendulum = CoplanarDoublePendulum { g: 9.81, m1: 1.2, m2: 0.7, l1: 0.9, l2: 0.6 };
 
 #[test]
-fn lagrangian() {
+fn double_pendulum_matches_its_lagrangian() {
     let CoplanarDoublePendulum { g, m1, m2, l1, l2 } = P;
     let (a, b, da, db) = (0.7_f64, -1.2_f64, 1.4, 0.9);
     let (q, v) = (SVector::from([a, b]), SVector::from([da, db]));
@@ -21,9 +21,9 @@ fn lagrangian() {
     assert_near(P.bias_forces(&q, &v), SVector::from([h1, h2]), 1e-13);
 }
 
-/// A small deflection in a mode shape has an acceleration in the same shape.
+/// Checks that a small deflection in a mode shape has an acceleration in the same shape.
 #[test]
-fn normal_modes() {
+fn double_pendulum_normal_modes() {
     let equal = CoplanarDoublePendulum { l2: P.l1, ..P };
     let (sum, l) = (P.m1 + P.m2, P.l1);
     for sign in [-1.0, 1.0] {

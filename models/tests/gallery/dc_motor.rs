@@ -13,7 +13,7 @@ const S: DcMotor = DcMotor {
 };
 
 #[test]
-fn eigenvalues_are_those_of_winding_and_rotor() {
+fn dc_motor_has_winding_and_rotor_poles() {
     let (q, v, u) = ([0.4].into(), [30.0, 2.5].into(), [9.0].into());
     assert_derivatives(&S.extended(), &q, &v, &u, 1e-6);
     let linear = at(&S.extended(), 0.0).linear_motion(&q, &v, &u);
@@ -26,7 +26,7 @@ fn eigenvalues_are_those_of_winding_and_rotor() {
 }
 
 #[test]
-fn current_and_speed_rise() -> Result<(), Error> {
+fn dc_motor_current_and_speed_rise() -> Result<(), Error> {
     // A heavy rotor stays at rest while the current rises.
     let heavy = DcMotor { inertia: 1e9, ..S };
     let whole = heavy.extended();
@@ -41,9 +41,10 @@ fn current_and_speed_rise() -> Result<(), Error> {
     Ok(())
 }
 
-/// The electrical power is the sum of the heat of winding and bearings and of the change of both energies.
+/// Checks that the electrical power is the sum of the heat of winding and bearings and of the change of both
+/// energies.
 #[test]
-fn power_is_balanced() {
+fn dc_motor_power_is_balanced() {
     let (speed, current, voltage) = (40.0, 3.0, 11.0);
     let whole = S.extended();
     let rates = at(&whole, 0.0).linear_motion(&[0.0].into(), &[speed, current].into(), &[voltage].into());

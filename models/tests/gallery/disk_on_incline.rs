@@ -3,7 +3,7 @@ use linkwork::prelude::*;
 use linkwork_models::DiskOnIncline;
 
 #[test]
-fn accelerations_of_round_bodies() {
+fn rolling_bodies_have_predicted_accelerations() {
     for (shape, part) in [(1.0, 1.0 / 2.0), (0.5, 2.0 / 3.0), (2.0 / 3.0, 3.0 / 5.0), (0.4, 5.0 / 7.0)] {
         let body = DiskOnIncline { g: 9.81, mass: 0.8, radius: 0.15, shape, slope: 0.35 };
         let a = body.forward_dynamics(&[0.7].into(), &[1.3].into(), &[0.0].into());
@@ -11,9 +11,9 @@ fn accelerations_of_round_bodies() {
     }
 }
 
-/// The disk rolls without slip: the point of the rim that touches the incline is at rest.
+/// Checks that the disk rolls without slip: the point of the rim that touches the incline is at rest.
 #[test]
-fn rolls_without_slip() {
+fn disk_rolls_without_slip() {
     let disk = DiskOnIncline { g: 9.81, mass: 0.8, radius: 0.15, shape: 0.5, slope: 0.35 };
     assert_near(disk.rim(&[0.0].into(), &[2.0].into()), SVector::zeros(), 1e-15);
     let turn = 0.15 * std::f64::consts::TAU;

@@ -7,7 +7,7 @@ const D: DuffingOscillator =
     DuffingOscillator { mass: 0.7, damping: 0.2, alpha: 3.0, beta: 5.0, drive: 1.5, frequency: 2.1 };
 
 #[test]
-fn equation_of_motion() {
+fn duffing_equation_of_motion() {
     let (t, x, dx) = (0.8, 0.6, -1.1);
     let (q, v) = (SVector::from([x]), SVector::from([dx]));
     let h = 0.2 * dx + 3.0 * x + 5.0 * x * x * x - 1.5 * f64::cos(2.1 * t);
@@ -22,7 +22,7 @@ fn period_of_oscillation(d: DuffingOscillator, start: f64) -> Result<f64, Error>
 }
 
 #[test]
-fn period_by_an_elliptic_integral() -> Result<(), Error> {
+fn duffing_period_is_elliptic_integral() -> Result<(), Error> {
     let free = DuffingOscillator { damping: 0.0, drive: 0.0, ..D };
     for amplitude in [0.1, 1.0, 4.0] {
         let stiff = free.beta * amplitude * amplitude;
@@ -34,7 +34,7 @@ fn period_by_an_elliptic_integral() -> Result<(), Error> {
 }
 
 #[test]
-fn two_wells() -> Result<(), Error> {
+fn duffing_oscillator_has_two_wells() -> Result<(), Error> {
     let double = DuffingOscillator { damping: 0.0, drive: 0.0, alpha: -3.0, ..D };
     let well = (3.0_f64 / 5.0).sqrt();
     assert_close(double.bias_forces(0.0, &[well].into(), &[0.0].into())[0], 0.0, 1e-15);

@@ -17,8 +17,9 @@ fn unit_direction(angle: f64) -> Vector2<f64> {
     Vector2::new(angle.cos(), angle.sin())
 }
 
-/// Returns the positions of elbows and tool, by the intersection of two circles above the elbows.
-fn closed_form(left: f64, right: f64) -> [Vector2<f64>; 3] {
+/// Returns the positions of both elbows and the tool for these crank angles; the tool is at the upper
+/// intersection of two circles about the elbows.
+fn closed_form_positions(left: f64, right: f64) -> [Vector2<f64>; 3] {
     let first = R.crank * unit_direction(left);
     let second = Vector2::new(R.base, 0.0) + R.crank * unit_direction(right);
     let half = (second - first) / 2.0;
@@ -27,14 +28,14 @@ fn closed_form(left: f64, right: f64) -> [Vector2<f64>; 3] {
 }
 
 fn linkage_state(left: f64, right: f64) -> SVector<f64, 4> {
-    let [first, second, tool] = closed_form(left, right);
+    let [first, second, tool] = closed_form_positions(left, right);
     let angle_to_tool = |from: Vector2<f64>| (tool.y - from.y).atan2(tool.x - from.x);
     [left, angle_to_tool(first) - left, right, angle_to_tool(second) - right].into()
 }
 
 /// Returns the Jacobian of the tool with respect to the crank angles.
-fn jacobian(left: f64, right: f64) -> Matrix2<f64> {
-    let [first, second, tool] = closed_form(left, right);
+fn tool_jacobian(left: f64, right: f64) -> Matrix2<f64> {
+    let [first, second, tool] = closed_form_positions(left, right);
     let forearms = [tool - first, tool - second];
     let inverse = Matrix2::from_rows(&forearms.map(|f| f.transpose())).try_inverse();
     let arm_speed =
@@ -44,27 +45,27 @@ fn jacobian(left: f64, right: f64) -> Matrix2<f64> {
 }
 
 #[test]
-fn circles_meet_at_the_tool() {
+fn five_bar_tool_is_at_circle_intersection() {
     assert_eq!((FiveBar::NC, FiveBar::NP, FiveBar::NU), (2, 2, 2));
     for (left, right) in [(2.0, 0.9), (2.4, 0.3), (1.6, 1.2)] {
         let q = linkage_state(left, right);
         let guess = [left, 0.7 - left, right, 2.2 - right].into();
         assert_near(R.assemble(&guess, &[0, 2]).expect("the circles meet"), q, 1e-12);
-        let [.., tool] = closed_form(left, right);
+        let [.., tool] = closed_form_positions(left, right);
         let place = R.frame_placement(frame!(FiveBar, "tool"), &q).translation.vector;
         assert_near(place.xy(), tool, 1e-15);
     }
 }
 
-/// Torques from virtual work hold the linkage at rest; additional torque accelerates it by its reduced
-/// inertia in the two crank angles.
+/// Checks that torques from virtual work hold the linkage at rest, and that additional torque accelerates it
+/// by its reduced inertia in the two crank angles.
 #[test]
-fn statics_and_reduced_inertia() {
+fn five_bar_statics_and_reduced_inertia() {
     let (left, right) = (2.0, 0.9);
     let q = linkage_state(left, right);
-    let tool = jacobian(left, right);
+    let tool = tool_jacobian(left, right);
     let zero = SVector::zeros();
-    let [first, second, at] = closed_form(left, right);
+    let [first, second, at] = closed_form_positions(left, right);
     // Velocities of elbows and tool per crank rate.
     let velocity_of_elbow = |angle: f64| R.crank * Vector2::new(-angle.sin(), angle.cos());
     let elbows = [

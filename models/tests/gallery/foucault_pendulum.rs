@@ -14,7 +14,7 @@ fn position_of_bob(q: &SVector<f64, 2>) -> SVector<f64, 3> {
 }
 
 #[test]
-fn coriolis_forces_of_small_swings() {
+fn foucault_coriolis_forces() {
     // x = −l b and y = l a; a faster earth makes the Coriolis force visible, terms in Ω² are neglected.
     let fast = FoucaultPendulum { earth_rate: 1e-4, ..P };
     let vertical = 1e-4 * P.latitude.sin();
@@ -25,7 +25,7 @@ fn coriolis_forces_of_small_swings() {
 }
 
 #[test]
-fn plane_turns_with_the_sine_of_the_latitude() -> Result<(), Error> {
+fn foucault_plane_rotates_with_latitude() -> Result<(), Error> {
     // Released from rest in the laboratory at 1 m south, after a hundred oscillations.
     let swings = 100.0;
     let omega = (P.g / P.length).sqrt();
@@ -38,7 +38,7 @@ fn plane_turns_with_the_sine_of_the_latitude() -> Result<(), Error> {
 }
 
 #[test]
-fn at_the_pole_the_plane_stands_still() -> Result<(), Error> {
+fn foucault_plane_is_fixed_at_the_pole() -> Result<(), Error> {
     let pole = FoucaultPendulum { latitude: FRAC_PI_2, earth_rate: 0.05, ..P };
     let still = SphericalPendulum { g: P.g, mass: P.mass, length: P.length };
     // The same position and velocity in the ground frame and in the laboratory frame, which coincide at t =

@@ -10,9 +10,9 @@ fn configuration_of_crank(input: f64) -> SVector<f64, 3> {
     L.assemble(&[input, 0.9 - input, 1.8].into(), &[0]).expect("the crank goes all the way round")
 }
 
-/// Positions satisfy Freudenstein's equation, and rates its derivative, over a full rotation.
+/// Checks that positions satisfy Freudenstein's equation, and rates its derivative, over a full rotation.
 #[test]
-fn freudensteins_equation() {
+fn four_bar_satisfies_freudensteins_equation() {
     assert_eq!((FourBar::NC, FourBar::NP, FourBar::NS), (2, 1, 1));
     let FourBar { a, b, c, d, .. } = L;
     for k in 0..24 {
@@ -29,9 +29,9 @@ fn freudensteins_equation() {
     }
 }
 
-/// At rest the motor torque equals the derivative of the potential energy, by virtual work.
+/// Checks that at rest the motor torque equals the derivative of the potential energy, by virtual work.
 #[test]
-fn holding_torque() {
+fn four_bar_holding_torque() {
     let FourBar { g, density, a, b, c, .. } = L;
     let q = configuration_of_crank(0.7);
     let v = L.project_velocity(&q, &[1.0, 0.0, 0.0].into()).expect("no dead centre");
@@ -53,9 +53,10 @@ fn start_state() -> (SVector<f64, 3>, SVector<f64, 3>) {
     (q, L.project_velocity(&q, &[12.0, 0.0, 0.0].into()).expect("no dead centre"))
 }
 
-/// The error of a fourth-order method decreases by 2⁴ when its step is halved, including the constraints.
+/// Checks that the error of a fourth-order method decreases by 2⁴ when its step is halved, including the
+/// constraints.
 #[test]
-fn order_of_the_integrator() -> Result<(), Error> {
+fn four_bar_integration_has_order_four() -> Result<(), Error> {
     let (q, v) = start_state();
     let exact = simulate(&L).from(q, v).method(precise_integrator()).duration(1.0).finish()?;
     assert_close(total_energy(&exact.q, &exact.v), total_energy(&q, &v), 1e-10);

@@ -6,7 +6,7 @@ use linkwork_models::FreeRigidBody;
 const B: FreeRigidBody = FreeRigidBody { mass: 0.4, ixx: 1.0, iyy: 2.0, izz: 2.5 };
 
 #[test]
-fn newtons_and_eulers_equations() {
+fn free_body_satisfies_newton_and_euler() {
     let (v, w) = (Vector3::new(1.0, -2.0, 0.5), Vector3::new(0.3, 2.0, -1.1));
     let inertia = SMatrix::<f64, 3, 3>::from_diagonal(&Vector3::new(1.0, 2.0, 2.5));
     let found = B.bias_forces(&B.neutral(), &[v.x, v.y, v.z, w.x, w.y, w.z].into());
@@ -17,7 +17,7 @@ fn newtons_and_eulers_equations() {
 /// Checks the flip of a rigid body that spins about its intermediate axis with a slight wobble. After half a
 /// period it is upside down, and after a whole period it returns.
 #[test]
-fn turns_over() -> Result<(), Error> {
+fn intermediate_axis_rotation_flips() -> Result<(), Error> {
     // No spin about x at the start, so that L² > 2 E I₂.
     let start = Vector3::new(0.0, 5.0, 0.01);
     let inertia = Vector3::new(B.ixx, B.iyy, B.izz);

@@ -6,7 +6,7 @@ const G: GearPair =
     GearPair { small_inertia: 2e-4, large_inertia: 3e-3, small_radius: 0.02, large_radius: 0.05 };
 
 #[test]
-fn reduced_inertia_and_tooth_force() {
+fn gear_pair_reduced_inertia_and_tooth_force() {
     assert_eq!((GearPair::NC, GearPair::NP), (1, 1));
     let ratio: f64 = 0.4;
     let torque = 0.3;
@@ -21,7 +21,7 @@ fn reduced_inertia_and_tooth_force() {
 
 /// Checks that assembly moves the wheels to the nearest angles at which the teeth mesh.
 #[test]
-fn meshes() {
+fn assembly_moves_gears_into_mesh() {
     let q = G.assemble(&[1.0, 0.3].into(), &[0]).expect("the wheel can follow");
     assert_near(q, [1.0, -0.4].into(), 1e-15);
 }

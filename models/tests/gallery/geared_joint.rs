@@ -13,8 +13,9 @@ const S: GearedJoint = GearedJoint {
     creep: 1e-3,
 };
 
-/// Returns the accelerations for a torque of the teeth and a direction of rotation.
-fn accelerations(torque: f64, direction: f64, drive: f64) -> SVector<f64, 2> {
+/// Returns the accelerations of rotor and link for a torque of the teeth, a direction of rotation and a motor
+/// torque `drive`.
+fn geared_accelerations(torque: f64, direction: f64, drive: f64) -> SVector<f64, 2> {
     let twist = torque / 4000.0 + torque.signum() * 1e-3;
     let (q, v) = ([80.0 * (twist + 0.1), 0.1].into(), SVector::from([80.0, 1.0]) * direction);
     assert_close(S.torque(&q), torque, 1e-12);
@@ -23,33 +24,33 @@ fn accelerations(torque: f64, direction: f64, drive: f64) -> SVector<f64, 2> {
 }
 
 #[test]
-fn teeth_lose_a_part_of_their_load() {
+fn gear_teeth_lose_a_fraction_of_load() {
     for (torque, direction) in [(50.0, 1.0), (50.0, -1.0), (-50.0, 1.0), (-50.0, -1.0)] {
         let rotor = (0.4 - torque / 80.0 - 0.25 * 50.0 / 80.0 * direction) / 2e-5;
         let expected = SVector::from([rotor, torque / 0.3]);
-        assert_near(accelerations(torque, direction, 0.4), expected, 1e-11);
+        assert_near(geared_accelerations(torque, direction, 0.4), expected, 1e-11);
     }
     // Both inertias accelerate together.
     let (drive, reduced) = (0.4, 80.0 * 80.0 * 2e-5 + 1.25 * 0.3);
     let joint = 80.0 * drive / reduced;
-    assert_near(accelerations(0.3 * joint, 1.0, drive), SVector::from([80.0 * joint, joint]), 1e-11);
+    assert_near(geared_accelerations(0.3 * joint, 1.0, drive), SVector::from([80.0 * joint, joint]), 1e-11);
 }
 
 #[test]
-fn efficiencies() {
-    let power = |drive: f64, torque: f64, direction: f64| {
-        let a = accelerations(torque, direction, drive);
+fn gear_efficiencies_in_both_directions() {
+    let power_ratio = |drive: f64, torque: f64, direction: f64| {
+        let a = geared_accelerations(torque, direction, drive);
         assert_close(a[0] * 2e-5, 0.0, 1e-12);
         (drive * 80.0 * direction, torque * direction)
     };
-    let (motor, link) = power(50.0 * 1.25 / 80.0, 50.0, 1.0);
+    let (motor, link) = power_ratio(50.0 * 1.25 / 80.0, 50.0, 1.0);
     assert_close(link / motor, 1.0 / 1.25, 1e-12);
-    let (motor, link) = power(50.0 * 0.75 / 80.0, 50.0, -1.0);
+    let (motor, link) = power_ratio(50.0 * 0.75 / 80.0, 50.0, -1.0);
     assert_close(motor / link, 0.75, 1e-12);
 }
 
 #[test]
-fn twist_oscillates_through_the_backlash() -> Result<(), Error> {
+fn gear_oscillates_through_backlash() -> Result<(), Error> {
     let lossless = GearedJoint { loss: 0.0, ..S };
     let reduced = 1.0 / (1.0 / (80.0 * 80.0 * 2e-5) + 1.0 / 0.3);
     let speed = 0.02;
@@ -65,7 +66,7 @@ fn twist_oscillates_through_the_backlash() -> Result<(), Error> {
 }
 
 #[test]
-fn a_gear_with_much_friction_is_self_locking() {
+fn high_friction_gear_is_self_locking() {
     let worm = GearedJoint { loss: 1.0, ..S };
     let q = [-80.0 * (1e-3 + 50.0 / 4000.0), 0.0].into();
     let a = worm.forward_dynamics(&q, &[80.0, 1.0].into(), &[0.0, 0.0].into());

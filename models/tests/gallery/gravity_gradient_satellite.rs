@@ -4,7 +4,7 @@ use linkwork::prelude::*;
 use linkwork_models::GravityGradientSatellite;
 use std::f64::consts::TAU;
 
-/// Satellite of the Earth; up is x, forward y, across z.
+/// Test satellite of the Earth: up is x, forward y, across z.
 const S: GravityGradientSatellite =
     GravityGradientSatellite { mu: 3.986004418e14, mass: 50.0, ixx: 5.0, iyy: 90.0, izz: 92.0 };
 
@@ -13,7 +13,7 @@ fn satellite_configuration(r: Vector3<f64>, turn: UnitQuaternion<f64>) -> SVecto
 }
 
 #[test]
-fn force_and_torque() {
+fn gravity_gradient_force_and_torque() {
     let (r, turn) = (Vector3::new(4.1e6, -5.2e6, 1.7e6), UnitQuaternion::from_euler_angles(0.4, -0.8, 1.9));
     let h = S.bias_forces(&satellite_configuration(r, turn), &SVector::zeros());
     let own = turn.inverse() * r;
@@ -28,7 +28,7 @@ fn force_and_torque() {
 }
 
 #[test]
-fn pitch_oscillation() -> Result<(), Error> {
+fn satellite_pitch_oscillation() -> Result<(), Error> {
     let frequency = (3.0 * (S.iyy - S.ixx) / S.izz).sqrt();
     check_pitch(S, TAU / frequency, |t| (frequency * t).cos())
 }
@@ -36,7 +36,7 @@ fn pitch_oscillation() -> Result<(), Error> {
 /// Checks that a satellite with its long axis in the direction of flight is unstable, and that its pitch
 /// grows exponentially.
 #[test]
-fn stands_with_the_long_axis_up_alone() -> Result<(), Error> {
+fn satellite_is_stable_with_long_axis_vertical() -> Result<(), Error> {
     let growth = (3.0 * (S.iyy - S.ixx) / S.izz).sqrt();
     check_pitch(GravityGradientSatellite { ixx: S.iyy, iyy: S.ixx, ..S }, 3.0 / growth, |t| {
         (growth * t).cosh()

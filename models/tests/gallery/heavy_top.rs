@@ -10,7 +10,7 @@ fn transverse_inertia_at_pivot() -> f64 {
 }
 
 #[test]
-fn eulers_equations() {
+fn heavy_top_satisfies_eulers_equations() {
     let turn = UnitQuaternion::from_euler_angles(0.4, -0.9, 1.7);
     let omega = Vector3::new(3.0, -2.0, 40.0);
     let inertia = SMatrix::<f64, 3, 3>::from_diagonal(&Vector3::new(
@@ -25,10 +25,10 @@ fn eulers_equations() {
     assert_near(TOP.bias_forces(&q, &omega), omega.cross(&(inertia * omega)) - torque, 1e-14);
 }
 
-/// Slow and fast steady precession exist for the same spin: the inclination of the axis is constant, and it
-/// precesses at the predicted rate.
+/// Checks that slow and fast steady precession exist for the same spin: the inclination of the axis is
+/// constant, and it precesses at the predicted rate.
 #[test]
-fn steady_precession() -> Result<(), Error> {
+fn heavy_top_steady_precession() -> Result<(), Error> {
     let (theta, spin) = (0.5_f64, 150.0);
     let (a, b, c) =
         (transverse_inertia_at_pivot() * theta.cos(), TOP.axial * spin, TOP.mass * TOP.g * TOP.height);
@@ -51,9 +51,9 @@ fn steady_precession() -> Result<(), Error> {
     Ok(())
 }
 
-/// Near the upright position the top is stable with sufficient spin, and falls with less.
+/// Checks that near the upright position the top is stable with sufficient spin, and falls with less.
 #[test]
-fn sleeps_if_it_spins_fast_enough() -> Result<(), Error> {
+fn heavy_top_is_stable_if_fast() -> Result<(), Error> {
     let critical = (4.0 * transverse_inertia_at_pivot() * TOP.mass * TOP.g * TOP.height).sqrt() / TOP.axial;
     for (part, sleeps) in [(1.05, true), (0.95, false)] {
         let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 1e-4);

@@ -3,7 +3,7 @@ use linkwork::prelude::*;
 use linkwork_models::SimpleHumanoid;
 
 #[test]
-fn free_fall() {
+fn humanoid_falls_freely() {
     let robot = SimpleHumanoid;
     let mut q = robot.neutral();
     for k in 7..SimpleHumanoid::NQ {

@@ -7,7 +7,7 @@ const P: KapitzaPendulum =
     KapitzaPendulum { g: 9.81, mass: 0.2, length: 0.5, amplitude: 0.01, frequency: 1000.0 };
 
 #[test]
-fn equation_of_motion() {
+fn kapitza_equation_of_motion() {
     let (t, theta, rate) = (0.0023, 0.9_f64, -1.7);
     let shaken = P.g - P.amplitude * P.frequency * P.frequency * (P.frequency * t).cos();
     let ml = P.mass * P.length;
@@ -17,7 +17,7 @@ fn equation_of_motion() {
 }
 
 #[test]
-fn stands_upright() -> Result<(), Error> {
+fn kapitza_pendulum_stands_upright() -> Result<(), Error> {
     let (a, l) = (P.amplitude * P.frequency, P.length);
     let slow = (a * a / (2.0 * l * l) - P.g / l).sqrt();
     let method = DormandPrince::new().tolerance(1e-9, 1e-9);
@@ -32,7 +32,7 @@ fn stands_upright() -> Result<(), Error> {
 }
 
 #[test]
-fn falls_if_shaken_too_slowly() -> Result<(), Error> {
+fn kapitza_pendulum_falls_if_shaken_slowly() -> Result<(), Error> {
     let weak = KapitzaPendulum { frequency: 0.9 * (2.0 * P.g * P.length).sqrt() / P.amplitude, ..P };
     let end = simulate(&weak).from([PI + 0.05], [0.0]).until(|_, q, _| q[0] - 1.5 * PI);
     assert!(end.duration(5.0).finish()?.t < 5.0);

@@ -19,29 +19,31 @@ const S: MuscleForearm = MuscleForearm {
     fibre: 1.0,
 };
 
-/// Angle at which the muscle is straight, with its length and the sine of its direction to the forearm.
+/// Angle of the elbow at which the muscle is level, with the muscle's length and the sine of its direction to
+/// the forearm.
 const LEVEL: (f64, f64, f64) = (0.0, 0.304_138_126_514_910_95, 0.986_393_923_832_143_8);
 
-/// Returns the rates of the speed, of the activation and of the fibre, in the level position at rest.
-fn rates(muscle: &MuscleForearm, excitation: f64) -> SVector<f64, 3> {
+/// Returns the rates of angular velocity, activation and fibre length, in the level position at rest.
+fn muscle_state_rates(muscle: &MuscleForearm, excitation: f64) -> SVector<f64, 3> {
     let whole = muscle.extended();
     let (q, v) = ([LEVEL.0].into(), [0.0, muscle.activation, muscle.fibre].into());
     assert_derivatives(&whole, &q, &v, &[excitation].into(), 1e-6);
     at(&whole, 0.0).linear_motion(&q, &v, &[excitation].into()).acceleration
 }
 
-/// Returns the fibre length at which the tendon has this force, divided by the maximum.
-fn fibre(tendon: f64) -> f64 {
+/// Returns the fibre length at which the tendon has the force `tendon`, both divided by their reference
+/// values.
+fn fibre_length(tendon: f64) -> f64 {
     (LEVEL.1 - 0.18 * (1.0 + (tendon / 600.0).sqrt())) / 0.11
 }
 
 #[test]
-fn hyperbolas_of_force_and_speed() {
+fn muscle_force_velocity_hyperbolas() {
     for ratio in [0.0, 0.3, 0.9, 1.1, 1.3] {
         // The activation determines the ratio of the forces.
         let tendon: f64 = if ratio == 0.0 { 0.0 } else { 0.35 };
         // Without force the tendon is slack.
-        let length = fibre(tendon) + if ratio == 0.0 { 0.01 } else { 0.0 };
+        let length = fibre_length(tendon) + if ratio == 0.0 { 0.01 } else { 0.0 };
         let shape = (-((length - 1.0) / 0.55).powi(2)).exp();
         let passive = 2.5 * (length - 1.0).max(0.0).powi(2);
         let activation = if ratio == 0.0 { 0.5 } else { (tendon - passive) / (shape * ratio) };
@@ -52,7 +54,7 @@ fn hyperbolas_of_force_and_speed() {
         } else {
             10.0 * (1.0 - part) / (1.0 + (5.0 / 0.4 - 1.0) * part)
         };
-        let found = rates(&muscle, 0.4);
+        let found = muscle_state_rates(&muscle, 0.4);
         assert_close(found[2], speed, 1e-10);
         // Lever arm: 5 cm times the sine.
         let torque = 700.0 * tendon * 0.05 * LEVEL.2 - 1.5 * 9.81 * 0.15;
@@ -61,17 +63,17 @@ fn hyperbolas_of_force_and_speed() {
 }
 
 #[test]
-fn activation_over_time() -> Result<(), Error> {
+fn muscle_activation_over_time() -> Result<(), Error> {
     let whole = S.extended();
-    let run = |from: f64, to: f64, time: f64| {
+    let final_activation = |from: f64, to: f64, time: f64| {
         let run = simulate(&whole).from([0.0], [0.0, from, 1.0]).inputs(move |_, _, _| [to].into());
         run.duration(time).method(precise_integrator()).finish().map(|end| end.v[1])
     };
     // Time of the rise from 0.1 to 0.9 at full excitation, by separation of the variables.
     let time = 0.015 * (-1.5 * (0.9 - 0.1) - 2.0 * (0.1_f64 / 0.9).ln());
-    assert_close(run(0.1, 1.0, time)?, 0.9, 1e-8);
+    assert_close(final_activation(0.1, 1.0, time)?, 0.9, 1e-8);
     // Time of the fall from 0.9 to 0.2 at the excitation 0.1.
     let rest = |a: f64| ((0.5 + 1.5 * a) / (a - 0.1)).ln() / (0.5 + 1.5 * 0.1);
-    assert_close(run(0.9, 0.1, 0.05 * (rest(0.2) - rest(0.9)))?, 0.2, 1e-8);
+    assert_close(final_activation(0.9, 0.1, 0.05 * (rest(0.2) - rest(0.9)))?, 0.2, 1e-8);
     Ok(())
 }

@@ -2,8 +2,8 @@ use crate::testing::assert_near;
 use linkwork::prelude::*;
 use linkwork_models::{QuintuplePendulum, TriplePendulum};
 
-/// Returns the closed form in relative angles: mass matrix and bias forces.
-fn closed_form<const N: usize>(
+/// Returns the closed form of mass matrix and bias forces of a pendulum chain in relative angles.
+fn closed_form_dynamics<const N: usize>(
     g: f64,
     (m, l): ([f64; N], [f64; N]),
     q: &SVector<f64, N>,
@@ -22,22 +22,22 @@ fn closed_form<const N: usize>(
 }
 
 #[test]
-fn three_links() {
+fn three_link_pendulum_matches_closed_form() {
     let p = TriplePendulum { g: 9.81, m1: 1.0, l1: 0.5, m2: 0.7, l2: 0.4, m3: 1.4, l3: 0.8 };
     let (q, v) = (SVector::from([0.4, -1.2, 2.5]), SVector::from([1.0, -2.0, 0.7]));
-    let (mass, bias) = closed_form(9.81, ([1.0, 0.7, 1.4], [0.5, 0.4, 0.8]), &q, &v);
+    let (mass, bias) = closed_form_dynamics(9.81, ([1.0, 0.7, 1.4], [0.5, 0.4, 0.8]), &q, &v);
     assert_near(p.mass_matrix(&q), mass, 1e-13);
     assert_near(p.bias_forces(&q, &v), bias, 1e-13);
 }
 
 #[test]
-fn five_links() {
+fn five_link_pendulum_matches_closed_form() {
     let (m, l) = ([1.0, 0.7, 1.4, 0.3, 2.0], [0.5, 0.4, 0.8, 1.1, 0.6]);
     let [m1, m2, m3, m4, m5] = m;
     let [l1, l2, l3, l4, l5] = l;
     let p = QuintuplePendulum { g: 9.81, m1, m2, m3, m4, m5, l1, l2, l3, l4, l5 };
     let (q, v) = (SVector::from([0.4, -1.2, 2.5, 0.3, -0.9]), SVector::from([1.0, -2.0, 0.7, 1.9, -3.0]));
-    let (mass, bias) = closed_form(9.81, (m, l), &q, &v);
+    let (mass, bias) = closed_form_dynamics(9.81, (m, l), &q, &v);
     assert_near(p.mass_matrix(&q), mass, 1e-13);
     assert_near(p.bias_forces(&q, &v), bias, 1e-13);
 }

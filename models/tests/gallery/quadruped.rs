@@ -3,7 +3,7 @@ use linkwork::prelude::*;
 use linkwork_models::{AnymalB, Solo12};
 
 #[test]
-fn free_fall() {
+fn quadruped_falls_freely() {
     let robot = Solo12;
     let mut q = robot.neutral();
     for k in 7..19 {
@@ -18,7 +18,7 @@ fn free_fall() {
 }
 
 #[test]
-fn free_fall_with_different_legs() {
+fn anymal_falls_freely() {
     let robot = AnymalB;
     let mut q = robot.neutral();
     for k in 7..19 {
@@ -33,7 +33,7 @@ fn free_fall_with_different_legs() {
 }
 
 #[test]
-fn foot_of_a_leg() {
+fn foot_position_of_quadruped_leg() {
     let robot = Solo12;
     let mut q = robot.neutral();
     let (alpha, beta) = (0.6_f64, -1.3_f64);

@@ -16,7 +16,7 @@ fn state_on_table(turn: UnitQuaternion<f64>, w: Vector3<f64>) -> (SVector<f64, 7
 }
 
 #[test]
-fn the_point_that_touches_is_at_rest() {
+fn rattleback_contact_point_is_at_rest() {
     assert_eq!((Rattleback::NC, Rattleback::NH, Rattleback::NS), (3, 1, 3));
     let turn = UnitQuaternion::from_euler_angles(0.3, -0.2, 1.1);
     let (q, v) = state_on_table(turn, Vector3::new(0.4, -1.0, 3.0));
@@ -29,7 +29,7 @@ fn the_point_that_touches_is_at_rest() {
 /// Checks that a rattleback that is spun backwards with a tilt of half a degree reverses its spin, and that
 /// one spun forwards keeps its direction.
 #[test]
-fn turns_back() -> Result<(), Error> {
+fn rattleback_reverses_its_spin() -> Result<(), Error> {
     let tilt = 0.5_f64.to_radians();
     for (spin, turns_back) in [(-5.0, true), (5.0, false)] {
         let turn = UnitQuaternion::from_euler_angles(tilt, tilt, 0.0);

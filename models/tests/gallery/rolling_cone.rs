@@ -25,7 +25,7 @@ fn rolling_state(c: &RollingCone, theta: f64, rate: f64) -> (SVector<f64, 7>, SV
 }
 
 #[test]
-fn has_one_degree_of_freedom() {
+fn rolling_cone_has_one_degree_of_freedom() {
     assert_eq!((RollingCone::NC, RollingCone::NH, RollingCone::NS), (5, 2, 1));
     let (q, v) = rolling_state(&C, 0.7, 3.0);
     assert!(C.constraint_residuals(&q).amax() < 1e-15);
@@ -36,9 +36,9 @@ fn has_one_degree_of_freedom() {
     assert_close(C.potential_energy(&q), C.mass * C.g * height, 1e-14);
 }
 
-/// Large oscillations have the period of an elliptic integral.
+/// Checks that large oscillations of the cone have the period of an elliptic integral.
 #[test]
-fn swings_about_its_apex() -> Result<(), Error> {
+fn rolling_cone_swings_about_its_apex() -> Result<(), Error> {
     let cosine = C.half_angle.cos();
     let slow = 5.0 * C.g * cosine * C.slope.sin() / (C.height * (1.0 + 5.0 * cosine * cosine));
     for theta in [1e-3_f64, 1.2, 2.5] {
@@ -61,7 +61,7 @@ fn swings_about_its_apex() -> Result<(), Error> {
 /// Checks Euler's equation about the apex of a cone that rolls on a level plane: the moments of normal force
 /// and weight together change the angular momentum.
 #[test]
-fn presses_on_a_line() {
+fn cone_normal_force_along_contact_line() {
     let c = RollingCone { slope: 0.0, ..C };
     let (sine, cosine) = c.half_angle.sin_cos();
     let radius = c.height * c.half_angle.tan();

@@ -14,7 +14,7 @@ fn leaning_state(lean: f64, u: [f64; 3]) -> (SVector<f64, 6>, SVector<f64, 6>) {
 }
 
 #[test]
-fn accelerations() {
+fn rolling_disk_accelerations() {
     assert_eq!((RollingDisk::NC, RollingDisk::NH, RollingDisk::NP, RollingDisk::NS), (3, 1, 5, 3));
     let (lean, u): (f64, _) = (0.35, [0.7, -3.0, 1.3]);
     let (q, v) = leaning_state(lean, u);
@@ -35,7 +35,7 @@ fn accelerations() {
 /// Checks the stability of a rolling disk. Below the critical speed one exponent is positive; above it small
 /// leans oscillate. The other exponents are zero.
 #[test]
-fn stability_of_rolling_straight() {
+fn rolling_disk_stability_of_straight_motion() {
     let critical = (D.g * D.radius / 3.0).sqrt();
     for speed in [0.3 * critical, 0.99 * critical, 1.01 * critical, 3.0 * critical] {
         let (q, v) = leaning_state(0.0, [0.0, speed / D.radius, 0.0]);
@@ -53,9 +53,9 @@ fn stability_of_rolling_straight() {
     }
 }
 
-/// The disk rolls in circles with a steady lean: `u₁` is constant.
+/// Checks that the disk rolls in circles with a steady lean: `u₁` is constant.
 #[test]
-fn rolls_in_circles() -> Result<(), Error> {
+fn disk_rolls_in_circles() -> Result<(), Error> {
     let (lean, turning) = (0.3_f64, 2.5);
     let across = turning * lean.cos();
     let spin = (across * across * lean.tan() - 4.0 * D.g / D.radius * lean.sin()) / (6.0 * across);

@@ -13,7 +13,7 @@ const S: SeriesElasticJoint = SeriesElasticJoint {
 };
 
 #[test]
-fn equations_of_motion() {
+fn series_elastic_equations_of_motion() {
     let (q, v, drive) = ([0.7, 0.5].into(), [1.0, -0.5].into(), 3.0);
     let torque = 120.0 * 0.2 + 0.4 * 1.5;
     assert_close(S.torque(&q, &v), torque, 1e-13);
@@ -23,15 +23,16 @@ fn equations_of_motion() {
     assert_derivatives(&S, &q, &v, &[drive].into(), 1e-6);
 }
 
-/// A heavy link is at rest.
+/// Checks the transfer function from motor torque to spring torque, for a heavy link that is at rest.
 #[test]
-fn transfer_function_of_the_torque() {
+fn series_elastic_torque_transfer_function() {
     let fixed = SeriesElasticJoint { mass: 1e12, g: 0.0, ..S };
     let linear = fixed.linear_motion(&[0.0; 2].into(), &[0.0; 2].into(), &[0.0].into());
     for omega in [3.0, 49.0, 300.0] {
         let s = Complex::new(0.0, omega);
-        let complex = |m: Matrix2<f64>| m.map(|x| Complex::new(x, 0.0));
-        let matrix = Matrix2::identity() * (s * s) - complex(linear.by_v) * s - complex(linear.by_q);
+        let complex_matrix = |m: Matrix2<f64>| m.map(|x| Complex::new(x, 0.0));
+        let matrix =
+            Matrix2::identity() * (s * s) - complex_matrix(linear.by_v) * s - complex_matrix(linear.by_q);
         let motion = matrix.try_inverse().unwrap() * linear.by_u.map(|x| Complex::new(x, 0.0));
         let spring = s * 0.4 + 120.0;
         let expected = spring / (s * s * 0.05 + spring);

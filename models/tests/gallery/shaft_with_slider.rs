@@ -5,7 +5,7 @@ use linkwork_models::ShaftWithSlider;
 const S: ShaftWithSlider = ShaftWithSlider { inertia: 0.4, mass: 0.7 };
 
 #[test]
-fn equations_of_motion() {
+fn shaft_with_slider_equations_of_motion() {
     let (q, v) = (SVector::from([1.1, 0.6]), SVector::from([2.0, -0.5]));
     let mass = SMatrix::<f64, 2, 2>::new(0.4 + 0.7 * 0.36, 0.0, 0.0, 0.7);
     assert_near(S.mass_matrix(&q), mass, 1e-15);
@@ -14,7 +14,7 @@ fn equations_of_motion() {
 }
 
 #[test]
-fn angular_momentum_is_conserved() -> Result<(), Error> {
+fn shaft_with_slider_conserves_momentum() -> Result<(), Error> {
     let start = (0.4 + 0.7 * 0.01) * 10.0;
     let run = simulate(&S).from([0.0, 0.1], [10.0, 0.0]).method(ImplicitMidpoint::step(0.001));
     for sample in run.duration(2.0).sample_every(0.1) {
@@ -25,7 +25,7 @@ fn angular_momentum_is_conserved() -> Result<(), Error> {
 }
 
 #[test]
-fn slides_out_as_cosh_at_constant_speed() -> Result<(), Error> {
+fn slider_moves_outwards_as_cosh() -> Result<(), Error> {
     let omega = 3.0;
     let end = simulate(&S)
         .from([0.0, 0.1], [omega, 0.0])

@@ -4,11 +4,12 @@ use linkwork_models::SliderCrank;
 
 const S: SliderCrank = SliderCrank { g: 9.81, r: 0.04, l: 0.13, m_crank: 0.9, m_rod: 0.5, m_piston: 0.35 };
 
-/// Function of the crank's angle with its first and second derivatives.
-type Course = [f64; 3];
+/// Function of the crank angle, as its value with the first and second derivative.
+type CrankFunction = [f64; 3];
 
-/// Returns the rod's angle, x and y of its centre, and the position of the piston.
-fn closed_form(theta: f64) -> [Course; 4] {
+/// Returns the closed forms of the rod's angle, x and y of its centre, and the position of the piston, as
+/// functions of the crank angle.
+fn closed_form_positions(theta: f64) -> [CrankFunction; 4] {
     let SliderCrank { r, l, .. } = S;
     let (s, c) = theta.sin_cos();
     let phi = (-r / l * s).asin();
@@ -22,13 +23,13 @@ fn closed_form(theta: f64) -> [Course; 4] {
 }
 
 fn crank_state(theta: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
-    let [rod, .., piston] = closed_form(theta);
+    let [rod, .., piston] = closed_form_positions(theta);
     let q = [theta, rod[0] - theta, piston[0]];
     (q.into(), [rate, (rod[1] - 1.0) * rate, piston[1] * rate].into())
 }
 
 #[test]
-fn piston_is_where_the_closed_form_says() {
+fn piston_position_matches_closed_form() {
     assert_eq!((SliderCrank::NC, SliderCrank::NP, SliderCrank::NU), (2, 1, 1));
     for k in 0..12 {
         let theta = 0.1 + f64::from(k) * std::f64::consts::PI / 6.0;
@@ -42,16 +43,17 @@ fn piston_is_where_the_closed_form_says() {
     }
 }
 
-/// The acceleration follows from Eksergian's equation, and the power of the motor is the rate of the energy.
+/// Checks that the acceleration follows from Eksergian's equation, and that the power of the motor is the
+/// rate of the energy.
 #[test]
-fn reduced_inertia() {
+fn slider_crank_reduced_inertia() {
     let SliderCrank { g, r, l, m_crank, m_rod, m_piston } = S;
     let (theta, rate, torque) = (0.8, 120.0, 7.0);
-    let courses = closed_form(theta);
+    let courses = closed_form_positions(theta);
     let [rod, x, y, piston] = courses;
     let masses = [m_rod * l * l / 12.0, m_rod, m_rod, m_piston];
     let sum_over_masses =
-        |f: fn(&Course) -> f64| masses.iter().zip(&courses).map(|(m, c)| m * f(c)).sum::<f64>();
+        |f: fn(&CrankFunction) -> f64| masses.iter().zip(&courses).map(|(m, c)| m * f(c)).sum::<f64>();
     let inertia = m_crank * r * r / 3.0 + sum_over_masses(|c| c[1] * c[1]);
     let lift = g * (m_crank * r / 2.0 * theta.cos() + m_rod * y[1]);
     let expected = (torque - sum_over_masses(|c| c[1] * c[2]) * rate * rate - lift) / inertia;
@@ -59,7 +61,7 @@ fn reduced_inertia() {
     let (q, v) = crank_state(theta, rate);
     assert_close(S.kinetic_energy(&q, &v), inertia * rate * rate / 2.0, 1e-13);
     let a = S.forward_dynamics(&q, &v, &S.generalized_forces(&q, &[torque].into()));
-    let acceleration_of_course = |c: &Course| c[1] * expected + c[2] * rate * rate;
+    let acceleration_of_course = |c: &CrankFunction| c[1] * expected + c[2] * rate * rate;
     assert_near(
         a,
         [expected, acceleration_of_course(&rod) - expected, acceleration_of_course(&piston)].into(),

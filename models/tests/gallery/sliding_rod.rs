@@ -4,18 +4,18 @@ use linkwork_models::SlidingRod;
 
 const R: SlidingRod = SlidingRod { g: 9.81, mass: 0.3, half: 0.5, radius: 0.01, friction: 0.4 };
 
-/// Returns a state with this angle, slip velocity of the end and angular velocity.
+/// Returns a state of the rod with this angle, slip velocity of its end and angular velocity.
 fn rod_state(angle: f64, slip: f64, rate: f64) -> (SVector<f64, 3>, SVector<f64, 3>) {
     let [c, d] = contact_arm(angle);
     ([0.0, -d, angle].into(), [slip + rate * d, -rate * c, rate].into())
 }
 
-/// Returns the contact point relative to the centre.
+/// Returns the position of the rod's contact point relative to its centre.
 fn contact_arm(angle: f64) -> [f64; 2] {
     [-R.half * angle.cos(), -R.half * angle.sin() - R.radius]
 }
 
-/// Returns `1/m + c²/J + μ σ c d / J`, the normal acceleration per normal force.
+/// Returns the normal acceleration of the rod's end per normal force, `1/m + c²/J + μ σ c d / J`.
 fn acceleration_per_normal_force(rod: &SlidingRod, angle: f64, slip: f64) -> f64 {
     let ([c, d], inertia) = (contact_arm(angle), rod.mass * rod.half * rod.half / 3.0);
     let part = slip / slip.hypot(1e-3);
@@ -23,7 +23,7 @@ fn acceleration_per_normal_force(rod: &SlidingRod, angle: f64, slip: f64) -> f64
 }
 
 #[test]
-fn slides_under_its_normal_force() {
+fn sliding_rod_normal_force() {
     assert_eq!((SlidingRod::NC, SlidingRod::NS), (1, 2));
     for (slip, rate) in [(0.7, 0.0), (-0.7, 0.5), (1e-3, -0.8), (0.0, 0.0)] {
         let (q, v) = rod_state(0.6, slip, rate);
@@ -43,7 +43,7 @@ fn slides_under_its_normal_force() {
 /// Checks that a pushed rod on a rough floor slides if it is steep and jams if it is flat, while a pulled rod
 /// always slides.
 #[test]
-fn jams() {
+fn pushed_rod_jams_if_flat() {
     let rough = SlidingRod { friction: 1.8, ..R };
     let mut seen = [0; 2];
     for k in 1..15 {

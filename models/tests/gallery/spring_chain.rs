@@ -14,7 +14,7 @@ fn vibration_mode(j: usize) -> (f64, f64, SVector<f64, 3>) {
 }
 
 #[test]
-fn equations_of_motion() {
+fn spring_chain_equations_of_motion() {
     let k = SMatrix::<f64, 3, 3>::new(2.0, -1.0, 0.0, -1.0, 2.0, -1.0, 0.0, -1.0, 1.0);
     let (q, v) = (SVector::from([0.1, -0.3, 0.2]), SVector::from([1.0, 0.4, -2.0]));
     assert_near(C.mass_matrix(&q), SMatrix::identity() * C.mass, 1e-15);
@@ -22,7 +22,7 @@ fn equations_of_motion() {
 }
 
 #[test]
-fn modes_are_decoupled() {
+fn spring_chain_modes_are_decoupled() {
     for j in 1..=3 {
         let (omega, zeta, shape) = vibration_mode(j);
         let (q, v) = (0.05 * shape, 0.2 * shape);
@@ -32,7 +32,7 @@ fn modes_are_decoupled() {
 }
 
 #[test]
-fn modes_decay_at_their_own_rate() -> Result<(), Error> {
+fn spring_chain_modes_decay_independently() -> Result<(), Error> {
     for j in 1..=3 {
         let (omega, zeta, shape) = vibration_mode(j);
         let damped = omega * (1.0 - zeta * zeta).sqrt();

@@ -3,7 +3,7 @@ use linkwork::nalgebra::{Isometry3, Matrix6, UnitQuaternion, Vector3, Vector6};
 use linkwork::prelude::*;
 use linkwork_models::StewartPlatform;
 
-/// Angles of feet and heads on their circles, degrees.
+/// Angles of each leg's foot and head on their circles, degrees.
 const LEGS: [(f64, f64); 6] =
     [(10.0, 50.0), (110.0, 70.0), (130.0, 170.0), (230.0, 190.0), (250.0, 290.0), (350.0, 310.0)];
 
@@ -18,7 +18,7 @@ const P: StewartPlatform = StewartPlatform {
     leg: 0.6,
 };
 
-fn on_circle(radius: f64, degrees: f64) -> Vector3<f64> {
+fn point_on_circle(radius: f64, degrees: f64) -> Vector3<f64> {
     let (s, c) = degrees.to_radians().sin_cos();
     Vector3::new(radius * c, radius * s, 0.0)
 }
@@ -31,11 +31,11 @@ fn platform_pose() -> Isometry3<f64> {
     )
 }
 
-/// Returns the legs as vectors from foot to head.
+/// Returns the vectors of all legs from foot to head for a pose of the platform.
 fn legs_as_vectors(pose: &Isometry3<f64>) -> [Vector3<f64>; 6] {
     LEGS.map(|(foot, head)| {
-        let head = pose * linkwork::nalgebra::Point3::from(on_circle(P.platform_radius, head));
-        head.coords - on_circle(P.base_radius, foot)
+        let head = pose * linkwork::nalgebra::Point3::from(point_on_circle(P.platform_radius, head));
+        head.coords - point_on_circle(P.base_radius, foot)
     })
 }
 
@@ -54,7 +54,7 @@ fn platform_configuration(pose: &Isometry3<f64>) -> SVector<f64, { StewartPlatfo
 }
 
 #[test]
-fn inverse_kinematics() {
+fn stewart_platform_inverse_kinematics() {
     assert_eq!((StewartPlatform::NV, StewartPlatform::NC), (24, 18));
     assert_eq!((StewartPlatform::NP, StewartPlatform::NS, StewartPlatform::NU), (6, 6, 6));
     let q = platform_configuration(&platform_pose());
@@ -69,15 +69,15 @@ fn inverse_kinematics() {
     assert_near(P.assemble(&guess, &lengths).expect("a pose is near"), q, 1e-12);
 }
 
-/// Leg forces follow from virtual work. Rows: derivatives of the weights' heights, and of the lengths, with
-/// respect to the platform's velocity in body axes.
+/// Checks leg forces by virtual work. Rows of the matrices are derivatives of the weights' heights, and of
+/// the lengths, with respect to the platform's velocity in body axes.
 #[test]
-fn forces_by_virtual_work() {
+fn stewart_leg_forces_by_virtual_work() {
     let pose = platform_pose();
     let (mut lengths, mut weight) = (Matrix6::zeros(), Vector6::zeros());
     weight[2] = P.platform_mass;
     for (k, (leg, (_, head))) in legs_as_vectors(&pose).into_iter().zip(LEGS).enumerate() {
-        let arm = pose.rotation * on_circle(P.platform_radius, head);
+        let arm = pose.rotation * point_on_circle(P.platform_radius, head);
         let (length, n) = (leg.norm(), leg.normalize());
         let wrench_row = |f: Vector3<f64>| {
             let torque = arm.cross(&f);
@@ -100,7 +100,7 @@ fn forces_by_virtual_work() {
 }
 
 #[test]
-fn energy_is_conserved() -> Result<(), Error> {
+fn stewart_platform_conserves_energy() -> Result<(), Error> {
     let q = platform_configuration(&platform_pose());
     let mut v = SVector::<f64, { StewartPlatform::NV }>::zeros();
     v.fixed_rows_mut::<6>(0).copy_from_slice(&[0.3, -0.2, 0.5, 0.4, 0.6, -0.5]);

@@ -42,12 +42,12 @@ pub fn elliptic_integral(k2: f64) -> f64 {
 }
 
 /// Returns the pose of a rotation about z and a displacement along z: one half of a Denavit–Hartenberg step.
-pub fn about_z(angle: f64, d: f64) -> Isometry3<f64> {
+pub fn pose_about_z(angle: f64, d: f64) -> Isometry3<f64> {
     pose_about_axis(Vector3::z(), angle, d)
 }
 
 /// Returns a rotation about x and a displacement along it: the other half of a Denavit–Hartenberg step.
-pub fn about_x(angle: f64, a: f64) -> Isometry3<f64> {
+pub fn pose_about_x(angle: f64, a: f64) -> Isometry3<f64> {
     pose_about_axis(Vector3::x(), angle, a)
 }
 
@@ -70,21 +70,27 @@ pub fn assert_derivatives<M, const NV: usize, const NU: usize, const NQ: usize>(
 {
     const STEP: f64 = 1e-6;
     let linear = at(m, 0.0).linear_motion(q, v, u);
-    let acceleration = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, u: &SVector<f64, NU>| {
+    let acceleration_at = |q: &SVector<f64, NQ>, v: &SVector<f64, NV>, u: &SVector<f64, NU>| {
         m.forward_dynamics(0.0, q, v, &m.generalized_forces(0.0, q, v, u))
     };
-    let slope = |a: SVector<f64, NV>, b: SVector<f64, NV>| (a - b) / (2.0 * STEP);
+    let difference_quotient = |a: SVector<f64, NV>, b: SVector<f64, NV>| (a - b) / (2.0 * STEP);
     let (mut by_q, mut by_v, mut by_u) = (linear.by_q, linear.by_v, linear.by_u);
     for k in 0..NV {
         let step = SVector::from_fn(|i, _| if i == k { STEP } else { 0.0 });
-        let displaced = |step| m.integrate(q, &step);
-        let [above, below] = [step, -step].map(|step| acceleration(&displaced(step), v, u));
-        by_q.set_column(k, &slope(above, below));
-        by_v.set_column(k, &slope(acceleration(q, &(v + step), u), acceleration(q, &(v - step), u)));
+        let displaced_configuration = |step| m.integrate(q, &step);
+        let [above, below] = [step, -step].map(|step| acceleration_at(&displaced_configuration(step), v, u));
+        by_q.set_column(k, &difference_quotient(above, below));
+        by_v.set_column(
+            k,
+            &difference_quotient(acceleration_at(q, &(v + step), u), acceleration_at(q, &(v - step), u)),
+        );
     }
     for k in 0..NU {
         let step = SVector::from_fn(|i, _| if i == k { STEP } else { 0.0 });
-        by_u.set_column(k, &slope(acceleration(q, v, &(u + step)), acceleration(q, v, &(u - step))));
+        by_u.set_column(
+            k,
+            &difference_quotient(acceleration_at(q, v, &(u + step)), acceleration_at(q, v, &(u - step))),
+        );
     }
     assert_near(linear.by_q, by_q, tolerance);
     assert_near(linear.by_v, by_v, tolerance);

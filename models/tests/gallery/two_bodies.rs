@@ -10,7 +10,7 @@ fn relative_position(x: &SVector<f64, 6>) -> SVector<f64, 3> {
 }
 
 #[test]
-fn newtons_law() {
+fn two_bodies_obey_newtons_law() {
     let q = SVector::from([0.1, -0.4, 0.3, 1.2, 0.7, -0.5]);
     let r = relative_position(&q);
     let pull = 0.5 * 3.0 / r.norm().powi(3) * r;
@@ -23,7 +23,7 @@ fn newtons_law() {
 /// Checks that two gravitating bodies that start at the pericentre move relative to each other on an ellipse
 /// with a = 1 and e = 0.6, while their centre of mass drifts.
 #[test]
-fn ellipse() -> Result<(), Error> {
+fn two_bodies_move_on_ellipses() -> Result<(), Error> {
     let (mu, a, e) = (2.0_f64, 1.0, 0.6);
     let period = TAU * (a * a * a / mu).sqrt();
     let near = a * (1.0 - e);

@@ -2,7 +2,7 @@ use crate::testing::{assert_near, precise_integrator};
 use linkwork::prelude::*;
 use linkwork_models::WilberforcePendulum;
 
-/// Pendulum with the dimensions of Berg and Marshall's.
+/// Test pendulum with the dimensions of Berg and Marshall's.
 const P: WilberforcePendulum = WilberforcePendulum {
     mass: 0.4905,
     inertia: 1.39e-4,
@@ -12,7 +12,7 @@ const P: WilberforcePendulum = WilberforcePendulum {
 };
 
 #[test]
-fn equations_of_motion() {
+fn wilberforce_equations_of_motion() {
     let q = SVector::from([0.04, -1.3]);
     let bias = [2.63 * q[0] + 4.635e-3 * q[1], 7.44e-4 * q[1] + 4.635e-3 * q[0]];
     assert_near(P.bias_forces(&q, &SVector::from([0.1, 2.0])), SVector::from(bias), 1e-15);
@@ -21,7 +21,7 @@ fn equations_of_motion() {
 }
 
 #[test]
-fn bouncing_becomes_twisting_and_back() -> Result<(), Error> {
+fn wilberforce_energy_alternates() -> Result<(), Error> {
     let omega2 = P.stiffness / P.mass;
     let tuned = WilberforcePendulum { torsion: omega2 * P.inertia, ..P };
     let split = P.coupling / (2.0 * (P.mass * P.inertia).sqrt());

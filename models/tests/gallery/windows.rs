@@ -3,7 +3,7 @@ use linkwork::prelude::*;
 use linkwork_models::TwoWindows;
 
 #[test]
-fn windows_go_through_their_singular_positions() -> Result<(), Error> {
+fn windows_pass_singular_configurations() -> Result<(), Error> {
     let windows = TwoWindows { g: 9.81, mass: 1.0, length: 1.0 };
     assert_eq!((TwoWindows::NV, TwoWindows::NC), (5, 4));
     // Angles are counter-clockwise; the couplers keep their direction.

@@ -10,7 +10,7 @@ use std::error::Error as Failure;
 use std::io::Read;
 use std::time::Instant;
 
-type Numbers = Result<Vec<f64>, Error>;
+type ResultNumbers = Result<Vec<f64>, Error>;
 
 fn flatten_matrix(m: &DMatrix<f64>) -> Vec<f64> {
     m.transpose().iter().copied().collect()
@@ -21,7 +21,7 @@ fn flatten_complex_numbers(all: &[Complex<f64>]) -> Vec<f64> {
 }
 
 /// Computes the named result of a system, such as `poles`, `zeros` or `care`.
-fn compute_result(name: &str, s: &StateSpace) -> Numbers {
+fn compute_result(name: &str, s: &StateSpace) -> ResultNumbers {
     let (n, m) = s.b().shape();
     let unit_cost = || Cost::new(DMatrix::identity(n, n), DMatrix::identity(m, m));
     Ok(match name {

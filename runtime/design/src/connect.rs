@@ -180,7 +180,7 @@ impl StateSpace {
         Ok(Self { a, c, ..self.clone() })
     }
 
-    /// Selects inputs and outputs of this system, by name or index.
+    /// Returns the system with only some of its inputs and outputs, selected by name or index.
     ///
     /// # Errors
     ///

@@ -5,12 +5,12 @@ use crate::{Error, StateSpace};
 use nalgebra::DMatrix;
 
 /// Matrix pencil `M − s E` that is singular at the frequencies sought; `s` is `z` for a discrete system.
-struct Pencil {
+struct MatrixPencil {
     m: DMatrix<f64>,
     e: DMatrix<f64>,
 }
 
-impl Pencil {
+impl MatrixPencil {
     /// Returns the finite eigenvalues of the pencil `M − s E` as `σ + 1 / μ`, where `μ` are the eigenvalues
     /// of `(M − σ E)⁻¹ E`. Infinite eigenvalues may be returned as large ones. If the pencil is singular for
     /// all `s`, the list is empty.
@@ -23,7 +23,8 @@ impl Pencil {
 }
 
 impl StateSpace {
-    /// Returns the frequency of a point in the plane of poles and zeros, rad/s: `|Im s|`, or `|arg z| / h`.
+    /// Returns the frequency of a pole or zero in the complex plane, rad/s: `|Im s|`, or `|arg z| / h` for a
+    /// discrete system.
     pub(crate) fn frequency_of(&self, root: C) -> f64 {
         self.period.map_or(root.im.abs(), |h| root.arg().abs() / h)
     }
@@ -71,7 +72,7 @@ impl StateSpace {
         left.view_mut((u + p, n), (m, n)).copy_from(&b.transpose());
         left.view_mut((u + p, w), (m, p)).copy_from(&self.d.transpose());
         left.view_mut((u + p, u), (m, m)).fill_diagonal(-level);
-        self.pencil_frequencies(&Pencil { m: left, e: right })
+        self.pencil_frequencies(&MatrixPencil { m: left, e: right })
     }
 
     /// Returns candidates that include all frequencies at which the response of a single channel is real, in
@@ -95,12 +96,12 @@ impl StateSpace {
         }
         left.view_mut((2 * n, 0), (1, n)).copy_from(&c);
         left.view_mut((2 * n, n), (1, n)).copy_from(&-&c);
-        self.pencil_frequencies(&Pencil { m: left, e: right })
+        self.pencil_frequencies(&MatrixPencil { m: left, e: right })
     }
 
-    /// Returns the frequencies of a pencil's eigenvalues, computed with several shifts. Each shift is
-    /// accurate for eigenvalues of about its own magnitude.
-    fn pencil_frequencies(&self, pencil: &Pencil) -> Result<Vec<f64>, Error> {
+    /// Returns the frequencies of the eigenvalues of a matrix pencil, rad/s, computed with several shifts.
+    /// Each shift is accurate for eigenvalues of about its own magnitude.
+    fn pencil_frequencies(&self, pencil: &MatrixPencil) -> Result<Vec<f64>, Error> {
         let (a, b, c, _) = balance_system(&self.a, &self.b, &self.c);
         let mut scales = self.root_frequencies()?;
         let unit = self.period.map_or_else(|| a.norm().max(b.norm() * c.norm()), |h| 1.0 / h);

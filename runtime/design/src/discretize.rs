@@ -13,9 +13,9 @@ pub enum Hold {
     /// First-order (triangle) hold: inputs are piecewise linear between sampling instants. Exact for measured
     /// inputs that vary linearly.
     First,
-    /// Trapezoidal rule of Tustin, `s = 2 (z − 1) / (h (z + 1))`.
+    /// Trapezoidal rule (Tustin's method), `s = 2 (z − 1) / (h (z + 1))`.
     Tustin,
-    /// Tustin's rule prewarped to be exact at this frequency, rad/s.
+    /// Tustin's rule, prewarped to be exact at this frequency, rad/s.
     Prewarped(f64),
 }
 
@@ -23,7 +23,7 @@ fn check_period(period: f64) -> Result<(), Error> {
     if period > 0.0 && period.is_finite() { Ok(()) } else { Err(Error::Period { period }) }
 }
 
-/// Returns the factor `a` of `s = a (z − 1) / (z + 1)`.
+/// Returns the factor `a` of the bilinear transformation `s = a (z − 1) / (z + 1)`.
 fn bilinear_factor(hold: Hold, h: f64) -> Result<f64, Error> {
     match hold {
         Hold::Prewarped(w) if !(w > 0.0 && w * h < std::f64::consts::PI) => {
@@ -94,7 +94,7 @@ impl StateSpace {
         Self { a, b, c, d, ..self.clone() }.with_period(period)
     }
 
-    /// Returns the continuous system whose discretisation is this system.
+    /// Returns the continuous system whose discretisation with this hold is the given discrete system.
     ///
     /// # Errors
     ///

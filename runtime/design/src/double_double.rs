@@ -6,15 +6,15 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// Factor of the splitting of a number into two halves.
 const SPLIT: f64 = 134_217_729.0;
 
-/// Returns the rounding error of a product, by Veltkamp's splitting: processors without a fused product take
-/// hundreds of operations for `mul_add`.
+/// Returns the rounding error of the product of two numbers, by Veltkamp's splitting: processors without a
+/// fused product take hundreds of operations for `mul_add`.
 fn product_error(a: f64, b: f64, product: f64) -> f64 {
-    let halves = |x: f64| {
+    let split_into_halves = |x: f64| {
         let shifted = SPLIT * x;
         let high = shifted - (shifted - x);
         (high, x - high)
     };
-    let ((a_high, a_low), (b_high, b_low)) = (halves(a), halves(b));
+    let ((a_high, a_low), (b_high, b_low)) = (split_into_halves(a), split_into_halves(b));
     ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
 }
 
@@ -26,7 +26,7 @@ pub(crate) struct DoubleDouble {
 }
 
 impl DoubleDouble {
-    /// Normalises the sum of a number and a smaller one.
+    /// Returns the sum of a number and a smaller one as a double-double number.
     fn from_sum(high: f64, low: f64) -> Self {
         let sum = high + low;
         Self { high: sum, low: low - (sum - high) }
@@ -39,7 +39,7 @@ impl DoubleDouble {
         Self::from_sum(near, near * ((1.0 - product) - product_error(near, x, product)))
     }
 
-    /// Returns the nearest floating-point number.
+    /// Returns the double-precision number nearest to a double-double number.
     pub fn value(self) -> f64 {
         self.high
     }

@@ -4,18 +4,18 @@ use nalgebra::Complex;
 use std::fmt;
 
 /// Number of objects with their noun, printed as in `one unknown` or `3 unknowns`.
-struct Counted(usize, &'static str);
+struct CountedNoun(usize, &'static str);
 
-impl fmt::Display for Counted {
+impl fmt::Display for CountedNoun {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Counted(1, what) => write!(f, "one {what}"),
-            Counted(n, what) => write!(f, "{n} {what}s"),
+            CountedNoun(1, what) => write!(f, "one {what}"),
+            CountedNoun(n, what) => write!(f, "{n} {what}s"),
         }
     }
 }
 
-/// Reason why a result does not exist. Every variant names the cause.
+/// Reason why an analysis of a linear system or steady state has no result.
 #[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
@@ -126,20 +126,20 @@ pub enum Error {
         /// Rejected value, which is out of range.
         value: f64,
     },
-    /// The state of a mechanism violates its constraints, or the constraints lose rank there.
+    /// Error: the state of a mechanism violates its constraints, or the constraints lose rank there.
     Constraint(linkwork::ConstraintError),
-    /// No state near the guess satisfies all conditions of a steady state.
+    /// Error: no state near the guess satisfies all conditions of a steady state.
     NoSteadyState {
         /// Condition of the steady state that is violated most: an acceleration (marked with two primes), the
         /// velocity of a constraint (one prime), a constraint, or an output.
         condition: String,
-        /// Residual of that condition, in its own unit.
+        /// Residual of the most violated condition of the steady state, in the unit of the condition.
         residual: f64,
         /// Number of conditions of the steady state.
         conditions: usize,
         /// Number of unknowns of the steady state.
         unknowns: usize,
-        /// State of minimum violation: the configuration, then the other unknowns.
+        /// State of minimum violation, as names and values: the configuration, then the other unknowns.
         place: Vec<(String, f64)>,
     },
     /// Conditions of a steady state that do not determine all unknowns: there are too many unknowns, or the
@@ -147,7 +147,7 @@ pub enum Error {
     Undetermined {
         /// Unknowns that can change while all conditions remain satisfied.
         unknowns: Vec<String>,
-        /// State of the solution: the configuration, then the other unknowns.
+        /// State of the solution, as names and values: the configuration, then the other unknowns.
         place: Vec<(String, f64)>,
     },
     /// Linearisation about a state that is not steady.
@@ -155,7 +155,8 @@ pub enum Error {
         /// Quantity that is not zero although the state should be steady: an acceleration (marked with two
         /// primes), a time derivative (one prime), or the violated condition of a trim.
         what: String,
-        /// Value of that quantity, m/s², rad/s² or rad/s, or the residual of the condition.
+        /// Value of the quantity that is not steady, m/s², rad/s² or rad/s, or the residual of the violated
+        /// condition.
         rate: f64,
     },
     /// A motion without a second-order form: forces depend on a coordinate that has no independent velocity.
@@ -197,7 +198,7 @@ impl fmt::Display for Error {
             Self::Count { what, expected, found } => write!(f, "expected {expected} {what}, found {found}"),
             Self::Period { period } => write!(f, "expected a positive period, found {period} s"),
             Self::Time { periods: [one, other] } => {
-                write!(f, "{} and {} are incompatible", TimeName(*one), TimeName(*other))
+                write!(f, "{} and {} are incompatible", PeriodDescription(*one), PeriodDescription(*other))
             }
             Self::Improper { numerator, denominator } => {
                 write!(f, "improper: degree {numerator} over degree {denominator}")
@@ -221,16 +222,16 @@ impl fmt::Display for Error {
                 f,
                 "no steady state near the guess: {} for {}, and `{condition}` is left at {residual:.3e}, at \
                  {}",
-                Counted(*unknowns, "unknown"),
-                Counted(*conditions, "condition"),
-                Listed(place)
+                CountedNoun(*unknowns, "unknown"),
+                CountedNoun(*conditions, "condition"),
+                ListedValues(place)
             ),
             Self::Undetermined { unknowns, place } => write!(
                 f,
                 "the conditions do not determine {} at {}: fix or prescribe one of them, add a condition, or \
                  take the nearest",
                 unknowns.join(", "),
-                Listed(place)
+                ListedValues(place)
             ),
             Self::NotSteady { what, rate } => {
                 write!(f, "not steady: `{what}` has a residual of {rate:.3e}")
@@ -255,9 +256,9 @@ impl From<linkwork::ConstraintError> for Error {
 }
 
 /// List of names with their values, printed in an error message.
-struct Listed<'a>(&'a [(String, f64)]);
+struct ListedValues<'a>(&'a [(String, f64)]);
 
-impl fmt::Display for Listed<'_> {
+impl fmt::Display for ListedValues<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (k, (name, value)) in self.0.iter().enumerate() {
             let comma = if k == 0 { "" } else { ", " };
@@ -290,9 +291,9 @@ fn edit_distance(one: &str, other: &str) -> usize {
     row[other.len()]
 }
 
-struct TimeName(Option<f64>);
+struct PeriodDescription(Option<f64>);
 
-impl fmt::Display for TimeName {
+impl fmt::Display for PeriodDescription {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
             Some(0.0) => write!(f, "discrete time"),

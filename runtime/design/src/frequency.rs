@@ -13,12 +13,12 @@ pub struct FrequencyMap {
     c: DMatrix<f64>,
     d: DMatrix<f64>,
     period: Option<f64>,
-    /// Whether `h` results from rounded rotations of the states.
+    /// Whether the Hessenberg form results from rounded rotations of the states.
     is_transformed: bool,
 }
 
 impl FrequencyMap {
-    /// Returns `C (s I − A)⁻¹ B + D` at a complex frequency; `s` is `z` for a discrete system.
+    /// Returns the response `C (s I − A)⁻¹ B + D` at a complex frequency; `s` is `z` for a discrete system.
     ///
     /// # Errors
     ///
@@ -34,7 +34,7 @@ impl FrequencyMap {
 
     /// Factorises `s I − A` into row operations and a triangular matrix, by Gaussian elimination of a
     /// Hessenberg matrix.
-    fn factorise_at_frequency(&self, s: C) -> Result<Factors, Error> {
+    fn factorise_at_frequency(&self, s: C) -> Result<TriangularFactors, Error> {
         let n = self.h.nrows();
         let mut u = CMatrix::from_fn(n, n, |i, j| {
             let entry = C::new(-self.h[(i, j)], 0.0);
@@ -54,7 +54,7 @@ impl FrequencyMap {
             steps.push((swapped, factor));
         }
         if (0..n).all(|k| u[(k, k)].norm() > 0.0) {
-            Ok(Factors { u, steps })
+            Ok(TriangularFactors { u, steps })
         } else {
             Err(Error::Singular { what: "s I − A, at a pole," })
         }
@@ -66,7 +66,7 @@ impl FrequencyMap {
     /// # Errors
     ///
     /// [`Error::Singular`] at a pole.
-    pub(crate) fn sample_channel(&self, s: C) -> Result<Sample, Error> {
+    pub(crate) fn sample_channel(&self, s: C) -> Result<ResponseSample, Error> {
         let factors = self.factorise_at_frequency(s)?;
         let (mut x, mut y) = (complex_matrix(&self.b), complex_matrix(&self.c));
         factors.solve_in_place(&mut x);
@@ -79,15 +79,19 @@ impl FrequencyMap {
             size_y * ((self.h.norm() + s.norm()) * size_x + self.b.norm()) + self.c.norm() * size_x
         } else {
             let (size_x, size_y) = (x.map(|x| x.norm()), y.map(|y| y.norm()));
-            let sizes = factors.sizes(&size_x) + self.h.abs() * &size_x + &size_x * s.norm() + self.b.abs();
+            let sizes = factors.magnitude_bounds(&size_x)
+                + self.h.abs() * &size_x
+                + &size_x * s.norm()
+                + self.b.abs();
             (size_y * sizes)[(0, 0)] + (self.c.abs() * size_x)[(0, 0)]
         };
         let rounding = 4.0 * f64::EPSILON * (self.h.nrows() + 1) as f64;
         let error = rounding * (through + self.d[(0, 0)].abs());
-        Ok(Sample { value, slope: -(y * x)[(0, 0)], error })
+        Ok(ResponseSample { value, slope: -(y * x)[(0, 0)], error })
     }
 
-    /// Returns the response at a real frequency, rad/s: at `s = iω`, or `z = e^{iωh}`.
+    /// Returns the response of the system at a frequency, rad/s: at `s = iω`, or `z = e^{iωh}` for a discrete
+    /// system.
     ///
     /// # Errors
     ///
@@ -100,15 +104,15 @@ impl FrequencyMap {
     }
 }
 
-/// Triangular factorisation of a Hessenberg matrix `M`.
-struct Factors {
+/// Triangular factorisation of a Hessenberg matrix `M`, by Gaussian elimination.
+struct TriangularFactors {
     u: CMatrix,
     /// Elimination step for each `k`: whether rows `k` and `k + 1` are swapped, and the multiple of row `k`
     /// that is then subtracted from row `k + 1`.
     steps: Vec<(bool, C)>,
 }
 
-impl Factors {
+impl TriangularFactors {
     /// Solves `M X = R` with the factorised matrix `M`; `X` replaces `R`.
     fn solve_in_place(&self, x: &mut CMatrix) {
         let n = self.u.nrows();
@@ -131,7 +135,7 @@ impl Factors {
 
     /// Returns `|L| |U| x` for a vector of magnitudes, with the magnitudes of the entries of the factors of
     /// `M = L U`: the rounding errors of a solution `x` are in proportion to it.
-    fn sizes(&self, x: &DMatrix<f64>) -> DMatrix<f64> {
+    fn magnitude_bounds(&self, x: &DMatrix<f64>) -> DMatrix<f64> {
         let mut sizes = self.u.map(|u| u.norm()).upper_triangle() * x;
         for (k, (swapped, factor)) in self.steps.iter().enumerate().rev() {
             sizes[k + 1] += factor.norm() * sizes[k];
@@ -160,11 +164,11 @@ impl Factors {
 
 /// Frequency response at one complex frequency.
 #[derive(Clone, Copy)]
-pub(crate) struct Sample {
+pub(crate) struct ResponseSample {
     pub value: C,
-    /// Derivative of the value with respect to the complex frequency.
+    /// Derivative of the response with respect to the complex frequency.
     pub slope: C,
-    /// Bound of the change of the value by rounding of the matrices.
+    /// Bound of the change of the response by rounding errors of the matrices.
     pub error: f64,
 }
 
@@ -195,7 +199,7 @@ impl FrequencyResponse {
         self.values.iter().map(|x| x.norm()).collect()
     }
 
-    /// Returns the magnitudes in decibels, `20 log₁₀ |G|`.
+    /// Returns the magnitudes of the response in decibels, `20 log₁₀ |G|`.
     pub fn decibels(&self) -> Vec<f64> {
         self.values.iter().map(|x| 20.0 * x.norm().log10()).collect()
     }
@@ -216,7 +220,7 @@ impl FrequencyResponse {
         self.values.iter().map(unwrapped_phase).collect()
     }
 
-    /// Returns the largest of the computed magnitudes and its frequency, rad/s.
+    /// Returns the largest of the computed magnitudes of the response and its frequency, rad/s.
     pub fn peak(&self) -> Option<(f64, f64)> {
         let all = self.values.iter().zip(&self.frequencies).map(|(x, w)| (x.norm(), *w));
         all.max_by(|a, b| a.0.total_cmp(&b.0))
@@ -255,7 +259,7 @@ impl StateSpace {
         Ok(FrequencyMap { b: q.transpose() * b, c: c * q, h, d, period, is_transformed: true })
     }
 
-    /// Returns `C (s I − A)⁻¹ B + D` at a complex frequency.
+    /// Returns the response `C (s I − A)⁻¹ B + D` of the system at a complex frequency.
     ///
     /// # Errors
     ///
@@ -264,7 +268,7 @@ impl StateSpace {
         self.frequency_map()?.at(s)
     }
 
-    /// Computes the response of one channel at these frequencies, rad/s.
+    /// Computes the response of one channel of the system at these frequencies, rad/s.
     ///
     /// ```
     /// use linkwork_design::TransferFunction;

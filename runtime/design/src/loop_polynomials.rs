@@ -1,5 +1,5 @@
-//! Margins of a loop that is a ratio of polynomials. All crossings are roots of polynomials in `x = ω²` with
-//! 32 digits, which the roots of their derivatives separate.
+//! Stability margins of an open loop that is a ratio of polynomials. All crossings are roots of polynomials
+//! in `x = ω²` with 32 digits, which the roots of their derivatives separate.
 
 use crate::double_double::DoubleDouble;
 use crate::margins::{CERTAIN, root_between};
@@ -9,34 +9,34 @@ use crate::{
 };
 use std::f64::consts::PI;
 
-/// Relative rounding error of coefficients.
+/// Relative rounding error of the coefficients of a loop's polynomials.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Coefficient of a polynomial, with a bound of its error by rounding of the loop's coefficients.
 #[derive(Clone, Copy, Default)]
-struct Coefficient {
+struct ErrorBoundedCoefficient {
     value: DoubleDouble,
     error: f64,
 }
 
-impl Coefficient {
-    fn rounded(value: f64) -> Self {
+impl ErrorBoundedCoefficient {
+    fn rounded_coefficient(value: f64) -> Self {
         Self { value: value.into(), error: ROUNDING * value.abs() }
     }
 
-    fn exact(value: f64) -> Self {
+    fn exact_coefficient(value: f64) -> Self {
         Self { value: value.into(), error: 0.0 }
     }
 
-    fn plus(self, other: Self) -> Self {
+    fn plus_coefficient(self, other: Self) -> Self {
         Self { value: self.value + other.value, error: self.error + other.error }
     }
 
-    fn minus(self, other: Self) -> Self {
+    fn minus_coefficient(self, other: Self) -> Self {
         Self { value: self.value - other.value, error: self.error + other.error }
     }
 
-    fn times(self, other: Self) -> Self {
+    fn times_coefficient(self, other: Self) -> Self {
         let [one, two] = [self, other].map(|c| c.value.value().abs());
         let error = one * other.error + self.error * (two + other.error);
         Self { value: self.value * other.value, error }
@@ -47,13 +47,13 @@ impl Coefficient {
     }
 }
 
-/// Polynomial, lowest power first.
+/// Coefficients of a polynomial, lowest power first.
 #[derive(Clone)]
-struct Terms(Vec<Coefficient>);
+struct PolynomialTerms(Vec<ErrorBoundedCoefficient>);
 
-impl Terms {
-    /// Removes zeros of high powers, after coefficients that are rounding errors are set to zero.
-    fn rounded(mut self) -> Self {
+impl PolynomialTerms {
+    /// Sets coefficients that are rounding errors to zero, and removes zeros of the highest powers.
+    fn without_rounding_errors(mut self) -> Self {
         for c in &mut self.0 {
             if c.value.value().abs() <= c.error {
                 c.value = DoubleDouble::default();
@@ -65,111 +65,137 @@ impl Terms {
         self
     }
 
-    /// Combines the coefficients of each power; missing ones are zero.
-    fn combine(&self, other: &Self, f: impl Fn(Coefficient, Coefficient) -> Coefficient) -> Self {
-        let entry = |terms: &Self, k: usize| terms.0.get(k).copied().unwrap_or_default();
-        Self((0..self.0.len().max(other.0.len())).map(|k| f(entry(self, k), entry(other, k))).collect())
+    /// Combines the coefficients of each power of two polynomials by a function; missing coefficients are
+    /// zero.
+    fn combine_terms(
+        &self,
+        other: &Self,
+        f: impl Fn(ErrorBoundedCoefficient, ErrorBoundedCoefficient) -> ErrorBoundedCoefficient,
+    ) -> Self {
+        let term_or_zero = |terms: &Self, k: usize| terms.0.get(k).copied().unwrap_or_default();
+        Self(
+            (0..self.0.len().max(other.0.len()))
+                .map(|k| f(term_or_zero(self, k), term_or_zero(other, k)))
+                .collect(),
+        )
     }
 
-    fn plus(&self, other: &Self) -> Self {
-        self.combine(other, Coefficient::plus)
+    fn plus_polynomial(&self, other: &Self) -> Self {
+        self.combine_terms(other, ErrorBoundedCoefficient::plus_coefficient)
     }
 
-    fn minus(&self, other: &Self) -> Self {
-        self.combine(other, Coefficient::minus)
+    fn minus_polynomial(&self, other: &Self) -> Self {
+        self.combine_terms(other, ErrorBoundedCoefficient::minus_coefficient)
     }
 
-    fn times(&self, other: &Self) -> Self {
-        let mut product = vec![Coefficient::default(); (self.0.len() + other.0.len()).saturating_sub(1)];
+    fn times_polynomial(&self, other: &Self) -> Self {
+        let mut product =
+            vec![ErrorBoundedCoefficient::default(); (self.0.len() + other.0.len()).saturating_sub(1)];
         for (i, a) in self.0.iter().enumerate() {
             for (j, b) in other.0.iter().enumerate() {
-                product[i + j] = product[i + j].plus(a.times(*b));
+                product[i + j] = product[i + j].plus_coefficient(a.times_coefficient(*b));
             }
         }
         Self(product)
     }
 
     fn times_x(&self) -> Self {
-        Self(std::iter::once(Coefficient::default()).chain(self.0.iter().copied()).collect())
+        Self(std::iter::once(ErrorBoundedCoefficient::default()).chain(self.0.iter().copied()).collect())
     }
 
-    fn derivative(&self) -> Self {
+    fn derivative_of_polynomial(&self) -> Self {
         let terms = self.0.iter().enumerate().skip(1);
-        Self(terms.map(|(k, c)| c.times(Coefficient::exact(k as f64))).collect())
+        Self(
+            terms
+                .map(|(k, c)| c.times_coefficient(ErrorBoundedCoefficient::exact_coefficient(k as f64)))
+                .collect(),
+        )
     }
 
-    /// Returns the value at `x`, divided by `x` to the power `degree` if `x` is above one: without overflow.
-    fn evaluate(&self, x: f64, degree: usize) -> Coefficient {
-        let start = Coefficient::default();
-        let horner = |sum: Coefficient, (c, by): (Coefficient, DoubleDouble)| Coefficient {
-            value: sum.value * by + c.value,
-            error: sum.error * by.value() + c.error,
+    /// Returns the value of the polynomial at `x`. If `x` is above one, the value is divided by `x` to the
+    /// power `degree`, to avoid overflow.
+    fn evaluate_scaled(&self, x: f64, degree: usize) -> ErrorBoundedCoefficient {
+        let start = ErrorBoundedCoefficient::default();
+        let horner_step = |sum: ErrorBoundedCoefficient, (c, by): (ErrorBoundedCoefficient, DoubleDouble)| {
+            ErrorBoundedCoefficient {
+                value: sum.value * by + c.value,
+                error: sum.error * by.value() + c.error,
+            }
         };
         if x <= 1.0 {
-            return self.0.iter().rev().map(|c| (*c, x.into())).fold(start, horner);
+            return self.0.iter().rev().map(|c| (*c, x.into())).fold(start, horner_step);
         }
         let inverse = DoubleDouble::inverse_of(x);
-        let missing = std::iter::repeat_n(Coefficient::default(), (degree + 1).saturating_sub(self.0.len()));
-        self.0.iter().copied().chain(missing).map(|c| (c, inverse)).fold(start, horner)
+        let missing = std::iter::repeat_n(
+            ErrorBoundedCoefficient::default(),
+            (degree + 1).saturating_sub(self.0.len()),
+        );
+        self.0.iter().copied().chain(missing).map(|c| (c, inverse)).fold(start, horner_step)
     }
 
-    /// Returns the value at `x` up to a positive factor.
+    /// Returns the value of the polynomial at `x` up to a positive factor, to determine its sign.
     fn sign_at(&self, x: f64) -> f64 {
-        self.evaluate(x, self.0.len().saturating_sub(1)).value.value()
+        self.evaluate_scaled(x, self.0.len().saturating_sub(1)).value.value()
     }
 
     /// Returns points between which the polynomial is monotonic, ascending: bounds of all positive roots, and
     /// the positive roots of the derivative between them. The list is empty if there are no positive roots,
     /// by Descartes' rule of signs.
-    fn separators(&self) -> Vec<f64> {
+    fn monotonic_separators(&self) -> Vec<f64> {
         let signs: Vec<f64> = self.0.iter().filter(|c| !c.is_zero()).map(|c| c.value.value()).collect();
         if signs.windows(2).all(|pair| pair[0] * pair[1].signum() > 0.0) {
             return Vec::new();
         }
-        let size = |k: usize| self.0[k].value.value().abs().ln();
+        let logarithmic_size = |k: usize| self.0[k].value.value().abs().ln();
         let is_nonzero = |k: &usize| !self.0[*k].is_zero();
         let all: Vec<usize> = (0..self.0.len()).filter(is_nonzero).collect();
         let (first, last) = (all[0], all[all.len() - 1]);
         // Fujiwara's bound, and that of the polynomial with reversed coefficients.
-        let slope = |low: usize, high: usize| (size(low) - size(high)) / (high - low) as f64;
-        let high = all.iter().filter(|k| **k < last).map(|k| slope(*k, last)).fold(f64::MIN, f64::max);
-        let low = all.iter().filter(|k| **k > first).map(|k| slope(first, *k)).fold(f64::MAX, f64::min);
+        let slope_between =
+            |low: usize, high: usize| (logarithmic_size(low) - logarithmic_size(high)) / (high - low) as f64;
+        let high =
+            all.iter().filter(|k| **k < last).map(|k| slope_between(*k, last)).fold(f64::MIN, f64::max);
+        let low =
+            all.iter().filter(|k| **k > first).map(|k| slope_between(first, *k)).fold(f64::MAX, f64::min);
         let (low, high) = (0.4 * low.exp(), 2.5 * high.exp());
         // One change of sign is one root.
         let changes = signs.windows(2).filter(|pair| pair[0] * pair[1].signum() < 0.0).count();
-        let inner = if changes == 1 { Vec::new() } else { self.derivative().positive_roots() };
+        let inner = if changes == 1 { Vec::new() } else { self.derivative_of_polynomial().positive_roots() };
         let inner = inner.into_iter().filter(|x| *x > low && *x < high);
         std::iter::once(low).chain(inner).chain([high]).collect()
     }
 
     /// Returns the positive roots at which the polynomial changes its sign, ascending.
     fn positive_roots(&self) -> Vec<f64> {
-        self.roots_between(&self.separators())
+        self.roots_between(&self.monotonic_separators())
     }
 
-    /// Returns the positive roots at which the sign changes by more than rounding errors of the coefficients.
+    /// Returns the positive roots of the polynomial at which its sign changes by more than rounding errors of
+    /// the coefficients.
     fn certain_roots(&self) -> Vec<f64> {
-        let is_certain = |x: &f64| {
-            let Coefficient { value, error } = self.evaluate(*x, self.0.len().saturating_sub(1));
+        let has_certain_sign_change = |x: &f64| {
+            let ErrorBoundedCoefficient { value, error } =
+                self.evaluate_scaled(*x, self.0.len().saturating_sub(1));
             value.value().abs() > error
         };
-        let points: Vec<f64> = self.separators().into_iter().filter(is_certain).collect();
+        let points: Vec<f64> =
+            self.monotonic_separators().into_iter().filter(has_certain_sign_change).collect();
         self.roots_between(&points)
     }
 
-    /// Returns a root between each two neighbouring points with different signs.
+    /// Returns a root of the polynomial between each two neighbouring points at which its signs differ.
     fn roots_between(&self, points: &[f64]) -> Vec<f64> {
         let mut found = Vec::new();
         for pair in points.windows(2) {
             let (mut low, mut high) = (pair[0], pair[1]);
-            let is_below = |x: f64| self.sign_at(x) < 0.0;
-            let start = is_below(low);
-            if start == is_below(high) {
+            let is_negative_at = |x: f64| self.sign_at(x) < 0.0;
+            let start = is_negative_at(low);
+            if start == is_negative_at(high) {
                 continue;
             }
             while high > 2.0 * low {
                 let middle = low.sqrt() * high.sqrt();
-                *if is_below(middle) == start { &mut low } else { &mut high } = middle;
+                *if is_negative_at(middle) == start { &mut low } else { &mut high } = middle;
             }
             found.push(root_between(|x| self.sign_at(x), low, high));
         }
@@ -177,49 +203,54 @@ impl Terms {
     }
 }
 
-/// Real and imaginary part of a polynomial at `iω`: `even(x) + i ω odd(x)` with `x = ω²`.
-struct Parts {
-    even: Terms,
-    odd: Terms,
+/// Real and imaginary part of a polynomial at `s = iω`: its value is `even(x) + i ω odd(x)` with `x = ω²`.
+struct EvenAndOddParts {
+    even: PolynomialTerms,
+    odd: PolynomialTerms,
 }
 
-impl Parts {
-    fn new(coefficients: &[Coefficient]) -> Self {
-        let negative = |c: &Coefficient| Coefficient { value: -c.value, ..*c };
-        let part = |first: usize| {
+impl EvenAndOddParts {
+    fn new(coefficients: &[ErrorBoundedCoefficient]) -> Self {
+        let negated_coefficient =
+            |c: &ErrorBoundedCoefficient| ErrorBoundedCoefficient { value: -c.value, ..*c };
+        let alternate_terms = |first: usize| {
             let terms = coefficients.iter().skip(first).step_by(2).enumerate();
-            Terms(terms.map(|(k, c)| if k % 2 == 0 { *c } else { negative(c) }).collect())
+            PolynomialTerms(
+                terms.map(|(k, c)| if k % 2 == 0 { *c } else { negated_coefficient(c) }).collect(),
+            )
         };
-        Self { even: part(0), odd: part(1) }
+        Self { even: alternate_terms(0), odd: alternate_terms(1) }
     }
 
-    /// Returns the square of the magnitude.
-    fn square(&self) -> Terms {
-        self.even.times(&self.even).plus(&self.odd.times(&self.odd).times_x())
+    /// Returns the squared magnitude of the polynomial at `s = iω`, as a polynomial in `ω²`.
+    fn squared_magnitude(&self) -> PolynomialTerms {
+        self.even
+            .times_polynomial(&self.even)
+            .plus_polynomial(&self.odd.times_polynomial(&self.odd).times_x())
     }
 
-    fn plus(&self, other: &Self) -> Self {
-        Self { even: self.even.plus(&other.even), odd: self.odd.plus(&other.odd) }
+    fn plus_parts(&self, other: &Self) -> Self {
+        Self { even: self.even.plus_polynomial(&other.even), odd: self.odd.plus_polynomial(&other.odd) }
     }
 }
 
-/// Values of numerator and denominator at one frequency, up to a common positive factor.
-struct Point {
-    /// `N` times the conjugate of `D`.
+/// Values of numerator `N` and denominator `D` of the loop at one frequency, up to a common positive factor.
+struct LoopValue {
+    /// Product of the numerator `N` and the complex conjugate of the denominator `D`.
     product: C,
-    /// Squared magnitudes of `N` and `D`.
+    /// Squared magnitudes of the numerator `N` and the denominator `D`.
     squares: [f64; 2],
-    /// Whether rounding of the coefficients changes `N` and `D` little.
+    /// Whether rounding errors of the coefficients change the numerator `N` and the denominator `D` little.
     certain: [bool; 2],
 }
 
 /// Loop `N / D` along the stability boundary. Discrete loops are functions of `w = (z − 1) / (z + 1)`, which
 /// is imaginary there.
 pub(crate) struct LoopPolynomials {
-    /// Coefficients of `N` and `D`, lowest power first.
-    coefficients: [Vec<Coefficient>; 2],
-    numerator: Parts,
-    denominator: Parts,
+    /// Coefficients of the numerator `N` and the denominator `D`, lowest power first.
+    coefficients: [Vec<ErrorBoundedCoefficient>; 2],
+    numerator: EvenAndOddParts,
+    denominator: EvenAndOddParts,
     /// Unit of the frequency of a continuous loop, rad/s.
     unit: f64,
     period: Option<f64>,
@@ -232,29 +263,37 @@ impl LoopPolynomials {
     ///
     /// [`Error::NotFinite`] if coefficients of a discrete loop overflow.
     pub fn new(g: &TransferFunction) -> Result<Self, Error> {
-        let list = |p: &Polynomial| (0..=p.degree()).map(|k| p.coefficient(k)).collect::<Vec<f64>>();
-        let both = [list(g.numerator()), list(g.denominator())];
+        let coefficient_list =
+            |p: &Polynomial| (0..=p.degree()).map(|k| p.coefficient(k)).collect::<Vec<f64>>();
+        let both = [coefficient_list(g.numerator()), coefficient_list(g.denominator())];
         if g.period().is_none() {
-            let both = both.map(|all| all.into_iter().map(Coefficient::rounded).collect());
-            return Self::of_coefficients(both, None);
+            let both =
+                both.map(|all| all.into_iter().map(ErrorBoundedCoefficient::rounded_coefficient).collect());
+            return Self::from_coefficients(both, None);
         }
         // z = (1 + w) / (1 − w).
         let n = g.denominator().degree().max(g.numerator().degree());
-        let transformed = |all: &Vec<f64>| {
-            let mut sum = Terms(vec![Coefficient::default(); n + 1]);
+        let transformed_coefficients = |all: &Vec<f64>| {
+            let mut sum = PolynomialTerms(vec![ErrorBoundedCoefficient::default(); n + 1]);
             for (k, a) in all.iter().enumerate() {
-                let mut term = Terms(vec![Coefficient::rounded(*a)]);
+                let mut term = PolynomialTerms(vec![ErrorBoundedCoefficient::rounded_coefficient(*a)]);
                 for i in 0..n {
                     let sign = if i < k { 1.0 } else { -1.0 };
-                    term = term.times(&Terms(vec![Coefficient::exact(1.0), Coefficient::exact(sign)]));
+                    term = term.times_polynomial(&PolynomialTerms(vec![
+                        ErrorBoundedCoefficient::exact_coefficient(1.0),
+                        ErrorBoundedCoefficient::exact_coefficient(sign),
+                    ]));
                 }
                 // The binomial coefficients are exact.
                 term.0.iter_mut().for_each(|c| c.error = ROUNDING * c.value.value().abs());
-                sum = sum.plus(&term);
+                sum = sum.plus_polynomial(&term);
             }
             sum.0
         };
-        Self::of_coefficients([transformed(&both[0]), transformed(&both[1])], g.period())
+        Self::from_coefficients(
+            [transformed_coefficients(&both[0]), transformed_coefficients(&both[1])],
+            g.period(),
+        )
     }
 
     /// Creates the polynomials of a loop with these zeros, poles and gain.
@@ -264,7 +303,7 @@ impl LoopPolynomials {
     /// [`Error::NotFinite`] if coefficients overflow.
     pub fn from_factors(g: &ZerosPolesGain) -> Result<Self, Error> {
         let is_discrete = g.period.is_some();
-        let expanded = |roots: &[C], gain: f64| {
+        let expanded_polynomial = |roots: &[C], gain: f64| {
             let mut product = vec![C::new(gain, 0.0)];
             let factor =
                 |root: &C| if is_discrete { [1.0 - root, 1.0 + root] } else { [-root, C::new(1.0, 0.0)] };
@@ -277,20 +316,30 @@ impl LoopPolynomials {
                     product[k] = product[k] * constant + below * linear;
                 }
             }
-            product.into_iter().map(|c| Coefficient::rounded(c.re)).collect()
+            product.into_iter().map(|c| ErrorBoundedCoefficient::rounded_coefficient(c.re)).collect()
         };
-        Self::of_coefficients([expanded(&g.zeros, g.gain), expanded(&g.poles, 1.0)], g.period)
+        Self::from_coefficients(
+            [expanded_polynomial(&g.zeros, g.gain), expanded_polynomial(&g.poles, 1.0)],
+            g.period,
+        )
     }
 
-    /// Scales frequency and magnitudes by powers of two, and removes factors `s` that numerator and
+    /// Scales frequency and magnitudes of a loop by powers of two, and removes factors `s` that numerator and
     /// denominator share.
-    fn of_coefficients(both: [Vec<Coefficient>; 2], period: Option<f64>) -> Result<Self, Error> {
-        let mut both = both.map(|all| Terms(all).rounded().0);
+    fn from_coefficients(
+        both: [Vec<ErrorBoundedCoefficient>; 2],
+        period: Option<f64>,
+    ) -> Result<Self, Error> {
+        let mut both = both.map(|all| PolynomialTerms(all).without_rounding_errors().0);
         let common = both[0].iter().zip(&both[1]).take_while(|(n, d)| n.is_zero() && d.is_zero()).count();
         both.iter_mut().for_each(|all| drop(all.drain(..common.min(all.len()))));
-        let size = |c: &Coefficient| c.value.value().abs().log2();
-        let nonzero: Vec<(usize, f64)> =
-            both[1].iter().enumerate().filter(|(_, c)| !c.is_zero()).map(|(k, c)| (k, size(c))).collect();
+        let logarithmic_size = |c: &ErrorBoundedCoefficient| c.value.value().abs().log2();
+        let nonzero: Vec<(usize, f64)> = both[1]
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| !c.is_zero())
+            .map(|(k, c)| (k, logarithmic_size(c)))
+            .collect();
         let (Some((low, first)), Some((high, last))) = (nonzero.first().copied(), nonzero.last().copied())
         else {
             return Err(Error::Range { what: "a denominator", value: 0.0 });
@@ -301,88 +350,124 @@ impl LoopPolynomials {
             nonzero.iter().map(|(k, size)| size + unit * *k as f64).fold(f64::MIN, f64::max).round();
         for all in &mut both {
             for (k, c) in all.iter_mut().enumerate() {
-                *c = c.times(Coefficient::exact((unit * k as f64 - largest).exp2()));
+                *c = c.times_coefficient(ErrorBoundedCoefficient::exact_coefficient(
+                    (unit * k as f64 - largest).exp2(),
+                ));
             }
             if all.iter().any(|c| !(c.value.value() * c.value.value()).is_finite()) {
                 return Err(Error::NotFinite { what: "the squared magnitude of the loop" });
             }
         }
-        let [numerator, denominator] = [&both[0], &both[1]].map(|all| Parts::new(all));
+        let [numerator, denominator] = [&both[0], &both[1]].map(|all| EvenAndOddParts::new(all));
         Ok(Self { coefficients: both, numerator, denominator, unit: unit.exp2(), period })
     }
 
-    /// Returns the frequency for the square `x` of the scaled one, rad/s.
-    fn frequency(&self, x: f64) -> f64 {
+    /// Returns the frequency, rad/s, whose scaled square is `x`.
+    fn frequency_of_square(&self, x: f64) -> f64 {
         self.period.map_or(self.unit * x.sqrt(), |h| 2.0 / h * x.sqrt().atan())
     }
 
-    /// Evaluates numerator and denominator.
-    fn point(&self, x: f64) -> Point {
+    /// Evaluates numerator and denominator of the loop at the frequency whose scaled square is `x`.
+    fn loop_value(&self, x: f64) -> LoopValue {
         let degree = self.coefficients.iter().map(|all| all.len() / 2).max().unwrap_or(0);
         let root = x.sqrt();
         let parts = [&self.numerator, &self.denominator]
-            .map(|p| [p.even.evaluate(x, degree), p.odd.evaluate(x, degree)]);
+            .map(|p| [p.even.evaluate_scaled(x, degree), p.odd.evaluate_scaled(x, degree)]);
         let [[ne, no], [de, d_o]] = parts;
-        let x = Coefficient::exact(x);
-        let square =
-            |[even, odd]: [Coefficient; 2]| even.times(even).plus(odd.times(odd).times(x)).value.value();
+        let x = ErrorBoundedCoefficient::exact_coefficient(x);
+        let square = |[even, odd]: [ErrorBoundedCoefficient; 2]| {
+            even.times_coefficient(even)
+                .plus_coefficient(odd.times_coefficient(odd).times_coefficient(x))
+                .value
+                .value()
+        };
         let squares = parts.map(square);
-        let is_certain = |k: usize| {
+        let is_certain_value = |k: usize| {
             let [even, odd] = parts[k];
             even.error + root * odd.error <= CERTAIN * squares[k].sqrt()
         };
-        let real = ne.times(de).plus(no.times(d_o).times(x)).value.value();
-        let imaginary = no.times(de).minus(ne.times(d_o)).value.value();
-        Point { product: C::new(real, root * imaginary), squares, certain: [is_certain(0), is_certain(1)] }
+        let real = ne
+            .times_coefficient(de)
+            .plus_coefficient(no.times_coefficient(d_o).times_coefficient(x))
+            .value
+            .value();
+        let imaginary = no.times_coefficient(de).minus_coefficient(ne.times_coefficient(d_o)).value.value();
+        LoopValue {
+            product: C::new(real, root * imaginary),
+            squares,
+            certain: [is_certain_value(0), is_certain_value(1)],
+        }
     }
 
-    /// Returns the imaginary part of `N D̄`, divided by ω.
-    fn imaginary(&self) -> Terms {
+    /// Returns the imaginary part of `N D̄`, divided by ω, as a polynomial in `ω²`. Its roots are the
+    /// frequencies at which the loop is real.
+    fn imaginary_part_terms(&self) -> PolynomialTerms {
         let (n, d) = (&self.numerator, &self.denominator);
-        n.odd.times(&d.even).minus(&n.even.times(&d.odd)).rounded()
+        n.odd
+            .times_polynomial(&d.even)
+            .minus_polynomial(&n.even.times_polynomial(&d.odd))
+            .without_rounding_errors()
     }
 
-    /// Returns the difference of the squared magnitudes of `N` and `D`.
-    fn level(&self) -> Terms {
-        self.numerator.square().minus(&self.denominator.square()).rounded()
+    /// Returns the difference of the squared magnitudes of numerator `N` and denominator `D`. Its roots are
+    /// the frequencies at which the loop has magnitude one.
+    fn magnitude_difference_terms(&self) -> PolynomialTerms {
+        self.numerator
+            .squared_magnitude()
+            .minus_polynomial(&self.denominator.squared_magnitude())
+            .without_rounding_errors()
     }
 
-    /// Returns the derivative of the squared distance from −1, times the fourth power of `|D|`.
-    fn slope(&self) -> Terms {
-        let (p, r) = (self.numerator.plus(&self.denominator).square(), self.denominator.square());
-        p.derivative().times(&r).minus(&p.times(&r.derivative())).rounded()
+    /// Returns the derivative of the loop's squared distance from −1 with respect to `ω²`, times the fourth
+    /// power of `|D|`.
+    fn distance_slope_terms(&self) -> PolynomialTerms {
+        let (p, r) = (
+            self.numerator.plus_parts(&self.denominator).squared_magnitude(),
+            self.denominator.squared_magnitude(),
+        );
+        p.derivative_of_polynomial()
+            .times_polynomial(&r)
+            .minus_polynomial(&p.times_polynomial(&r.derivative_of_polynomial()))
+            .without_rounding_errors()
     }
 
     /// Returns the value of the loop at zero frequency, or at infinite `s` or `w`.
-    fn limit(&self, at_zero: bool) -> f64 {
+    fn limit_value(&self, at_zero: bool) -> f64 {
         let [n, d] = &self.coefficients;
-        let value = |all: &[Coefficient], k: usize| all.get(k).map_or(0.0, |c| c.value.value());
+        let coefficient_value =
+            |all: &[ErrorBoundedCoefficient], k: usize| all.get(k).map_or(0.0, |c| c.value.value());
         if at_zero {
-            return value(n, 0) / value(d, 0);
+            return coefficient_value(n, 0) / coefficient_value(d, 0);
         }
         let top = n.len().max(d.len()).saturating_sub(1);
-        value(n, top) / value(d, top)
+        coefficient_value(n, top) / coefficient_value(d, top)
     }
 
-    /// Returns all margins.
+    /// Returns all stability margins of the loop.
     pub fn margins(&self) -> Margins {
-        let end = |value: f64, frequency: f64| {
+        let gain_margin_at_limit = |value: f64, frequency: f64| {
             let is_negative = value < 0.0 && value.is_finite();
             is_negative.then_some(GainMargin { factor: -1.0 / value, frequency })
         };
-        let between = self.imaginary().certain_roots().into_iter().filter_map(|x| {
-            let at = self.point(x);
+        let between = self.imaginary_part_terms().certain_roots().into_iter().filter_map(|x| {
+            let at = self.loop_value(x);
             let is_negative = at.product.re < 0.0 && at.certain == [true; 2];
-            is_negative
-                .then(|| GainMargin { factor: -at.squares[1] / at.product.re, frequency: self.frequency(x) })
+            is_negative.then(|| GainMargin {
+                factor: -at.squares[1] / at.product.re,
+                frequency: self.frequency_of_square(x),
+            })
         });
-        let top = self.period.and_then(|h| end(self.limit(false), PI / h));
-        let phase = self.level().certain_roots().into_iter().map(|x| PhaseMargin {
-            degrees: (-self.point(x).product).arg().to_degrees(),
-            frequency: self.frequency(x),
+        let top = self.period.and_then(|h| gain_margin_at_limit(self.limit_value(false), PI / h));
+        let phase = self.magnitude_difference_terms().certain_roots().into_iter().map(|x| PhaseMargin {
+            degrees: (-self.loop_value(x).product).arg().to_degrees(),
+            frequency: self.frequency_of_square(x),
         });
         Margins {
-            gain: end(self.limit(true), 0.0).into_iter().chain(between).chain(top).collect(),
+            gain: gain_margin_at_limit(self.limit_value(true), 0.0)
+                .into_iter()
+                .chain(between)
+                .chain(top)
+                .collect(),
             phase: phase.collect(),
             stability: self.stability_margin(),
         }
@@ -390,12 +475,16 @@ impl LoopPolynomials {
 
     fn stability_margin(&self) -> StabilityMargin {
         let top = self.period.map_or(f64::INFINITY, |h| PI / h);
-        let end = |value: f64| if value.is_finite() { (1.0 + value).abs() } else { f64::INFINITY };
-        let ends = [(end(self.limit(false)), top), (end(self.limit(true)), 0.0)];
-        let inner = self.slope().positive_roots().into_iter().filter_map(|x| {
-            let Point { product, squares, certain } = self.point(x);
+        let distance_at_limit =
+            |value: f64| if value.is_finite() { (1.0 + value).abs() } else { f64::INFINITY };
+        let ends = [
+            (distance_at_limit(self.limit_value(false)), top),
+            (distance_at_limit(self.limit_value(true)), 0.0),
+        ];
+        let inner = self.distance_slope_terms().positive_roots().into_iter().filter_map(|x| {
+            let LoopValue { product, squares, certain } = self.loop_value(x);
             let value = product / squares[1];
-            certain[1].then(|| ((1.0 + value).norm(), self.frequency(x)))
+            certain[1].then(|| ((1.0 + value).norm(), self.frequency_of_square(x)))
         });
         let all = ends.into_iter().chain(inner);
         let (distance, frequency) = all.fold((f64::INFINITY, top), |best, other| {
@@ -405,9 +494,9 @@ impl LoopPolynomials {
         StabilityMargin { distance, frequency }
     }
 
-    /// Returns the frequencies of all crossings, rad/s.
-    pub fn frequencies(&self) -> Vec<f64> {
-        let all = [self.imaginary(), self.level()];
-        all.iter().flat_map(Terms::positive_roots).map(|x| self.frequency(x)).collect()
+    /// Returns the frequencies of all crossings of the loop, rad/s: where it is real or has magnitude one.
+    pub fn crossing_frequencies(&self) -> Vec<f64> {
+        let all = [self.imaginary_part_terms(), self.magnitude_difference_terms()];
+        all.iter().flat_map(PolynomialTerms::positive_roots).map(|x| self.frequency_of_square(x)).collect()
     }
 }

@@ -1,9 +1,9 @@
 //! Stability margins of a feedback loop: gain margins, phase margins and the distance from −1.
 
-use crate::frequency::{FrequencyMap, Sample, stability_boundary_point};
+use crate::frequency::{FrequencyMap, ResponseSample, stability_boundary_point};
 use crate::loop_polynomials::LoopPolynomials;
 use crate::matrices::C;
-use crate::norms::Extreme;
+use crate::norms::GainExtremum;
 use crate::{Error, PeakGain, StateSpace, TransferFunction};
 
 /// Frequency at which a loop's response is real and negative, with the gain factor that brings the loop to
@@ -44,9 +44,9 @@ impl PhaseMargin {
 /// Minimum distance of a loop's response from −1, called the modulus or stability margin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilityMargin {
-    /// Distance: the reciprocal of the peak of the sensitivity.
+    /// Distance of the response from −1: the reciprocal of the peak of the sensitivity.
     pub distance: f64,
-    /// Frequency, rad/s; infinite if the distance is the limit for high frequencies.
+    /// Frequency of the minimum distance, rad/s; infinite if the distance is the limit for high frequencies.
     pub frequency: f64,
 }
 
@@ -92,8 +92,8 @@ impl Margins {
     }
 }
 
-/// Finds a sign change of `f` between `low` and `high` by bisection, accelerated by secant steps (Dekker,
-/// 1969).
+/// Finds a sign change of the function `f` between `low` and `high` by bisection, accelerated by secant steps
+/// (Dekker, 1969).
 pub(crate) fn root_between(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let (mut at_low, mut at_high) = (f(low), f(high));
     for k in 0..200 {
@@ -121,22 +121,27 @@ pub(crate) fn root_between(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) 
 pub(crate) const CERTAIN: f64 = 0.05;
 
 /// Open loop whose stability margins are computed, with its sampling period.
-struct Loop {
+struct OpenLoop {
     map: FrequencyMap,
     period: Option<f64>,
 }
 
-impl Loop {
-    /// Returns the response and its derivative with respect to frequency; `None` at a pole.
-    fn sample_response(&self, frequency: f64) -> Option<Sample> {
+impl OpenLoop {
+    /// Returns the response of the loop and its derivative with respect to frequency; `None` at a pole.
+    fn sample_response(&self, frequency: f64) -> Option<ResponseSample> {
         let s = stability_boundary_point(self.period, frequency);
         let turn = self.period.map_or(C::new(0.0, 1.0), |h| C::new(0.0, h) * s);
-        self.map.sample_channel(s).ok().map(|sample| Sample { slope: sample.slope * turn, ..sample })
+        self.map.sample_channel(s).ok().map(|sample| ResponseSample { slope: sample.slope * turn, ..sample })
     }
 
-    /// Returns the frequencies where `f` changes its sign between neighbours of the grid. Points at which
-    /// rounding decides the sign are skipped.
-    fn sign_change_frequencies(&self, grid: &[f64], samples: &[Sample], f: impl Fn(C) -> f64) -> Vec<f64> {
+    /// Returns the frequencies where the function `f` of the response changes its sign between neighbours of
+    /// the grid. Points at which rounding decides the sign are skipped.
+    fn sign_change_frequencies(
+        &self,
+        grid: &[f64],
+        samples: &[ResponseSample],
+        f: impl Fn(C) -> f64,
+    ) -> Vec<f64> {
         let value_at_frequency = |w: f64| self.sample_response(w).map_or(f64::NAN, |sample| f(sample.value));
         let mut found = Vec::new();
         let mut before: Option<(f64, f64)> = None;
@@ -155,8 +160,8 @@ impl Loop {
 }
 
 impl StateSpace {
-    /// Computes the margins of this system as the open loop of a negative feedback: all crossings, and the
-    /// minimum distance from −1.
+    /// Computes the stability margins of this system as the open loop of a negative feedback: all crossings,
+    /// and the minimum distance from −1.
     ///
     /// ```
     /// use linkwork_design::TransferFunction;
@@ -174,11 +179,11 @@ impl StateSpace {
     /// [`Error::Count`] unless the system has one input and one output, [`Error::NotConverged`].
     pub fn margins(&self) -> Result<Margins, Error> {
         self.check_single()?;
-        let open = Loop { map: self.frequency_map()?, period: self.period };
-        let (grid, samples): (Vec<f64>, Vec<Sample>) =
+        let open = OpenLoop { map: self.frequency_map()?, period: self.period };
+        let (grid, samples): (Vec<f64>, Vec<ResponseSample>) =
             self.margin_grid()?.into_iter().filter_map(|w| Some((w, open.sample_response(w)?))).unzip();
         let gain_margin_at_crossing = |frequency: f64| {
-            let Sample { value, error, .. } = open.sample_response(frequency)?;
+            let ResponseSample { value, error, .. } = open.sample_response(frequency)?;
             // The sign also changes at a pole or zero on the stability boundary, where the value is
             // rounding error.
             let is_certain = error <= CERTAIN * value.norm();
@@ -224,17 +229,18 @@ impl StateSpace {
     /// pencil miss some if crossings are decades apart.
     fn factor_frequencies(&self) -> Vec<f64> {
         let factors = self.zeros_poles_gain();
-        let found = factors.and_then(|factors| Ok(LoopPolynomials::from_factors(&factors)?.frequencies()));
+        let found =
+            factors.and_then(|factors| Ok(LoopPolynomials::from_factors(&factors)?.crossing_frequencies()));
         let mut found = found.unwrap_or_default();
         found.retain(|w| *w > 0.0 && *w < self.highest_frequency());
         found
     }
 
     /// Computes the minimum distance of the response from −1, which is the minimum gain of `1 + G`.
-    fn stability_margin(&self, open: &Loop) -> Result<StabilityMargin, Error> {
+    fn stability_margin(&self, open: &OpenLoop) -> Result<StabilityMargin, Error> {
         let mut shifted = self.clone();
         shifted.d[(0, 0)] += 1.0;
-        let PeakGain { gain, frequency } = shifted.extreme_gain(Extreme::Least)?;
+        let PeakGain { gain, frequency } = shifted.extreme_gain(GainExtremum::Least)?;
         // Near its minimum, the distance determines the frequency to half of the digits only. The sign
         // change of its derivative is more accurate.
         let distance_to_critical_point =
@@ -256,8 +262,8 @@ impl StateSpace {
 }
 
 impl TransferFunction {
-    /// Computes the margins of this transfer function as the open loop of a negative feedback, with 32 digits
-    /// from its coefficients.
+    /// Computes the stability margins of this transfer function as the open loop of a negative feedback, with
+    /// 32 digits from its coefficients.
     ///
     /// # Errors
     ///

@@ -20,8 +20,8 @@ pub use exponential::exponential;
 pub use logarithm::logarithm;
 pub use lyapunov::{discrete_lyapunov, discrete_sylvester, lyapunov, sylvester};
 pub use rank::rank;
-pub(crate) use rank::{Compression, smallest_singular};
-pub(crate) use riccati::is_fixed;
+pub(crate) use rank::{RowCompression, smallest_singular};
+pub(crate) use riccati::is_uncontrollable_mode;
 pub use riccati::{Cost, Riccati, discrete_riccati, riccati};
 pub(crate) use schur::Schur;
 
@@ -30,7 +30,7 @@ pub(crate) type C = Complex<f64>;
 /// Dynamically sized complex matrix.
 pub(crate) type CMatrix = DMatrix<C>;
 
-/// Reports an error for a matrix of another shape, or with entries that are not finite.
+/// Returns an error for a matrix of the wrong shape, or with entries that are not finite.
 pub(crate) fn check_matrix(
     matrix: &'static str,
     m: &DMatrix<f64>,

@@ -93,7 +93,7 @@ where
     displacement_signals::<M, NQ, NV, NU>(coordinates).into_iter().chain(changes).collect()
 }
 
-/// Returns the names of the accelerations: the velocity names with two primes, or with one prime for
+/// Returns the names of the accelerations: the names of the velocities with two primes, or with one prime for
 /// first-order states.
 pub(crate) fn acceleration_names<M, const NQ: usize, const NV: usize, const NU: usize>() -> Vec<String>
 where
@@ -111,8 +111,8 @@ where
     signals_with_units(&M::INPUTS, &M::INPUT_UNITS)
 }
 
-/// Returns the indices of states among all displacements and velocities. States of first order have no
-/// displacement.
+/// Returns the indices of the states in the list of all displacements and velocities. First-order states have
+/// no displacement.
 fn state_indices(nv: usize, first_order: usize) -> Vec<usize> {
     (0..nv.saturating_sub(first_order)).chain(nv..2 * nv).collect()
 }
@@ -167,12 +167,12 @@ where
 {
     let motion = m.linear_motion(q, v, u);
     let n = M::FIRST_ORDER;
-    let system = of_motion(&motion, n)?;
+    let system = system_of_motion(&motion, n)?;
     let system = system.with_states(state_names::<M, NQ, NV, NU>(0..NV.saturating_sub(n), 0..NV))?;
     Ok(system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_states_as_outputs())
 }
 
-fn of_motion<const NV: usize, const NU: usize>(
+fn system_of_motion<const NV: usize, const NU: usize>(
     motion: &LinearMotion<f64, NV, NU>,
     first_order: usize,
 ) -> Result<StateSpace, Error> {
@@ -233,7 +233,7 @@ where
     let motion = m.linear_motion(q, v, u);
     let seen = m.output_derivatives(t, q, v, &motion.acceleration, u).in_motion(&motion);
     let n = M::FIRST_ORDER;
-    let system = of_motion(&motion, n)?;
+    let system = system_of_motion(&motion, n)?;
     let (c, d) = output_matrices(&seen);
     let system = StateSpace::new(system.a, system.b, c.select_columns(&state_indices(NV, n)), d)?;
     let system = system.with_states(state_names::<M, NQ, NV, NU>(0..NV.saturating_sub(n), 0..NV))?;
@@ -325,7 +325,8 @@ where
     mass
 }
 
-/// Returns the second-order form of the motion about a state: `M δq̈ + (D + G) δq̇ + (K + N) δq = B δu`.
+/// Returns the second-order form of the linearised motion about a state:
+/// `M δq̈ + (D + G) δq̇ + (K + N) δq = B δu`.
 ///
 /// `M` is the effective mass matrix: the mass matrix minus the derivative of the forces with respect to the
 /// accelerations. With acceleration-dependent forces it need not be symmetric. For a mechanism with

@@ -23,15 +23,15 @@ pub(crate) const FIRST_SAMPLES: usize = 64;
 const FAILED: Error = Error::NotConverged { what: "the separation of the modes" };
 
 /// Mode, or group of modes whose eigenvalues nearly coincide: `e^{λ t} P(t)`.
-struct Term {
+struct ModalTerm {
     exponent: C,
     /// Coefficients of the polynomial `P` in the term `e^{λ t} P(t)`, lowest power first.
     coefficients: Vec<C>,
 }
 
-impl Term {
-    /// Returns the term of `c e^{T t} x`, or of `c Tᵗ x` if `sampled`, for a triangular matrix whose
-    /// eigenvalues nearly coincide. Fast modes of sampled systems are `None`.
+impl ModalTerm {
+    /// Returns the term of `c e^{T t} x`, or of `c Tᵗ x` if `sampled`, for a triangular matrix `T` whose
+    /// eigenvalues nearly coincide. Returns `None` for fast modes of sampled systems.
     fn sum_term_of_group(
         c: &CMatrix,
         t: &CMatrix,
@@ -71,13 +71,13 @@ impl Term {
         self.coefficients.iter().rev().fold(C::new(0.0, 0.0), |sum, c| sum * t + c)
     }
 
-    /// Returns an upper bound of the magnitude from `low` to `high`.
+    /// Returns an upper bound of the magnitude of the term from time `low` to time `high`.
     fn bound_on_interval(&self, low: f64, high: f64) -> f64 {
         let polynomial = self.coefficients.iter().rev().fold(0.0, |sum, c| sum * high + c.norm());
         if polynomial == 0.0 { 0.0 } else { (self.exponent.re * low).exp() * polynomial }
     }
 
-    /// Returns an upper bound of the magnitude at all instants.
+    /// Returns an upper bound of the magnitude of the term at all instants.
     fn bound_at_all_instants(&self) -> f64 {
         let bound_of_term = |(k, c): (usize, &C)| (c.norm().ln() + logarithm_of_peak(k, self.exponent)).exp();
         self.coefficients.iter().enumerate().map(bound_of_term).sum()
@@ -92,13 +92,13 @@ impl Term {
     }
 }
 
-/// Returns the logarithm of the maximum of `tᵏ |e^{λ t}|`, which is at `t = k / −Re λ`.
+/// Returns the logarithm of the maximum of `tᵏ |e^{λ t}|` over time, which is at `t = k / −Re λ`.
 fn logarithm_of_peak(k: usize, exponent: C) -> f64 {
     let k = k as f64;
     if k == 0.0 { 0.0 } else { k * (k / -exponent.re).ln() - k }
 }
 
-/// Computes `ln(I + M)` for a small triangular matrix by its power series.
+/// Computes the matrix logarithm `ln(I + M)` for a small triangular matrix `M` by its power series.
 fn logarithm_beside_one(m: &CMatrix) -> Result<CMatrix, Error> {
     let mut sum = m.clone();
     let mut power = m.clone();
@@ -127,20 +127,21 @@ fn block_coupling(t: &CMatrix, k: usize) -> CMatrix {
     x
 }
 
-/// Real sum of modes: `c e^{A t} x` for a stable matrix, or `c Aᵏ x`, where time counts samples.
+/// Real sum of modes as a function of time: `c e^{A t} x` for a stable matrix, or `c Aᵏ x`, where time counts
+/// samples.
 pub(crate) struct ModalSum {
-    /// Terms of the sum, each with its first three derivatives.
-    terms: Vec<[Term; 4]>,
+    /// Terms of the modal sum, each with its first three derivatives.
+    terms: Vec<[ModalTerm; 4]>,
     /// Whether time counts samples, so that only integer instants exist.
     sampled: bool,
     /// Rounding error of the sum; smaller differences are not significant.
     pub noise: f64,
-    /// Instant after which the magnitude of the sum is below `noise`.
+    /// Instant after which the magnitude of the modal sum is below `noise`.
     end: f64,
 }
 
 /// Time interval of a search, with bounds of the modal sum on it.
-struct Interval {
+struct BoundedInterval {
     from: f64,
     to: f64,
     low: f64,
@@ -152,31 +153,31 @@ struct Interval {
 }
 
 /// Interval with the bound by which the search for an extremum ranks it.
-struct Ranked(f64, Interval);
+struct RankedInterval(f64, BoundedInterval);
 
-impl PartialEq for Ranked {
+impl PartialEq for RankedInterval {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Ranked {}
+impl Eq for RankedInterval {}
 
-impl PartialOrd for Ranked {
+impl PartialOrd for RankedInterval {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Ranked {
+impl Ord for RankedInterval {
     fn cmp(&self, other: &Self) -> Ordering {
         self.0.total_cmp(&other.0)
     }
 }
 
 impl ModalSum {
-    /// Separates the modes (Bavely and Stewart, *An algorithm for computing reducing subspaces by block
-    /// diagonalization*, 1979). Fast modes of a sampled system are omitted.
+    /// Separates a system into modes (Bavely and Stewart, *An algorithm for computing reducing subspaces by
+    /// block diagonalization*, 1979), and returns their sum. Fast modes of a sampled system are omitted.
     ///
     /// # Errors
     ///
@@ -198,14 +199,14 @@ impl ModalSum {
                 let center = rest.t.diagonal().rows(0, k).sum() / k as f64;
                 let distance_to_center = |j: &usize| (rest.t[(*j, *j)] - center).norm();
                 let nearest = (k..m).min_by(|i, j| distance_to_center(i).total_cmp(&distance_to_center(j)));
-                rest.raise(nearest.unwrap_or(k), k);
+                rest.raise_eigenvalue(nearest.unwrap_or(k), k);
                 k += 1;
             };
             (c, x) = (c * &rest.q, rest.q.adjoint() * x);
             let (own_c, others_x) = (c.columns(0, k).into_owned(), x.rows(k, m - k).into_owned());
             let own_x = x.rows(0, k) - &separate * &others_x;
             let block = rest.t.view((0, 0), (k, k)).into_owned();
-            terms.extend(Term::sum_term_of_group(&own_c, &block, &own_x, sampled)?);
+            terms.extend(ModalTerm::sum_term_of_group(&own_c, &block, &own_x, sampled)?);
             (c, x) = (c.columns(k, m - k) + own_c * separate, others_x);
             let t = rest.t.view((k, k), (m - k, m - k)).into_owned();
             rest = Schur { q: CMatrix::identity(m - k, m - k), t };
@@ -213,15 +214,16 @@ impl ModalSum {
         Ok(Self::of_terms(terms, sampled))
     }
 
-    fn of_terms(terms: Vec<Term>, sampled: bool) -> Self {
-        let noise = 64.0 * f64::EPSILON * terms.iter().map(Term::bound_at_all_instants).sum::<f64>().max(1.0);
+    fn of_terms(terms: Vec<ModalTerm>, sampled: bool) -> Self {
+        let noise =
+            64.0 * f64::EPSILON * terms.iter().map(ModalTerm::bound_at_all_instants).sum::<f64>().max(1.0);
         // A term decays beyond the last maximum of its powers.
-        let decay_time_of_term = |term: &Term| term.coefficients.len() as f64 / -term.exponent.re;
+        let decay_time_of_term = |term: &ModalTerm| term.coefficients.len() as f64 / -term.exponent.re;
         let mut end = terms.iter().map(decay_time_of_term).fold(0.0, f64::max);
         while terms.iter().map(|term| term.bound_on_interval(end, end)).sum::<f64>() > noise {
             end *= 1.5;
         }
-        let with_derivatives = |term: Term| {
+        let with_derivatives = |term: ModalTerm| {
             let first = term.derivative_of_term();
             let second = first.derivative_of_term();
             let third = second.derivative_of_term();
@@ -235,10 +237,10 @@ impl ModalSum {
         }
     }
 
-    /// Returns the derivative of this order at an instant.
+    /// Returns the derivative of the modal sum, of this order, at an instant.
     fn derivative_at(&self, order: usize, t: f64) -> f64 {
         let real_part_of_term =
-            |all: &[Term; 4]| ((all[0].exponent * t).exp() * all[order].evaluate_polynomial(t)).re;
+            |all: &[ModalTerm; 4]| ((all[0].exponent * t).exp() * all[order].evaluate_polynomial(t)).re;
         self.terms.iter().map(real_part_of_term).sum()
     }
 
@@ -247,7 +249,7 @@ impl ModalSum {
         self.derivative_at(0, t)
     }
 
-    fn enclose_interval(&self, from: f64, to: f64) -> Interval {
+    fn enclose_interval(&self, from: f64, to: f64) -> BoundedInterval {
         let half = 0.5 * (to - from);
         let t = from + half;
         let (mut middle, mut near, mut slope, mut curvature, mut far) = (0.0, 0.0, 0.0, 0.0, 0.0);
@@ -274,25 +276,25 @@ impl ModalSum {
         }
         let radius = slope.abs() * half + 0.5 * curvature * half * half + far;
         let simple = total_slope.abs() >= total_curvature * half || bend.abs() >= change * half;
-        Interval { from, to, low: near - radius, high: near + radius, middle, simple }
+        BoundedInterval { from, to, low: near - radius, high: near + radius, middle, simple }
     }
 
-    /// Returns whether an interval is not divided further.
-    fn is_last(&self, interval: &Interval) -> bool {
+    /// Whether an interval is final, so that it is not divided further.
+    fn is_final_interval(&self, interval: &BoundedInterval) -> bool {
         let length = interval.to - interval.from;
         interval.simple
             || if self.sampled { length <= 1.0 } else { length <= 8.0 * f64::EPSILON * interval.to }
     }
 
     /// Divides a time interval into two halves, with bounds of the sum on each.
-    fn halves_of_interval(&self, interval: &Interval) -> [Interval; 2] {
+    fn halves_of_interval(&self, interval: &BoundedInterval) -> [BoundedInterval; 2] {
         let middle = interval.from + 0.5 * (interval.to - interval.from);
         let middle = if self.sampled { middle.floor() } else { middle };
         [self.enclose_interval(interval.from, middle), self.enclose_interval(middle, interval.to)]
     }
 
     /// Divides a final interval at a local extremum of the sum, so that the sum is monotone on each piece.
-    fn monotone_pieces(&self, interval: &Interval) -> Vec<(f64, f64)> {
+    fn monotone_pieces(&self, interval: &BoundedInterval) -> Vec<(f64, f64)> {
         let (from, to) = (interval.from, interval.to);
         let first_derivative = |t: f64| self.derivative_at(1, t);
         let mut ends = vec![from];
@@ -323,7 +325,8 @@ impl ModalSum {
         if rises { high } else { low }
     }
 
-    /// Returns the first instant, not before `from`, at which the sum reaches a negative level from below.
+    /// Returns the first instant, not before `from`, at which the modal sum reaches a negative level from
+    /// below.
     ///
     /// # Errors
     ///
@@ -335,7 +338,7 @@ impl ModalSum {
             if interval.high + self.noise < level {
                 continue;
             }
-            if self.is_last(&interval) {
+            if self.is_final_interval(&interval) {
                 for (low, high) in self.monotone_pieces(&interval) {
                     if self.value(low) >= level {
                         return Ok(low);
@@ -353,8 +356,8 @@ impl ModalSum {
         Ok(self.end.max(from))
     }
 
-    /// Returns the last instant, not before `from`, at which the magnitude exceeds `band`; `None` if it never
-    /// does.
+    /// Returns the last instant, not before `from`, at which the magnitude of the modal sum exceeds `band`;
+    /// `None` if it never does.
     ///
     /// # Errors
     ///
@@ -366,7 +369,7 @@ impl ModalSum {
             if interval.high.max(-interval.low) + self.noise <= band {
                 continue;
             }
-            if self.is_last(&interval) {
+            if self.is_final_interval(&interval) {
                 for (low, high) in self.monotone_pieces(&interval).into_iter().rev() {
                     if self.value(high).abs() > band {
                         return Ok(Some(high));
@@ -383,8 +386,8 @@ impl ModalSum {
         Ok((self.value(from).abs() > band).then_some(from))
     }
 
-    /// Returns the instant and the value of the maximum (`sign` one) or minimum (`sign` −1) of the sum from
-    /// `from` on.
+    /// Returns the instant and the value of the maximum (`sign` one) or minimum (`sign` −1) of the modal sum
+    /// from the time `from` on.
     ///
     /// # Errors
     ///
@@ -393,16 +396,16 @@ impl ModalSum {
         let mut best = (from, sign * self.value(from));
         let mut reached = best.1;
         let bound_of_interval =
-            |interval: &Interval| self.noise + if sign > 0.0 { interval.high } else { -interval.low };
+            |interval: &BoundedInterval| self.noise + if sign > 0.0 { interval.high } else { -interval.low };
         let mut open = BinaryHeap::new();
         let whole = self.enclose_interval(from, self.end.max(from));
-        open.push(Ranked(bound_of_interval(&whole), whole));
+        open.push(RankedInterval(bound_of_interval(&whole), whole));
         let mut count = 0;
-        while let Some(Ranked(most, interval)) = open.pop() {
+        while let Some(RankedInterval(most, interval)) = open.pop() {
             if most <= best.1 + 2.0 * self.noise || most < reached {
                 break;
             }
-            if self.is_last(&interval) {
+            if self.is_final_interval(&interval) {
                 for t in self.monotone_pieces(&interval).into_iter().flat_map(|(low, high)| [low, high]) {
                     let value = sign * self.value(t);
                     if value > best.1 {
@@ -414,7 +417,7 @@ impl ModalSum {
                     if !self.sampled {
                         reached = reached.max(sign * half.middle);
                     }
-                    open.push(Ranked(bound_of_interval(&half), half));
+                    open.push(RankedInterval(bound_of_interval(&half), half));
                 }
             }
             count_interval(&mut count)?;

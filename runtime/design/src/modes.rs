@@ -5,7 +5,8 @@ use crate::{Error, Signal, StateSpace};
 use std::f64::consts::{LN_2, TAU};
 use std::fmt;
 
-/// Condition `1 / |wᴴ v|` above which eigenvectors count as parallel.
+/// Condition number `1 / |wᴴ v|` of an eigenvalue above which its left and right eigenvectors count as
+/// orthogonal, so that the eigenvalue is defective.
 const DEFECTIVE: f64 = 1e7;
 
 /// Mode of a system: a real pole, or a conjugate pair of poles.
@@ -14,7 +15,7 @@ pub struct Mode {
     /// Eigenvalue of `A`, with positive imaginary part for a pair: 1/s, or dimensionless for a discrete
     /// system.
     pub pole: C,
-    /// Eigenvalue in continuous time, 1/s; `ln(z) / h` for a discrete system.
+    /// Eigenvalue of the mode in continuous time, 1/s; `ln(z) / h` for a discrete system.
     pub exponent: C,
     /// Mode shape: the component of each state in the eigenvector, normalised to unit length with a real
     /// largest entry. Only components with the same unit are comparable.
@@ -92,7 +93,7 @@ impl Mode {
         all
     }
 
-    /// Returns the index of a state; zero for an unknown name.
+    /// Returns the index of a state by name; zero for an unknown name.
     pub(crate) fn place_of(&self, state: &str) -> usize {
         self.states.iter().position(|s| s.name == state).unwrap_or(0)
     }
@@ -145,7 +146,8 @@ impl fmt::Display for Mode {
 }
 
 impl StateSpace {
-    /// Computes the modes, in ascending order of natural frequency. A conjugate pair is one mode.
+    /// Computes the modes of the system, in ascending order of natural frequency. A conjugate pair is one
+    /// mode.
     ///
     /// ```
     /// use linkwork_design::StateSpace;

@@ -1,4 +1,4 @@
-//! H₂ and H∞ norms of systems.
+//! H₂ and H∞ norms of linear systems.
 
 use crate::frequency::{FrequencyMap, stability_boundary_point};
 use crate::matrices::complex_matrix;
@@ -9,7 +9,7 @@ use crate::{Error, StateSpace};
 pub struct PeakGain {
     /// Largest singular value of the response at the peak.
     pub gain: f64,
-    /// Frequency of the peak, rad/s; infinite if the gain is the limit for high frequencies.
+    /// Frequency of the peak gain, rad/s; infinite if the gain is the limit for high frequencies.
     pub frequency: f64,
 }
 
@@ -41,12 +41,12 @@ impl StateSpace {
     /// [`Error::Unstable`] with an unstable pole; [`Error::NotConverged`].
     pub fn peak_gain(&self) -> Result<PeakGain, Error> {
         self.check_stable()?;
-        self.extreme_gain(Extreme::Largest)
+        self.extreme_gain(GainExtremum::Largest)
     }
 
     /// Computes the maximum or minimum, over all real frequencies, of the largest singular value of a system,
     /// which may be unstable.
-    pub(crate) fn extreme_gain(&self, extreme: Extreme) -> Result<PeakGain, Error> {
+    pub(crate) fn extreme_gain(&self, extreme: GainExtremum) -> Result<PeakGain, Error> {
         let map = self.frequency_map()?;
         let gain_at_frequency = |w: f64| {
             let response = if w.is_finite() { map.response(w) } else { Ok(complex_matrix(&self.d)) };
@@ -54,7 +54,11 @@ impl StateSpace {
                 Ok(m) if m.is_empty() => 0.0,
                 // At a pole that a zero cancels, the value is rounding error and must not count as the
                 // minimum.
-                Ok(_) if w.is_finite() && extreme == Extreme::Least && !self.is_certain(&map, w) => {
+                Ok(_)
+                    if w.is_finite()
+                        && extreme == GainExtremum::Least
+                        && !self.is_rounding_negligible(&map, w) =>
+                {
                     f64::INFINITY
                 }
                 Ok(m) => m.svd_unordered(false, false).singular_values.max(),
@@ -102,20 +106,20 @@ impl StateSpace {
     }
 
     /// Returns whether rounding changes the response of a single channel by less than a thousandth.
-    fn is_certain(&self, map: &FrequencyMap, frequency: f64) -> bool {
+    fn is_rounding_negligible(&self, map: &FrequencyMap, frequency: f64) -> bool {
         map.sample_channel(stability_boundary_point(self.period, frequency))
             .is_ok_and(|sample| sample.error < 1e-3)
     }
 }
 
-/// Extremum of the gain to search for; minima are supported for single channels only.
+/// Kind of extremum of the gain to search for: minima are supported for single channels only.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Extreme {
+pub(crate) enum GainExtremum {
     Largest,
     Least,
 }
 
-impl Extreme {
+impl GainExtremum {
     fn is_beyond(self, one: f64, other: f64) -> bool {
         match self {
             Self::Largest => one > other,
@@ -123,7 +127,8 @@ impl Extreme {
         }
     }
 
-    /// Returns a level beyond a gain by a fraction of it: above for a maximum, below for a minimum.
+    /// Returns a level that is beyond a gain by a fraction of it: above it for a maximum, below it for a
+    /// minimum.
     fn level_beyond(self, gain: f64, part: f64) -> f64 {
         match self {
             Self::Largest => gain * (1.0 + part),

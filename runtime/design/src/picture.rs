@@ -133,7 +133,8 @@ fn smooth_curve(values: &[C]) -> Vec<C> {
     all
 }
 
-/// Returns the points of the stability boundary: the imaginary axis or the unit circle.
+/// Returns the points of the stability boundary in the complex plane: the imaginary axis, or the unit circle
+/// for a discrete system.
 fn stability_boundary(period: Option<f64>, reach: f64) -> Vec<(f64, f64)> {
     match period {
         Some(_) => (0..=180).map(|k| (TAU * f64::from(k) / 180.0).sin_cos()).collect(),
@@ -162,7 +163,7 @@ fn complex_plane_panel(heading: &str, period: Option<f64>) -> Panel {
     }
 }
 
-/// Draws poles (crosses) and zeros (circles) with the stability boundary.
+/// Draws poles (crosses) and zeros (circles) of a system in the complex plane, with the stability boundary.
 ///
 /// # Errors
 ///
@@ -204,22 +205,22 @@ pub fn root_locus(locus: &RootLocus) -> Result<String, Error> {
 }
 
 /// Unit of a panel, and the output signals that have this unit, with their indices.
-type OfUnit<'a> = (&'a str, Vec<(&'a crate::Signal, usize)>);
+type SignalsOfUnit<'a> = (&'a str, Vec<(&'a crate::Signal, usize)>);
 
-/// Draws outputs over time, in one panel per unit.
+/// Draws the outputs of a time response over time, in one panel per unit.
 ///
 /// # Errors
 ///
 /// [`Error::Picture`] for an empty response or values that are not finite.
 pub fn history(response: &Response, heading: &str) -> Result<String, Error> {
-    let mut panels: Vec<OfUnit<'_>> = Vec::new();
+    let mut panels: Vec<SignalsOfUnit<'_>> = Vec::new();
     for (k, signal) in response.output_signals.iter().enumerate() {
         match panels.iter_mut().find(|(unit, _)| *unit == signal.unit) {
             Some((_, signals)) => signals.push((signal, k)),
             None => panels.push((&signal.unit, vec![(signal, k)])),
         }
     }
-    let panel_of_unit = |(place, (unit, signals)): (usize, &OfUnit<'_>)| {
+    let panel_of_unit = |(place, (unit, signals)): (usize, &SignalsOfUnit<'_>)| {
         // A single curve is named at the axis.
         let (y, alone) = match signals.as_slice() {
             [(signal, _)] => (signal.to_string(), true),

@@ -1,11 +1,11 @@
 //! Pole placement by state feedback.
 
-use crate::matrices::{eigenvalues, is_fixed, solve_linear_system, sylvester};
+use crate::matrices::{eigenvalues, is_uncontrollable_mode, solve_linear_system, sylvester};
 use crate::{Error, StateSpace};
 use nalgebra::{Complex, DMatrix};
 
 /// Returns a real matrix with the given eigenvalues and one eigenvector per distinct eigenvalue. A conjugate
-/// pair is a block of two rows.
+/// pair of eigenvalues is a block of two rows.
 fn real_matrix_with_poles(poles: &[Complex<f64>]) -> Result<DMatrix<f64>, Error> {
     let n = poles.len();
     let mut upper: Vec<_> = poles.iter().filter(|pole| pole.im >= 0.0).copied().collect();
@@ -71,9 +71,9 @@ fn largest_pole_distance(wanted: &[Complex<f64>], mut found: Vec<Complex<f64>>) 
 const ATTEMPTS: usize = 16;
 
 impl StateSpace {
-    /// Computes the gain of the regulator `u = −K x` for which `A − B K` has these eigenvalues. With several
-    /// inputs, the gain is the one with the best conditioned eigenvectors among several candidates. For the
-    /// dual system, the transpose of the result is the gain of an observer.
+    /// Computes the gain of the regulator `u = −K x` for which `A − B K` has the eigenvalues `poles`. With
+    /// several inputs, the gain is the one with the best conditioned eigenvectors among several candidates.
+    /// For the dual system, the transpose of the result is the gain of an observer.
     ///
     /// ```
     /// use linkwork_design::StateSpace;
@@ -104,7 +104,7 @@ impl StateSpace {
         }
         let wanted = real_matrix_with_poles(poles)?;
         let modes = eigenvalues(&self.a)?;
-        if let Some(mode) = modes.into_iter().find(|mode| is_fixed(&self.a, &self.b, *mode)) {
+        if let Some(mode) = modes.into_iter().find(|mode| is_uncontrollable_mode(&self.a, &self.b, *mode)) {
             return Err(Error::Unstabilizable { mode });
         }
         let size = self.a.norm().max(wanted.norm()) / self.b.norm().max(f64::MIN_POSITIVE);

@@ -9,7 +9,8 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// Polynomial with real coefficients, highest power first: `[1, 2, 3]` is `s² + 2 s + 3`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polynomial {
-    /// Coefficients, highest power first. The first is nonzero; the zero polynomial has none.
+    /// Coefficients of the polynomial, highest power first. The first is nonzero; the zero polynomial has no
+    /// coefficients.
     coefficients: Vec<f64>,
 }
 
@@ -20,7 +21,7 @@ impl Polynomial {
         Self { coefficients: all.into_iter().skip_while(|c| *c == 0.0).collect() }
     }
 
-    /// Creates the polynomial of degree zero with this value.
+    /// Creates the constant polynomial with this value.
     pub fn constant(value: f64) -> Self {
         Self::new([value])
     }
@@ -61,19 +62,19 @@ impl Polynomial {
         self.coefficients.first().copied().unwrap_or(0.0)
     }
 
-    /// Returns the coefficient of `s` to the power `k`.
+    /// Returns the coefficient of the polynomial for the power `k` of its variable.
     pub fn coefficient(&self, k: usize) -> f64 {
         let at = self.coefficients.len().checked_sub(k + 1);
         at.and_then(|at| self.coefficients.get(at)).copied().unwrap_or(0.0)
     }
 
-    /// Returns the value at `s`, by Horner's rule.
+    /// Returns the value of the polynomial at `s`, by Horner's rule.
     pub fn at(&self, s: C) -> C {
         self.coefficients.iter().fold(C::new(0.0, 0.0), |sum, c| sum * s + c)
     }
 
-    /// Returns a bound of the rounding error of the value at a point of this magnitude, which may be a
-    /// rounded root.
+    /// Returns a bound of the rounding error of the polynomial's value at a point of this magnitude, which
+    /// may be a rounded root.
     pub(crate) fn rounding_at(&self, magnitude: f64) -> f64 {
         let sum = self.coefficients.iter().fold(0.0, |sum, c| sum * magnitude + c.abs());
         64.0 * f64::EPSILON * self.coefficients.len() as f64 * sum
@@ -91,7 +92,7 @@ impl Polynomial {
         Self::new(terms.map(|(k, c)| c * (n - k) as f64))
     }
 
-    /// Computes the roots as eigenvalues of the balanced companion matrix.
+    /// Computes the roots of the polynomial as eigenvalues of the balanced companion matrix.
     ///
     /// # Errors
     ///
@@ -206,7 +207,7 @@ impl Mul for &Polynomial {
     }
 }
 
-/// Formats roots as a product of factors: `(s + 1) (s² + s + 2)`.
+/// Formats a polynomial with these roots as a product of factors: `(s + 1) (s² + s + 2)`.
 pub(crate) fn format_factors(roots: &[C], variable: &str) -> String {
     let mut out = String::new();
     for root in roots.iter().filter(|r| r.im >= 0.0) {

@@ -16,13 +16,15 @@ pub struct Noise {
 /// Stationary Kalman filter of a linear system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kalman {
-    /// Gain `L` of `x̂˙ = A x̂ + B u + L (y − C x̂ − D u)`, or of the prediction `x̂⁺` of a discrete filter.
+    /// Gain `L` of the Kalman filter `x̂˙ = A x̂ + B u + L (y − C x̂ − D u)`, or of the prediction `x̂⁺` of a
+    /// discrete filter.
     pub gain: DMatrix<f64>,
-    /// Correction gain `K` of a discrete filter, with `L = A K`; equal to `gain` for a continuous filter.
+    /// Correction gain `K` of a discrete Kalman filter, with `L = A K`; equal to `gain` for a continuous
+    /// filter.
     pub correction: DMatrix<f64>,
-    /// Covariance of the estimation error (for a discrete filter before the correction).
+    /// Covariance of the estimation error of the Kalman filter (for a discrete filter before the correction).
     pub covariance: DMatrix<f64>,
-    /// Poles of the filter: the eigenvalues of `A − L C`.
+    /// Poles of the Kalman filter: the eigenvalues of `A − L C`.
     pub poles: Vec<nalgebra::Complex<f64>>,
 }
 
@@ -51,9 +53,9 @@ impl StateSpace {
         }
     }
 
-    /// Computes the regulator for inputs with a zero-order hold of `period` seconds. The cost is that of the
-    /// continuous motion, including the motion between sampling instants (Van Loan, *Computing integrals
-    /// involving the matrix exponential*, 1978).
+    /// Computes the linear–quadratic regulator for inputs with a zero-order hold of `period` seconds. The
+    /// cost is that of the continuous motion, including the motion between sampling instants (Van Loan,
+    /// *Computing integrals involving the matrix exponential*, 1978).
     ///
     /// # Errors
     ///
@@ -89,7 +91,7 @@ impl StateSpace {
         held.lqr(&cost)
     }
 
-    /// Computes the stationary Kalman filter.
+    /// Computes the stationary Kalman filter of the system for these noise covariances.
     ///
     /// # Errors
     ///
@@ -120,8 +122,9 @@ impl StateSpace {
         Ok(Kalman { gain, correction, covariance: dual.x, poles: dual.poles })
     }
 
-    /// Returns the controller of a regulator and an estimator, with the inverted sign that [negative
-    /// feedback](Self::feedback) requires: it maps the measurements `y` to `K x̂`, so that `u = −K x̂`.
+    /// Returns the controller that combines a regulator and an estimator, with the inverted sign that
+    /// [negative feedback](Self::feedback) requires: it maps the measurements `y` to `K x̂`, so that
+    /// `u = −K x̂`.
     ///
     /// # Errors
     ///

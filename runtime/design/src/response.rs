@@ -19,7 +19,7 @@ pub struct Response {
 }
 
 impl Response {
-    /// Returns one output over time.
+    /// Returns one output of the response at all instants.
     ///
     /// # Errors
     ///
@@ -129,7 +129,7 @@ impl StateSpace {
         }
     }
 
-    /// Computes the response to an initial state without inputs.
+    /// Computes the response of the system to an initial state without inputs.
     ///
     /// # Errors
     ///
@@ -216,7 +216,8 @@ impl StateSpace {
     }
 }
 
-/// Returns the spacing of the instants, which must begin at zero.
+/// Returns the spacing of the instants, s, or an error if they are not equally spaced or do not begin at
+/// zero.
 fn check_times(times: &[f64], period: Option<f64>) -> Result<f64, Error> {
     let (Some(first), Some(last)) = (times.first(), times.last()) else {
         return Ok(period.unwrap_or(1.0));

@@ -4,7 +4,7 @@ use crate::matrices::C;
 use crate::{Error, StateSpace};
 use nalgebra::DMatrix;
 
-/// Closed-loop poles under negative feedback with the gains `k`, ordered by branch.
+/// Closed-loop poles under negative feedback as functions of the gain `k`, ordered by branch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RootLocus {
     /// Gains of the root locus, in ascending order.
@@ -36,7 +36,7 @@ fn order_along_branches(before: &[C], mut now: Vec<C>) -> Vec<C> {
 }
 
 impl StateSpace {
-    /// Computes the poles under `u = r − k y` for these gains.
+    /// Computes the closed-loop poles under the feedback `u = r − k y` for these gains `k`.
     ///
     /// # Errors
     ///
@@ -55,7 +55,7 @@ impl StateSpace {
         Ok(RootLocus { gains: gains.to_vec(), branches, poles, zeros, period: self.period })
     }
 
-    /// Returns gains that resolve the locus. They are zero, then logarithmically spaced from where poles
+    /// Returns gains that resolve the root locus. They are zero, then logarithmically spaced from where poles
     /// begin to move to where they are near zeros or far away. Intervals in which a pole moves by more than a
     /// fortieth of the largest pole or zero are refined.
     ///

@@ -8,33 +8,35 @@ use crate::{Error, Polynomial};
 pub enum Special {
     /// Row of Routh's table without a singularity.
     Regular,
-    /// The row began with zeros but was not zero. The row, shifted to its first nonzero entry and multiplied
-    /// by the sign of the shift, was added, which avoids the ε method (Benidir and Picinbono, *Extended table
-    /// for eliminating the singularities in Routh's array*, 1990).
+    /// Row of Routh's table that began with zeros but was not zero. The row, shifted to its first nonzero
+    /// entry and multiplied by the sign of the shift, was added, which avoids the ε method (Benidir and
+    /// Picinbono, *Extended table for eliminating the singularities in Routh's array*, 1990).
     LeadingZero,
-    /// The row was zero, since roots are symmetric about the origin. It was replaced by the derivative of the
-    /// polynomial of the previous row.
+    /// Row of Routh's table that was zero, since roots are symmetric about the origin. It was replaced by the
+    /// derivative of the polynomial of the previous row.
     ZeroRow,
 }
 
 /// Routh's table of a polynomial, with the root counts that it gives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Routh {
-    /// Rows of the table, after the replacement of singular rows.
+    /// Rows of Routh's table, after the replacement of singular rows.
     pub rows: Vec<Vec<f64>>,
-    /// Kind of each row of the table: regular, leading zero or zero row.
+    /// Kind of each row of Routh's table: regular, leading zero or zero row.
     pub special: Vec<Special>,
-    /// Number of roots with positive real part, which is the number of sign changes in the first column.
+    /// Number of roots of the polynomial with positive real part, which is the number of sign changes in the
+    /// first column of Routh's table.
     pub right: usize,
     /// Number of roots of the polynomial on the imaginary axis.
     pub imaginary: usize,
 }
 
-/// Relative threshold: entries below this, relative to the terms of their difference, count as zero.
+/// Relative threshold in Routh's table: entries below this, relative to the terms of their difference, count
+/// as zero.
 const ZERO: f64 = 1e-12;
 
 impl Polynomial {
-    /// Computes Routh's table.
+    /// Computes Routh's table of the polynomial.
     ///
     /// ```
     /// use linkwork_design::Polynomial;
@@ -70,7 +72,7 @@ impl Polynomial {
                     let size = c.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
                     (row, vec![size; length])
                 }
-                _ => cross(&rows[k - 2], &above, length),
+                _ => cross_multiplied_row(&rows[k - 2], &above, length),
             };
             row.resize(length, 0.0);
             for (x, size) in row.iter_mut().zip(sizes) {
@@ -109,7 +111,7 @@ impl Polynomial {
     }
 }
 
-fn cross(two: &[f64], one: &[f64], length: usize) -> (Vec<f64>, Vec<f64>) {
+fn cross_multiplied_row(two: &[f64], one: &[f64], length: usize) -> (Vec<f64>, Vec<f64>) {
     let entry_or_zero = |row: &[f64], j: usize| row.get(j).copied().unwrap_or(0.0);
     let ratio = entry_or_zero(two, 0) / entry_or_zero(one, 0);
     let terms = (0..length).map(|j| (entry_or_zero(two, j + 1), ratio * entry_or_zero(one, j + 1)));
@@ -117,7 +119,7 @@ fn cross(two: &[f64], one: &[f64], length: usize) -> (Vec<f64>, Vec<f64>) {
 }
 
 impl Routh {
-    /// Returns whether all roots have negative real parts.
+    /// Whether all roots of the polynomial have negative real parts.
     pub fn is_stable(&self) -> bool {
         self.right == 0 && self.imaginary == 0
     }
@@ -154,7 +156,7 @@ impl Polynomial {
         let mut ends = vec![f64::NEG_INFINITY];
         ends.extend(critical);
         ends.push(f64::INFINITY);
-        let is_stable = |k: f64| -> Result<bool, Error> {
+        let is_stable_with_gain = |k: f64| -> Result<bool, Error> {
             let polynomial = self + &other.scaled(k);
             Ok(!polynomial.is_zero() && polynomial.routh()?.is_stable())
         };
@@ -167,20 +169,20 @@ impl Polynomial {
                 (false, true) => high - 1.0 - high.abs(),
                 (false, false) => 0.0,
             };
-            if !is_stable(inside)? {
+            if !is_stable_with_gain(inside)? {
                 continue;
             }
             // A candidate that is not critical does not end a range.
             match ranges.last_mut() {
-                Some(last) if last.high == low && is_stable(low)? => last.high = high,
+                Some(last) if last.high == low && is_stable_with_gain(low)? => last.high = high,
                 _ => ranges.push(GainRange { low, high }),
             }
         }
         Ok(ranges)
     }
 
-    /// Returns candidates that include all gains at which a root is on the imaginary axis or at infinity.
-    /// Additional candidates do no harm.
+    /// Returns candidates that include all gains at which a root is on the imaginary axis or at infinity. The
+    /// list may contain other gains as well.
     fn critical_gains(&self, other: &Self) -> Result<Vec<f64>, Error> {
         let mirrored_polynomial = |p: &Self| {
             let n = p.degree();

@@ -30,7 +30,7 @@ fn symmetric_and_skew_parts(m: &DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
 }
 
 impl SecondOrderForm {
-    /// Creates the form from the matrices that multiply `q̈`, `q̇`, `q` and the inputs.
+    /// Creates the second-order form from the matrices that multiply `q̈`, `q̇`, `q` and the inputs.
     ///
     /// # Errors
     ///
@@ -52,7 +52,7 @@ impl SecondOrderForm {
         Ok(Self { mass, damping, gyroscopic, stiffness, circulatory, input, coordinates, inputs })
     }
 
-    /// Sets the names and, optionally, units of coordinates and inputs.
+    /// Sets the names and, optionally, units of coordinates and inputs of the second-order form.
     ///
     /// # Errors
     ///
@@ -69,7 +69,8 @@ impl SecondOrderForm {
         Ok(self)
     }
 
-    /// Returns the form as a first-order system with the states `(q, q̇)`, which are also the outputs.
+    /// Returns the second-order form as a first-order system with the states `(q, q̇)`, which are also the
+    /// outputs.
     ///
     /// ```
     /// use linkwork_design::SecondOrderForm;

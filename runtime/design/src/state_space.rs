@@ -115,7 +115,7 @@ impl StateSpace {
         Ok(Self { a, b, c, d, states, inputs, outputs, period: None })
     }
 
-    /// Creates a system without states: `y = D u`.
+    /// Creates a linear system without states: `y = D u`.
     ///
     /// # Errors
     ///
@@ -125,7 +125,8 @@ impl StateSpace {
         Self::new(DMatrix::zeros(0, 0), DMatrix::zeros(0, m), DMatrix::zeros(p, 0), d)
     }
 
-    /// Makes the system discrete with a period in s: `A` maps the state at one sampling instant to the next.
+    /// Makes the system discrete with a period in s: the matrix `A` maps the state at one sampling instant to
+    /// the next.
     ///
     /// # Errors
     ///
@@ -138,7 +139,7 @@ impl StateSpace {
         Ok(self)
     }
 
-    /// Sets the names and, optionally, units of the states.
+    /// Sets the names and, optionally, units of the states of the system.
     ///
     /// # Errors
     ///
@@ -148,7 +149,7 @@ impl StateSpace {
         Ok(self)
     }
 
-    /// Sets the names and, optionally, units of the inputs.
+    /// Sets the names and, optionally, units of the inputs of the system.
     ///
     /// # Errors
     ///
@@ -158,7 +159,7 @@ impl StateSpace {
         Ok(self)
     }
 
-    /// Sets the names and, optionally, units of the outputs.
+    /// Sets the names and, optionally, units of the outputs of the system.
     ///
     /// # Errors
     ///
@@ -216,7 +217,7 @@ impl StateSpace {
         self.a.nrows()
     }
 
-    /// Returns the eigenvalues of `A`, sorted by real part, in conjugate pairs.
+    /// Returns the poles of the system: the eigenvalues of `A`, sorted by real part, in conjugate pairs.
     ///
     /// # Errors
     ///
@@ -225,8 +226,8 @@ impl StateSpace {
         eigenvalues(&self.a)
     }
 
-    /// Returns whether all poles are in the open left half-plane, or inside the unit circle for a discrete
-    /// system.
+    /// Whether all poles of the system are in the open left half-plane, or inside the unit circle for a
+    /// discrete system.
     ///
     /// # Errors
     ///
@@ -235,8 +236,8 @@ impl StateSpace {
         Ok(self.unstable_pole()?.is_none())
     }
 
-    /// Returns the pole with the largest real part (largest magnitude for a discrete system), if it is not
-    /// stable.
+    /// Returns the pole with the largest real part (largest magnitude for a discrete system), if the system
+    /// is unstable.
     pub(crate) fn unstable_pole(&self) -> Result<Option<C>, Error> {
         let excess_over_stability = |p: &C| if self.period.is_some() { p.norm() - 1.0 } else { p.re };
         let worst = self
@@ -246,7 +247,7 @@ impl StateSpace {
         Ok(worst.filter(|p| excess_over_stability(p) >= 0.0))
     }
 
-    /// Reports an unstable pole of the system as an error.
+    /// Returns an error that names an unstable pole, if the system has one.
     pub(crate) fn check_stable(&self) -> Result<(), Error> {
         self.unstable_pole()?.map_or(Ok(()), |pole| Err(Error::Unstable { pole }))
     }
@@ -293,7 +294,7 @@ impl StateSpace {
         Ok(&self.d + &self.c * x)
     }
 
-    /// Returns the index of an input.
+    /// Returns the index of an input, selected by name or index.
     ///
     /// # Errors
     ///
@@ -302,7 +303,7 @@ impl StateSpace {
         index_of_port("input", &self.inputs, input.into())
     }
 
-    /// Returns the index of an output.
+    /// Returns the index of an output, selected by name or index.
     ///
     /// # Errors
     ///
@@ -337,7 +338,7 @@ fn index_of_port(kind: &'static str, signals: &[Signal], port: Port<'_>) -> Resu
 }
 
 impl fmt::Display for StateSpace {
-    /// Writes the equations, the names of all signals and the matrices.
+    /// Writes the equations of the system, the names of all signals and the matrices.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let join_signal_names =
             |signals: &[Signal]| signals.iter().map(|s| s.name.clone()).collect::<Vec<_>>().join(", ");

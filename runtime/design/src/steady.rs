@@ -37,7 +37,7 @@
 use crate::Error;
 use linkwork::{Constrained, Derivatives, OutputDerivatives};
 use nalgebra::SVector;
-use problem::{Bounds, Measured};
+use problem::{ConstraintResiduals, OutputSensitivities};
 
 mod linear;
 mod problem;
@@ -46,31 +46,37 @@ mod stiffness;
 
 pub use stiffness::{Stiffness, Verdict};
 
-/// Function that builds the mechanism from the values of its unknown parameters.
-type Family<'m, M> = dyn Fn(&[f64]) -> M + 'm;
+/// Function that builds a mechanism from the values of its unknown parameters.
+type MechanismFamily<'m, M> = dyn Fn(&[f64]) -> M + 'm;
 
 /// Mechanism of a trim: either fixed, or built for each set of parameters.
-enum Source<'m, M> {
+enum MechanismSource<'m, M> {
     Given(&'m M),
-    Family(Box<Family<'m, M>>),
+    Family(Box<MechanismFamily<'m, M>>),
 }
 
 /// Function that evaluates the constraints of a mechanism at a time, a configuration and a velocity.
-type ConstraintsOf<M, const NQ: usize, const NV: usize> =
-    fn(&M, f64, &SVector<f64, NQ>, &SVector<f64, NV>) -> Bounds;
+type ConstraintFunction<M, const NQ: usize, const NV: usize> =
+    fn(&M, f64, &SVector<f64, NQ>, &SVector<f64, NV>) -> ConstraintResiduals;
 
-/// Function that computes the named constraint multipliers at a time, a configuration, a velocity and
-/// generalized forces.
-type MultipliersOf<M, const NQ: usize, const NV: usize> =
+/// Function that computes the constraint multipliers with their names, at a time, a configuration, a velocity
+/// and generalized forces.
+type MultiplierFunction<M, const NQ: usize, const NV: usize> =
     fn(&M, f64, &SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NV>) -> Vec<(&'static str, f64)>;
 
 /// Function that evaluates the outputs of a mechanism and their derivatives at a time, a configuration, a
 /// velocity, an acceleration and inputs.
-type OutputsOf<M, const NQ: usize, const NV: usize, const NU: usize> =
-    fn(&M, f64, &SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NV>, &SVector<f64, NU>) -> Measured;
+type OutputFunction<M, const NQ: usize, const NV: usize, const NU: usize> = fn(
+    &M,
+    f64,
+    &SVector<f64, NQ>,
+    &SVector<f64, NV>,
+    &SVector<f64, NV>,
+    &SVector<f64, NU>,
+) -> OutputSensitivities;
 
-/// Scalar function of mechanism, configuration, velocity and inputs.
-type Quantity<'m, M, const NQ: usize, const NV: usize, const NU: usize> =
+/// Scalar function of mechanism, configuration, velocity and inputs, whose value a steady state prescribes.
+type ConditionQuantity<'m, M, const NQ: usize, const NV: usize, const NU: usize> =
     Box<dyn Fn(&M, &SVector<f64, NQ>, &SVector<f64, NV>, &SVector<f64, NU>) -> f64 + 'm>;
 
 /// Unknowns and conditions of a steady state.
@@ -80,7 +86,7 @@ type Quantity<'m, M, const NQ: usize, const NV: usize, const NU: usize> =
 /// mechanism, are unknown unless they are [fixed](Trim::fix), and their rates are zero. Constraints are
 /// always conditions.
 pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
-    source: Source<'m, M>,
+    source: MechanismSource<'m, M>,
     t: f64,
     q: SVector<f64, NQ>,
     v: SVector<f64, NV>,
@@ -95,9 +101,9 @@ pub struct Trim<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
     accelerations: Vec<(String, Option<f64>)>,
     conditions: Vec<(String, f64)>,
     /// Conditions on quantities that are not outputs: name, required value and function.
-    quantities: Vec<(String, f64, Quantity<'m, M, NQ, NV, NU>)>,
-    constraints: Option<(ConstraintsOf<M, NQ, NV>, MultipliersOf<M, NQ, NV>)>,
-    outputs: Option<OutputsOf<M, NQ, NV, NU>>,
+    quantities: Vec<(String, f64, ConditionQuantity<'m, M, NQ, NV, NU>)>,
+    constraints: Option<(ConstraintFunction<M, NQ, NV>, MultiplierFunction<M, NQ, NV>)>,
+    outputs: Option<OutputFunction<M, NQ, NV, NU>>,
     nearest: bool,
     iterations: usize,
 }
@@ -117,14 +123,15 @@ pub struct SteadyState<const NQ: usize, const NV: usize, const NU: usize> {
     pub acceleration: SVector<f64, NV>,
     /// Values of the mechanism's parameters, in the order of their declaration.
     pub parameters: Vec<f64>,
-    /// Forces that lock the [held](Trim::hold) coordinates: name, and generalized force, N or N·m.
+    /// Forces that lock the [held](Trim::hold) coordinates, as names and generalized forces, N or N·m.
     pub holding: Vec<(String, f64)>,
-    /// Multipliers of the constraints: name, and force or torque (N, N·m) along the constraint's velocity.
-    /// For redundant constraints, the multipliers of minimum norm.
+    /// Multipliers of the constraints, as names and values: force or torque (N, N·m) along the constraint's
+    /// velocity. For redundant constraints, the multipliers of minimum norm.
     pub multipliers: Vec<(&'static str, f64)>,
     /// Number of iterations until the steady state was found.
     pub iterations: usize,
-    /// Largest residual of the conditions, each divided by its sensitivity to the unknowns: rad, m.
+    /// Largest residual of the conditions of the steady state, each divided by its sensitivity to the
+    /// unknowns, so that it is a displacement: rad, m.
     pub residual: f64,
 }
 
@@ -179,11 +186,14 @@ pub fn constrained_equilibrium<
 where
     M: Derivatives<NQ, NV, NU> + Constrained<NQ, NV, NU, NH, NC, Scalar = f64>,
 {
-    let multipliers: MultipliersOf<M, NQ, NV> = |m, t, q, v, tau| {
+    let multipliers: MultiplierFunction<M, NQ, NV> = |m, t, q, v, tau| {
         let (_, lambda) = m.constrained_dynamics(t, q, v, tau);
         M::CONSTRAINTS.into_iter().zip(lambda.iter().copied()).collect()
     };
-    Trim { constraints: Some((problem::bounds::<M, NQ, NV, NU, NH, NC>, multipliers)), ..Trim::new(m) }
+    Trim {
+        constraints: Some((problem::constraint_residuals::<M, NQ, NV, NU, NH, NC>, multipliers)),
+        ..Trim::new(m)
+    }
 }
 
 fn owned_names<S: Into<String>>(names: impl IntoIterator<Item = S>) -> Vec<String> {
@@ -196,7 +206,7 @@ where
 {
     fn new(m: &'m M) -> Self {
         Self {
-            source: Source::Given(m),
+            source: MechanismSource::Given(m),
             t: 0.0,
             q: m.neutral(),
             v: SVector::zeros(),
@@ -217,20 +227,23 @@ where
         }
     }
 
-    /// Sets the configuration from which the iteration starts. Coordinates that are not unknown retain its
-    /// values. The default is the neutral configuration. The constraints need not be satisfied by it.
+    /// Sets the configuration from which the iteration for a steady state starts. Coordinates that are not
+    /// unknown retain its values. The default is the neutral configuration. It need not satisfy the
+    /// constraints.
     pub fn from(mut self, q: SVector<f64, NQ>) -> Self {
         self.q = q;
         self
     }
 
-    /// Sets the velocity, m/s and rad/s; for unknown velocities it is the initial guess. The default is zero.
+    /// Sets the velocity of the steady state, m/s and rad/s; for unknown velocities it is the initial guess.
+    /// The default is zero.
     pub fn moving(mut self, v: SVector<f64, NV>) -> Self {
         self.v = v;
         self
     }
 
-    /// Sets the inputs; for unknown inputs they are the initial guess. The default is zero.
+    /// Sets the inputs of the steady state; for unknown inputs they are the initial guess. The default is
+    /// zero.
     pub fn with_inputs(mut self, u: SVector<f64, NU>) -> Self {
         self.u = u;
         self
@@ -242,20 +255,21 @@ where
         self
     }
 
-    /// Declares these coordinates to be the only unknown ones; the others keep their initial values.
+    /// Declares the named coordinates as the only unknown ones of the trim. All others keep their initial
+    /// values.
     pub fn coordinates<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.coordinates = Some(owned_names(names));
         self
     }
 
-    /// Fixes these coordinates at their initial values, while the forces along them must still balance.
+    /// Fixes the named coordinates at their initial values, while the forces along them must still balance.
     /// Examples are positions on a level road and the heading of an aircraft.
     pub fn fix<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.fixed.extend(owned_names(names));
         self
     }
 
-    /// Locks these coordinates at their initial values by generalized forces, which are computed
+    /// Locks the named coordinates at their initial values by generalized forces, which are computed
     /// ([`SteadyState::holding`]).
     ///
     /// ```
@@ -304,24 +318,25 @@ where
         self
     }
 
-    /// Requires this value of the acceleration with this velocity name, m/s² or rad/s², instead of zero.
+    /// Prescribes the acceleration with this velocity name, m/s² or rad/s², instead of zero.
     pub fn acceleration(mut self, name: impl Into<String>, value: f64) -> Self {
         self.accelerations.push((name.into(), Some(value)));
         self
     }
 
-    /// Requires this value of the output with this name. Components of vectors are named `name.x` and so on.
+    /// Prescribes the value of the output with this name. Components of vectors are named `name.x` and so on.
     pub fn output<const NY: usize>(mut self, name: impl Into<String>, value: f64) -> Self
     where
         M: OutputDerivatives<NQ, NV, NU, NY, Scalar = f64>,
     {
-        self.outputs = Some(problem::measured::<M, NQ, NV, NU, NY>);
+        self.outputs = Some(problem::output_derivatives::<M, NQ, NV, NU, NY>);
         self.conditions.push((name.into(), value));
         self
     }
 
-    /// Adds a condition without a declared output: a quantity of configuration, velocity and inputs has this
-    /// value. Errors show `name`. The derivatives of the quantity are central differences.
+    /// Adds a condition on a quantity that is not a declared output: a function of configuration, velocity
+    /// and inputs has this value. Errors show `name`. The derivatives of the quantity are central
+    /// differences.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -407,7 +422,7 @@ where
         family: impl Fn(&[f64]) -> M + 'm,
     ) -> Self {
         self.parameters = guesses.into_iter().map(|(name, guess)| (name.into(), guess)).collect();
-        self.source = Source::Family(Box::new(family));
+        self.source = MechanismSource::Family(Box::new(family));
         self
     }
 
@@ -424,7 +439,7 @@ where
         self
     }
 
-    /// Computes a state near the guess that satisfies all conditions.
+    /// Computes a state near the guess that satisfies all conditions of the trim.
     ///
     /// # Errors
     ///
@@ -436,9 +451,9 @@ where
         solve::find(self)
     }
 
-    /// Computes the distinct states that are reached from several guesses of the configuration, in the order
-    /// of the guesses. Guesses that lead to no state are skipped. Angles of revolute joints are not reduced
-    /// modulo a revolution.
+    /// Computes the distinct steady states that are reached from several guesses of the configuration, in the
+    /// order of the guesses. Guesses that lead to no state are skipped. Angles of revolute joints are not
+    /// reduced modulo a revolution.
     ///
     /// # Errors
     ///
@@ -464,7 +479,7 @@ where
         if all.is_empty() { Err(error) } else { Ok(all) }
     }
 
-    /// Returns whether two states differ by more than the accuracy of a solution.
+    /// Whether two steady states differ by more than the accuracy of a solution.
     fn has_significant_difference(
         &self,
         one: &SteadyState<NQ, NV, NU>,
@@ -482,8 +497,8 @@ where
 
     fn with_mechanism<R>(&self, parameters: &[f64], f: impl FnOnce(&M) -> R) -> R {
         match &self.source {
-            Source::Given(m) => f(m),
-            Source::Family(family) => f(&family(parameters)),
+            MechanismSource::Given(m) => f(m),
+            MechanismSource::Family(family) => f(&family(parameters)),
         }
     }
 }

@@ -15,9 +15,9 @@ pub struct StepFigures {
     pub rise_time: f64,
     /// Time after which the response stays within the band around the final value, s.
     pub settling_time: f64,
-    /// Largest excess over the final value, % of it.
+    /// Overshoot: largest excess over the final value, % of the final value.
     pub overshoot: f64,
-    /// Largest value of the opposite sign, % of the final value.
+    /// Undershoot: largest value of the opposite sign, % of the final value.
     pub undershoot: f64,
     /// Largest magnitude of the step response.
     pub peak: f64,
@@ -29,7 +29,7 @@ pub struct StepFigures {
     pub largest_after_rise: f64,
 }
 
-/// Levels that settling and rise times are measured against.
+/// Levels by which settling and rise times of a step response are defined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepLimits {
     /// Half width of the band around the final value, relative to it; 0.02 by default.
@@ -46,19 +46,20 @@ impl Default for StepLimits {
 
 /// Deviation of a step response from its final value, relative to the final value, as a function of time or
 /// of the sample index.
-struct Distance {
+struct StepDeviation {
     /// First samples of the deviation of a discrete system, which its modes do not describe.
     first: Vec<f64>,
     modes: ModalSum,
 }
 
-impl Distance {
+impl StepDeviation {
     /// Returns the first instant at which the modes alone describe the deviation.
     fn start_of_modal_sum(&self) -> f64 {
         self.first.len() as f64
     }
 
-    /// Returns the first instant at which the deviation reaches a negative level from below.
+    /// Returns the first instant at which the deviation of the step response reaches a negative level from
+    /// below.
     fn first_above(&self, level: f64) -> Result<f64, Error> {
         match self.first.iter().position(|e| *e >= level) {
             Some(k) => Ok(k as f64),
@@ -66,14 +67,15 @@ impl Distance {
         }
     }
 
-    /// Returns the last instant at which the magnitude of the deviation exceeds a band.
+    /// Returns the last instant at which the magnitude of the deviation of the step response exceeds a band.
     fn last_outside(&self, band: f64) -> Result<Option<f64>, Error> {
         let early = self.first.iter().rposition(|e| e.abs() > band).map(|k| k as f64);
         Ok(self.modes.last_outside(band, self.start_of_modal_sum())?.or(early))
     }
 
     /// Returns the instant and the value of the maximum (`sign` one) or minimum (`sign` −1) of the deviation
-    /// after the time `from`. If the deviation only approaches zero, the result is zero at infinite time.
+    /// of the step response after the time `from`. If the deviation only approaches zero, the result is zero
+    /// at infinite time.
     fn extreme_deviation(&self, sign: f64, from: f64) -> Result<(f64, f64), Error> {
         let early = self.first.iter().enumerate().skip(from as usize).map(|(k, e)| (k as f64, *e));
         let early = early.reduce(|best, next| if sign * next.1 > sign * best.1 { next } else { best });
@@ -112,7 +114,8 @@ impl StateSpace {
         self.step_figures_within(StepLimits::default())
     }
 
-    /// Computes [`step_figures`](Self::step_figures) with other limits.
+    /// Computes the characteristic values of the step response, as [`step_figures`](Self::step_figures) does,
+    /// with other limits.
     ///
     /// # Errors
     ///
@@ -164,8 +167,8 @@ impl StateSpace {
         })
     }
 
-    /// Computes the deviation of the step response from its final value.
-    fn distance_from_final_value(&self, final_value: f64) -> Result<Distance, Error> {
+    /// Computes the deviation of the step response from its final value, as a function of time.
+    fn distance_from_final_value(&self, final_value: f64) -> Result<StepDeviation, Error> {
         let n = self.order();
         // The initial value of x − x∞ is −x∞.
         let (left, what) = match self.period {
@@ -182,12 +185,12 @@ impl StateSpace {
                 x = &self.a * x;
             }
         }
-        Ok(Distance { first, modes })
+        Ok(StepDeviation { first, modes })
     }
 }
 
 impl TransferFunction {
-    /// Computes the characteristic values of the step response.
+    /// Computes the characteristic values of the step response of the transfer function.
     ///
     /// # Errors
     ///

@@ -1,7 +1,7 @@
 //! Controllability and observability of linear systems.
 
 use crate::matrices::{
-    C, CMatrix, Compression, balance_system, discrete_lyapunov, lyapunov, smallest_singular,
+    C, CMatrix, RowCompression, balance_system, discrete_lyapunov, lyapunov, smallest_singular,
 };
 use crate::{Error, Signal, StateSpace};
 use nalgebra::DMatrix;
@@ -15,11 +15,13 @@ const ROUNDING: f64 = 1e-12;
 pub struct Staircase {
     /// System in the transformed states of the staircase form.
     pub system: StateSpace,
-    /// Transformation `x = T z`: orthogonal, or orthogonal times diagonal scales if the system was balanced.
+    /// Transformation `x = T z` between the states of both systems: orthogonal, or orthogonal times diagonal
+    /// scales if the system was balanced.
     pub transformation: DMatrix<f64>,
     /// Dimension of the controllable subspace.
     pub rank: usize,
-    /// Ranks of the steps. The controllability indices are the conjugate partition of these ranks.
+    /// Ranks of the blocks of the staircase form. The controllability indices are the conjugate partition of
+    /// these ranks.
     pub steps: Vec<usize>,
 }
 
@@ -79,7 +81,7 @@ impl StateSpace {
                 true => (b.clone(), relative * size_b),
                 false => (a.view((top, before), (n - top, top - before)).into_owned(), relative * size_a),
             };
-            let compression = Compression::rows(&block, least.max(f64::MIN_POSITIVE));
+            let compression = RowCompression::compress_rows(&block, least.max(f64::MIN_POSITIVE));
             if compression.rank == 0 {
                 break;
             }
@@ -98,7 +100,7 @@ impl StateSpace {
         Ok(Staircase { system, transformation, rank: top, steps })
     }
 
-    /// Returns whether inputs can steer the system from every state to every other.
+    /// Whether inputs can steer the system from every state to every other state.
     ///
     /// # Errors
     ///
@@ -107,7 +109,7 @@ impl StateSpace {
         Ok(self.controllable_staircase(0.0)?.rank == self.order())
     }
 
-    /// Returns whether the outputs determine the state.
+    /// Whether the outputs determine the state of the system.
     ///
     /// # Errors
     ///

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use std::fmt;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// Ratio of polynomials in `s`, or in `z` for a discrete system.
+/// Transfer function as a ratio of polynomials in `s`, or in `z` for a discrete system.
 ///
 /// ```
 /// use linkwork_design::TransferFunction;
@@ -32,7 +32,7 @@ pub struct ZerosPolesGain {
     pub zeros: Vec<C>,
     /// Poles of the transfer function, in conjugate pairs.
     pub poles: Vec<C>,
-    /// Factor `k`: the ratio of the leading coefficients.
+    /// Gain factor `k` of the transfer function: the ratio of the leading coefficients.
     pub gain: f64,
     /// Sampling period of a discrete system, s.
     pub period: Option<f64>,
@@ -112,18 +112,18 @@ impl TransferFunction {
         self.period
     }
 
-    /// Returns whether the degree of the numerator is at most that of the denominator.
+    /// Whether the degree of the numerator of the transfer function is at most that of the denominator.
     pub fn is_proper(&self) -> bool {
         self.numerator.degree() <= self.denominator.degree()
     }
 
-    /// Reports an error if the numerator has the higher degree.
+    /// Returns an error if the numerator of the transfer function has a higher degree than the denominator.
     pub(crate) fn check_proper(&self) -> Result<(), Error> {
         let (numerator, denominator) = (self.numerator.degree(), self.denominator.degree());
         if self.is_proper() { Ok(()) } else { Err(Error::Improper { numerator, denominator }) }
     }
 
-    /// Returns the roots of the denominator.
+    /// Returns the poles of the transfer function: the roots of the denominator.
     ///
     /// # Errors
     ///
@@ -132,7 +132,7 @@ impl TransferFunction {
         self.denominator.roots()
     }
 
-    /// Returns the roots of the numerator.
+    /// Returns the zeros of the transfer function: the roots of the numerator.
     ///
     /// # Errors
     ///
@@ -146,12 +146,12 @@ impl TransferFunction {
         self.numerator.at(s) / self.denominator.at(s)
     }
 
-    /// Returns the static gain, at `s = 0` or `z = 1`. Infinite for a pole there.
+    /// Returns the static gain of the transfer function, at `s = 0` or `z = 1`. Infinite for a pole there.
     pub fn gain_at_rest(&self) -> f64 {
         self.at(C::new(if self.period.is_some() { 1.0 } else { 0.0 }, 0.0)).re
     }
 
-    /// Returns the zeros, poles and gain.
+    /// Returns the zeros, poles and gain of the transfer function.
     ///
     /// # Errors
     ///
@@ -161,7 +161,8 @@ impl TransferFunction {
         Ok(ZerosPolesGain { zeros, poles, gain: self.numerator.leading(), period: self.period })
     }
 
-    /// Removes common factors: pairs of a zero and a pole whose distance is below `tolerance · (1 + |zero|)`.
+    /// Removes common factors of numerator and denominator: pairs of a zero and a pole whose distance is
+    /// below `tolerance · (1 + |zero|)`.
     ///
     /// # Errors
     ///
@@ -204,7 +205,7 @@ impl TransferFunction {
         self.period.map_or(Ok(system.clone()), |h| system.with_period(h))
     }
 
-    /// Closes a negative feedback loop through `back`.
+    /// Closes a negative feedback loop of the transfer function through `back`.
     ///
     /// # Errors
     ///
@@ -230,7 +231,7 @@ impl TransferFunction {
         }
     }
 
-    /// Returns the sum.
+    /// Returns the sum of two transfer functions, which is the parallel connection.
     ///
     /// # Errors
     ///
@@ -241,7 +242,7 @@ impl TransferFunction {
         Ok(Self { period, ..Self::quotient(&(&one + &two), &(&self.denominator * &other.denominator))? })
     }
 
-    /// Returns the product, which is the series connection.
+    /// Returns the product of two transfer functions, which is the series connection.
     ///
     /// # Errors
     ///
@@ -252,7 +253,7 @@ impl TransferFunction {
         Ok(Self { period, ..Self::quotient(&numerator, &(&self.denominator * &other.denominator))? })
     }
 
-    /// Returns the quotient.
+    /// Returns the quotient of two transfer functions.
     ///
     /// # Errors
     ///
@@ -359,7 +360,8 @@ impl fmt::Display for ZerosPolesGain {
 }
 
 impl StateSpace {
-    /// Returns the zeros, poles and gain of one channel. Uncontrollable and unobservable modes are removed.
+    /// Returns the zeros, poles and gain of one channel of the system. Uncontrollable and unobservable modes
+    /// are removed.
     ///
     /// # Errors
     ///
@@ -392,7 +394,7 @@ impl StateSpace {
         Ok(ZerosPolesGain { zeros, poles, gain, period: self.period })
     }
 
-    /// Returns one channel as a ratio of polynomials, computed from its zeros, poles and gain.
+    /// Returns one channel of the system as a ratio of polynomials, computed from its zeros, poles and gain.
     ///
     /// # Errors
     ///

@@ -1,21 +1,21 @@
 //! Invariant zeros of linear systems.
 
-use crate::matrices::{C, Compression, balance_system, eigenvalues, solve_linear_system};
+use crate::matrices::{C, RowCompression, balance_system, eigenvalues, solve_linear_system};
 use crate::{Error, StateSpace};
 use nalgebra::DMatrix;
 
 /// State-space system during the reduction to one with invertible `D`, whose eigenvalues are the invariant
 /// zeros.
-struct Pencil {
+struct ReducedSystem {
     a: DMatrix<f64>,
     b: DMatrix<f64>,
     c: DMatrix<f64>,
     d: DMatrix<f64>,
-    /// Threshold below which entries count as rounding errors.
+    /// Magnitude below which matrix entries count as rounding errors.
     least: f64,
 }
 
-impl Pencil {
+impl ReducedSystem {
     fn new(system: &StateSpace) -> Self {
         let (a, b, c, _) = balance_system(&system.a, &system.b, &system.c);
         // Inputs and outputs are scaled to the same norm as the states.
@@ -39,7 +39,7 @@ impl Pencil {
         m
     }
 
-    fn transpose(self) -> Self {
+    fn transpose_system(self) -> Self {
         Self {
             a: self.a.transpose(),
             b: self.c.transpose(),
@@ -49,12 +49,12 @@ impl Pencil {
         }
     }
 
-    /// Eliminates states until `D` has full row rank. At a zero the outputs vanish. Outputs without
-    /// feedthrough then restrict the states to a subspace, and the other states are removed.
+    /// Eliminates states until the matrix `D` has full row rank. At a zero the outputs vanish, so that
+    /// outputs without feedthrough restrict the states to a subspace, and the other states are removed.
     fn eliminate_states(mut self) -> Self {
         loop {
             let (n, p) = (self.a.nrows(), self.d.nrows());
-            let of_d = Compression::rows(&self.d, self.least);
+            let of_d = RowCompression::compress_rows(&self.d, self.least);
             let sigma = of_d.rank;
             self.c = of_d.q.transpose() * &self.c;
             self.d = of_d.q.transpose() * &self.d;
@@ -62,7 +62,7 @@ impl Pencil {
                 return self;
             }
             let fixed = self.c.rows(sigma, p - sigma).transpose();
-            let of_c = Compression::rows(&fixed, self.least);
+            let of_c = RowCompression::compress_rows(&fixed, self.least);
             let mu = of_c.rank;
             // The determined states come first; the others remain.
             let v = of_c.q;
@@ -87,10 +87,11 @@ impl Pencil {
 }
 
 impl StateSpace {
-    /// Computes the invariant zeros: the values of `s` at which the system matrix `[A − s I, B; C, D]` has
-    /// less than its normal rank. The method is the reduction of Emami-Naeini and Van Dooren (*Computation of
-    /// zeros of linear multivariable systems*, Automatica 18, 1982). For a controllable and observable system
-    /// they are the transmission zeros; otherwise they also include uncontrollable and unobservable modes.
+    /// Computes the invariant zeros of the system: the values of `s` at which the system matrix
+    /// `[A − s I, B; C, D]` has less than its normal rank. The method is the reduction of Emami-Naeini and
+    /// Van Dooren (*Computation of zeros of linear multivariable systems*, Automatica 18, 1982). For a
+    /// controllable and observable system they are the transmission zeros; otherwise they also include
+    /// uncontrollable and unobservable modes.
     ///
     /// ```
     /// use linkwork_design::StateSpace;
@@ -106,7 +107,11 @@ impl StateSpace {
     ///
     /// [`Error::NotConverged`] if the eigenvalues of the reduced system do not converge.
     pub fn zeros(&self) -> Result<Vec<C>, Error> {
-        let reduced = Pencil::new(self).eliminate_states().transpose().eliminate_states().transpose();
+        let reduced = ReducedSystem::new(self)
+            .eliminate_states()
+            .transpose_system()
+            .eliminate_states()
+            .transpose_system();
         let (n, m) = (reduced.a.nrows(), reduced.d.ncols());
         if n == 0 {
             return Ok(Vec::new());
@@ -124,7 +129,7 @@ impl StateSpace {
         let mut both = DMatrix::zeros(reduced.d.nrows(), m + n);
         both.columns_mut(0, m).copy_from(&reduced.d);
         both.columns_mut(m, n).copy_from(&reduced.c);
-        let compression = Compression::rows(&both.transpose(), 0.0);
+        let compression = RowCompression::compress_rows(&both.transpose(), 0.0);
         let kernel = compression.q.columns(m, n);
         let (u, x) = (kernel.rows(0, m), kernel.rows(m, n));
         let left = &reduced.a * x + &reduced.b * u;

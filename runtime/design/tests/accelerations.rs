@@ -11,7 +11,8 @@ use num_dual::Dual64;
 /// Tolerance between generated and dual-number derivatives, relative to the largest entry.
 const ROUNDING: f64 = 1e-10;
 
-/// Returns the derivatives at zero along `K` directions by dual numbers, which are exact up to rounding.
+/// Returns the derivatives of a function at zero along `K` directions by dual numbers, which are exact up to
+/// rounding.
 fn dual_derivatives<const N: usize, const K: usize>(
     f: impl Fn(SVector<Dual64, K>) -> SVector<Dual64, N>,
 ) -> DMatrix<f64> {
@@ -35,7 +36,7 @@ fn assert_agreement(what: &str, found: &DMatrix<f64>, expected: &DMatrix<f64>) {
 
 /// Aircraft with lift from a table, forces that depend on the rate of the angle of attack, and an engine lag.
 #[mechanism(gravity = 9.81 * z, derivatives)]
-struct Unsteady<T: Real> {
+struct UnsteadyAircraft<T: Real> {
     mass: T,
     area: T,
     chord: T,
@@ -74,10 +75,10 @@ struct Unsteady<T: Real> {
 static ANGLES: [f64; 5] = [-1.6, -0.5, 0.1, 0.6, 1.7];
 static LIFTS: [f64; 5] = [-0.3, -0.9, 0.6, 1.4, 0.2];
 
-fn unsteady_aircraft<T: Real>(state: T) -> Unsteady<T> {
+fn unsteady_aircraft<T: Real>(state: T) -> UnsteadyAircraft<T> {
     let constant_number = |x: f64| nalgebra::convert(x);
     let lift = Table::new([&ANGLES], &LIFTS).unwrap().smooth();
-    Unsteady {
+    UnsteadyAircraft {
         mass: constant_number(900.0),
         area: constant_number(12.0),
         chord: constant_number(1.4),
@@ -89,7 +90,7 @@ fn unsteady_aircraft<T: Real>(state: T) -> Unsteady<T> {
     }
 }
 
-fn in_flight(k: usize) -> (SVector<f64, 7>, SVector<f64, 7>, SVector<f64, 2>) {
+fn flight_state(k: usize) -> (SVector<f64, 7>, SVector<f64, 7>, SVector<f64, 2>) {
     let k = k as f64;
     let turn = SVector::<f64, 4>::from([0.3 + 0.1 * k, -0.2, 0.25 * k, 0.9]).normalize();
     let q = SVector::from([10.0, 20.0, -900.0 - 3000.0 * k, turn[0], turn[1], turn[2], turn[3]]);
@@ -98,9 +99,9 @@ fn in_flight(k: usize) -> (SVector<f64, 7>, SVector<f64, 7>, SVector<f64, 2>) {
 }
 
 #[test]
-fn linear_systems_are_those_of_automatic_differentiation() {
+fn linear_systems_match_automatic_differentiation() {
     for k in 0..4 {
-        let (q, v, u) = in_flight(k);
+        let (q, v, u) = flight_state(k);
         let craft = unsteady_aircraft(v[6]);
         let system = linear_system(&at(&craft.extended(), 0.0), &q, &v, &u).unwrap();
         let dual = unsteady_aircraft(Dual64::from(0.0));
@@ -133,10 +134,11 @@ fn linear_systems_are_those_of_automatic_differentiation() {
     }
 }
 
-/// Pendulum on a cart; the forces on each depend on the other's acceleration, with factors of angle and rate.
+/// Pendulum on a cart. The force on each of the two depends on the acceleration of the other, with factors of
+/// angle and rate.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 #[derive(Clone, Copy)]
-struct Coupled<T: Real> {
+struct CoupledPendulum<T: Real> {
     gain: T,
     share: T,
     added: T,
@@ -157,12 +159,16 @@ struct Coupled<T: Real> {
     pushed: Force,
 }
 
-fn coupled_mechanism<T: Real>() -> Coupled<T> {
-    Coupled { gain: nalgebra::convert(0.2), share: nalgebra::convert(0.5), added: nalgebra::convert(0.7) }
+fn coupled_mechanism<T: Real>() -> CoupledPendulum<T> {
+    CoupledPendulum {
+        gain: nalgebra::convert(0.2),
+        share: nalgebra::convert(0.5),
+        added: nalgebra::convert(0.7),
+    }
 }
 
 #[test]
-fn second_order_forms_are_those_of_inverse_dynamics() {
+fn second_order_forms_match_inverse_dynamics() {
     for (q, v, u) in [([0.0, 0.0], [0.0, 0.0], [0.0]), ([0.3, -0.7], [0.5, 1.2], [2.0])] {
         let (q, v, u) = (q.into(), v.into(), u.into());
         let form = second_order_form(&coupled_mechanism::<f64>(), &q, &v, &u).unwrap();
@@ -187,9 +193,9 @@ fn second_order_forms_are_those_of_inverse_dynamics() {
     }
 }
 
-/// Two carts; the force on each is proportional to the other's acceleration.
+/// Two carts. The force on each is proportional to the acceleration of the other.
 #[mechanism(derivatives)]
-struct Carts {
+struct CoupledCarts {
     forth: f64,
     back: f64,
     push: Input,
@@ -212,8 +218,8 @@ struct Carts {
 }
 
 #[test]
-fn steady_motions_count_what_accelerations_cost() {
-    let carts = Carts { forth: 0.8, back: -0.1 };
+fn steady_motion_with_acceleration_forces() {
+    let carts = CoupledCarts { forth: 0.8, back: -0.1 };
     // The second cart is locked: the first one oscillates with its own effective mass, 2 + 0.5 kg.
     let held = equilibrium(&carts).hold(["right"]);
     let found = held.find().unwrap();
@@ -244,12 +250,12 @@ fn steady_motions_count_what_accelerations_cost() {
 /// Checks that positive stiffness is no proof of stability with an unsymmetric effective mass matrix:
 /// `M = [[m, s], [−s, m]]`, `K = 1` has the roots `s² = −1 / (m ± i s)`.
 #[test]
-fn energy_decides_on_symmetric_inertia_only() {
-    let carts = Carts { forth: 0.8, back: -0.8 };
+fn energy_criterion_needs_symmetric_inertia() {
+    let carts = CoupledCarts { forth: 0.8, back: -0.8 };
     let rest = equilibrium(&carts);
     let found = rest.find().unwrap();
     assert!(matches!(rest.stiffness(&found), Err(Error::NoPotential { .. })));
-    let even = Carts { forth: 0.8, back: 0.8 };
+    let even = CoupledCarts { forth: 0.8, back: 0.8 };
     let rest = equilibrium(&even);
     let found = rest.find().unwrap();
     let curvatures = rest.stiffness(&found).unwrap().curvatures;
@@ -260,8 +266,8 @@ fn energy_decides_on_symmetric_inertia_only() {
 }
 
 #[test]
-fn states_of_first_order_have_no_second_order_form() {
-    let (q, v, u) = in_flight(0);
+fn first_order_states_have_no_second_order_form() {
+    let (q, v, u) = flight_state(0);
     let craft = unsteady_aircraft(v[6]);
     let error = second_order_form(&at(&craft.extended(), 0.0), &q, &v, &u).unwrap_err();
     assert!(matches!(error, Error::Count { what: "states of first order", expected: 0, found: 1 }));

@@ -23,8 +23,8 @@ fn assert_contains_pole(all: &[C], re: f64, im: f64, tolerance: f64) {
     );
 }
 
-/// Jet transport of "Yaw Damper Design for a 747" (Control System Toolbox): Mach 0.8, 40 000 ft, lateral
-/// motion.
+/// Returns a jet transport at Mach 0.8 and 40 000 ft in lateral motion, from "Yaw Damper Design for a 747"
+/// (Control System Toolbox).
 fn jet_transport() -> StateSpace {
     let a = dmatrix![
         -0.0558, -0.9968, 0.0802, 0.0415;
@@ -46,7 +46,7 @@ fn jet_transport() -> StateSpace {
 }
 
 #[test]
-fn transport_modes() {
+fn jet_transport_modes_match_published() {
     let system = jet_transport();
     let poles = system.poles().unwrap();
     assert_contains_pole(&poles, -0.032935458097396, 0.946653235187099, 1e-13);
@@ -63,7 +63,7 @@ fn transport_modes() {
 }
 
 #[test]
-fn transport_channels() {
+fn jet_transport_channels_match_published() {
     let system = jet_transport();
     let yaw = system.transfer_function("yaw rate", "rudder").unwrap();
     let expected = [-0.475, -0.24788598, -0.118714058120, -0.056326124];
@@ -86,7 +86,7 @@ fn transport_channels() {
 }
 
 #[test]
-fn transport_frequency_response() {
+fn jet_transport_frequency_response() {
     let frequencies = [0.1, 0.5, 1.0, 2.0, 10.0];
     let response = jet_transport().frequency_response("yaw rate", "rudder", &frequencies).unwrap();
     // Recomputed with 40 digits (mpmath).
@@ -99,7 +99,7 @@ fn transport_frequency_response() {
 }
 
 #[test]
-fn transport_yaw_damper() {
+fn jet_transport_yaw_damper() {
     let yaw = jet_transport().channel("yaw rate", "rudder").unwrap();
     let closed = yaw.feedback_gain(&dmatrix![-2.85]).unwrap().poles().unwrap();
     assert_contains_pole(&closed, -0.297221693126074, 0.60611851148743, 1e-12);
@@ -108,7 +108,7 @@ fn transport_yaw_damper() {
 }
 
 #[test]
-fn riccati_of_maple() {
+fn riccati_solution_matches_maple() {
     let (a, b) = (dmatrix![-3.0, 2.0; 1.0, 1.0], dmatrix![0.0; 1.0]);
     let best = riccati(&a, &b, &Cost::new(dmatrix![1.0, -1.0; -1.0, 1.0], dmatrix![3.0])).unwrap();
     let x = [0.589517437276261, 1.821574724886083, 1.821574724886083, 8.818839806923112];
@@ -120,7 +120,7 @@ fn riccati_of_maple() {
 }
 
 #[test]
-fn margins_and_routh() {
+fn margins_and_routh_table_match_published() {
     let open = TransferFunction::new([1.0], [1.0, 2.0, 3.0, 4.0]).unwrap();
     let margins = open.margins().unwrap();
     let gain = margins.gain_increase().unwrap();
@@ -136,7 +136,7 @@ fn margins_and_routh() {
 }
 
 #[test]
-fn step_responses() {
+fn step_responses_match_published() {
     let figures = TransferFunction::new([-1.0, 1.0], [1.0, 1.0, 1.0]).unwrap().step_figures().unwrap();
     // The published values are computed from samples; python-control's tests allow 2 %.
     assert_relatively_close(figures.rise_time, 1.242, 2e-2);
@@ -166,7 +166,7 @@ fn step_responses() {
 /// printed.
 #[test]
 #[expect(clippy::approx_constant, reason = "an entry of a published matrix")]
-fn boeing_747() {
+fn boeing_747_matches_published_modes() {
     let longitudinal = dmatrix![
         -0.006868, 0.01395, 0.0, -32.2;
         -0.09055, -0.3151, 773.98, 0.0;
@@ -210,7 +210,7 @@ fn boeing_747() {
 /// Compares with the published matrices and eigenvalues of the benchmark bicycle (Meijaard, Papadopoulos,
 /// Ruina and Schwab, 2007).
 #[test]
-fn whipple_bicycle() {
+fn whipple_bicycle_matches_benchmark() {
     use linkwork_design::SecondOrderForm;
     let mass = dmatrix![80.81722, 2.31941332208709; 2.31941332208709, 0.29784188199686];
     let c1 = dmatrix![0.0, 33.86641391492494; -0.85035641456978, 1.68540397397560];
@@ -305,7 +305,7 @@ fn discrete_riccati_benchmarks() {
 /// Checks the gain margin of `K / (s + 1)ⁿ`, which crosses the real axis at `tan(π/n)` with gain `cosⁿ(π/n)`,
 /// and of `K / (s (s + 1) (s + 5))`, which crosses it at `√5` with gain `K / 30`.
 #[test]
-fn repeated_poles_have_their_margins() {
+fn margins_of_repeated_poles() {
     for n in [3_usize, 4, 5, 8] {
         let roots = vec![C::new(-1.0, 0.0); n];
         let denominator = Polynomial::from_roots(&roots);
@@ -335,7 +335,7 @@ fn repeated_poles_have_their_margins() {
 /// Compares with Ogata, *Modern Control Engineering* (2010), § 5-6: a row that begins with zero, a row of
 /// zeros, and roots on the stability boundary.
 #[test]
-fn routh_of_ogata() {
+fn routh_tables_match_ogata() {
     let count_right_roots = |c: &[f64]| Polynomial::new(c.to_vec()).routh().unwrap().right;
     assert_eq!(count_right_roots(&[1.0, 2.0, 3.0, 4.0, 5.0]), 2);
     assert_eq!(count_right_roots(&[1.0, 2.0, 1.0, 2.0]), 0);

@@ -21,7 +21,7 @@ fn system_without_feedthrough(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>)
     StateSpace::new(a, b, c, d).unwrap()
 }
 
-/// Returns a system that grows at 2/s and whose input acts on both states.
+/// Returns an unstable system, which grows at a rate of 2/s and whose input acts on both states.
 fn unstable_system() -> StateSpace {
     system_without_feedthrough(dmatrix![-1.0, 0.0; 0.0, 2.0], dmatrix![1.0; 1.0], dmatrix![1.0, 1.0])
 }
@@ -51,7 +51,7 @@ fn real_number(x: f64) -> Complex<f64> {
 }
 
 #[test]
-fn matrices_name_themselves() {
+fn matrix_errors_name_the_matrix() {
     let one_by_one_matrix = || dmatrix![1.0];
     assert_error_message(
         "A has an entry that is not finite",
@@ -91,7 +91,7 @@ fn matrices_name_themselves() {
 }
 
 #[test]
-fn periods_and_instants_are_positive() {
+fn invalid_periods_and_instants_are_errors() {
     let (stable, lag) = (stable_system(), TransferFunction::new([1.0], [1.0, 1.0]).unwrap());
     for bad in BAD_NUMBERS {
         let text = format!("expected a positive period, found {bad} s");
@@ -141,7 +141,7 @@ fn periods_and_instants_are_positive() {
 }
 
 #[test]
-fn what_needs_stability_names_the_pole() {
+fn unstable_systems_name_the_pole() {
     let (grows, rests) = ("not stable: the pole 2+0i", "not stable: the pole 0+0i");
     for (system, text) in
         [(unstable_system(), grows), (integrator_system(), rests), (double_integrator(), rests)]
@@ -176,7 +176,7 @@ fn what_needs_stability_names_the_pole() {
 
 /// Checks that the Lyapunov solvers accept an unsymmetric right-hand side `Q`.
 #[test]
-fn lyapunov_takes_any_right_side() {
+fn lyapunov_accepts_unsymmetric_right_side() {
     let (a, q) = (dmatrix![-1.0, 2.0; -3.0, -2.0], dmatrix![1.0, 5.0; -2.0, 0.5]);
     let x = matrices::lyapunov(&a, &q).unwrap();
     assert!((&a * &x + &x * a.transpose() + &q).amax() < 1e-14);
@@ -188,7 +188,7 @@ fn lyapunov_takes_any_right_side() {
 /// Checks margins of an unstable loop, and of loops whose response is real at all frequencies and therefore
 /// has no crossings of the real axis.
 #[test]
-fn margins_that_do_not_exist_are_none() {
+fn missing_margins_are_none() {
     let margins = double_integrator().margins().unwrap();
     assert!(margins.gain.is_empty(), "{margins:?}");
     let [phase] = margins.phase[..] else { panic!("{margins:?}") };
@@ -207,7 +207,7 @@ fn margins_that_do_not_exist_are_none() {
 }
 
 #[test]
-fn regulators_that_do_not_exist_name_the_mode() {
+fn impossible_regulators_name_the_mode() {
     let diagonal_cost = |q: &[f64], r: f64| Cost::diagonal(q, &[r]);
     let stuck =
         system_without_feedthrough(dmatrix![-1.0, 0.0; 0.0, 2.0], dmatrix![1.0; 0.0], dmatrix![1.0, 1.0]);
@@ -252,7 +252,7 @@ fn regulators_that_do_not_exist_name_the_mode() {
 }
 
 #[test]
-fn improper_and_impossible_transfer_functions() {
+fn invalid_transfer_functions_are_errors() {
     let transfer_function = |n: &[f64], d: &[f64]| TransferFunction::new(n.to_vec(), d.to_vec());
     let improper = transfer_function(&[1.0, 0.0, 1.0], &[1.0, 1.0]).unwrap();
     let text = "improper: degree 2 over degree 1";
@@ -293,7 +293,7 @@ fn improper_and_impossible_transfer_functions() {
 /// Checks `1 / (s + 1)³`: its step response is `1 − (1 + t + t²/2) e^{−t}`, and its mode is reported as
 /// defective.
 #[test]
-fn repeated_poles_have_their_results() {
+fn repeated_poles_have_exact_results() {
     let triple = TransferFunction::new([1.0], [1.0, 3.0, 3.0, 1.0]).unwrap().state_space().unwrap();
     let times = triple.times(8.0, 30).unwrap();
     let response = triple.step_response(0, &times).unwrap().output(0).unwrap();
@@ -309,7 +309,7 @@ fn repeated_poles_have_their_results() {
 }
 
 #[test]
-fn wrong_names_have_a_nearest() {
+fn unknown_names_suggest_the_nearest() {
     let named = stable_system().with_states([("alpha", "rad"), ("q", "rad/s")]).unwrap();
     assert_error_message(
         "no state `alhpa`, perhaps `alpha`; there are alpha, q",
@@ -346,7 +346,7 @@ fn systems_without_states_inputs_or_outputs() {
 }
 
 #[test]
-fn pictures_of_nothing() {
+fn empty_pictures_are_drawn() {
     let text = "no picture: no finite values to draw";
     let nothing = stable_system().frequency_response(0, 0, &[]).unwrap();
     assert_error_message(text, picture::bode(&nothing));
@@ -376,7 +376,7 @@ struct Pendulum {
 /// Checks the errors of linearisations about a state that is no solution of a trim, and about the solution of
 /// another trim.
 #[test]
-fn linear_motions_off_a_steady_state_say_by_how_much() {
+fn linearisation_off_steady_state_is_an_error() {
     let whole = Pendulum { lag: 0.2, torque: 0.0 };
     let whole = whole.extended();
     let rest = equilibrium(&whole);
@@ -399,7 +399,7 @@ fn linear_motions_off_a_steady_state_say_by_how_much() {
 
 /// Checks the errors of wrongly posed trims: unknown names, repeated names, too few and too many unknowns.
 #[test]
-fn problems_that_are_posed_wrongly_are_named() {
+fn wrongly_posed_trims_are_errors() {
     let whole = Pendulum { lag: 0.2, torque: 0.0 };
     let whole = whole.extended();
     let equilibrium_of_whole = || equilibrium(&whole);

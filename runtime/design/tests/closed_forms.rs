@@ -97,7 +97,7 @@ fn peak_gain_of_two_channels() {
 /// Checks that loops whose magnitude does not cross one have no phase margins: all-passes, whose magnitude is
 /// one, and `s / (s + a)`, whose magnitude only approaches one.
 #[test]
-fn magnitudes_that_do_not_cross_one() {
+fn loops_without_gain_crossings() {
     let mut random = Random(2);
     for _ in 0..200 {
         let (a, b) = (random.log_uniform_number(1e-2, 1e2), random.log_uniform_number(1e-2, 1e2));
@@ -277,7 +277,7 @@ fn crossings_of_loops_with_extreme_gains() {
 /// Checks that `((z − 1) / h)^k` times the matched system tends to `s^k` times the continuous system for low
 /// frequencies.
 #[test]
-fn matched_systems_keep_low_frequencies() {
+fn matched_systems_preserve_low_frequencies() {
     let matched_coefficients = |g: &TransferFunction, h: f64| {
         let matched = g.factored().unwrap().matched(h).unwrap().transfer_function();
         (matched.numerator().coefficients().to_vec(), matched.denominator().coefficients().to_vec())
@@ -306,13 +306,14 @@ fn matched_systems_keep_low_frequencies() {
 }
 
 /// Returns the deviation of the step response of `ω² / (s² + 2 ζ ω s + ω²)` from its final value, with time
-/// in units of `1 / ω`.
+/// `t` in units of `1 / ω`.
 fn oscillation_deviation(zeta: f64, t: f64) -> f64 {
     let damped = (1.0 - zeta * zeta).sqrt();
     -(-zeta * t).exp() * ((damped * t).cos() + zeta / damped * (damped * t).sin())
 }
 
-/// Returns the first time at which the response reaches a level, by bisection before the first peak.
+/// Returns the first time at which the step response of an oscillator reaches a level, by bisection before
+/// the first peak.
 fn first_rise(zeta: f64, level: f64) -> f64 {
     let (mut low, mut high) = (0.0, PI / (1.0 - zeta * zeta).sqrt());
     for _ in 0..100 {
@@ -323,7 +324,7 @@ fn first_rise(zeta: f64, level: f64) -> f64 {
 }
 
 #[test]
-fn step_figures_of_second_order() {
+fn step_figures_of_second_order_systems() {
     let mut random = Random(6);
     for _ in 0..1000 {
         let (zeta, omega) = (random.log_uniform_number(1e-6, 0.95), random.log_uniform_number(1e-2, 1e3));
@@ -446,8 +447,8 @@ fn stable_gains(one: &[f64], other: &[f64]) -> Vec<GainRange> {
 fn stable_gains_by_hurwitz() {
     let (least, most) = (f64::NEG_INFINITY, f64::INFINITY);
     /// Denominator and numerator of a loop, and the expected ranges of stable gains.
-    type Case<'a> = (&'a [f64], &'a [f64], &'a [(f64, f64)]);
-    let cases: [Case<'_>; 8] = [
+    type StableGainCase<'a> = (&'a [f64], &'a [f64], &'a [(f64, f64)]);
+    let cases: [StableGainCase<'_>; 8] = [
         (&[1.0, 3.0, 3.0, 1.0], &[1.0, 0.0, 1.0], &[(-1.0, most)]),
         (&[1.0, 0.0, 0.0, 0.0], &[1.0, 2.0, 1.0], &[(0.5, most)]),
         (&[1.0, 3.0, 2.0], &[1.0, 3.0, 2.0], &[(least, -1.0), (-1.0, most)]),

@@ -21,7 +21,7 @@ fn assert_same_matrix(found: &DMatrix<f64>, expected: &DMatrix<f64>, tolerance: 
 
 /// Test mechanism: a particle on a massless rod, with gravity, a dashpot and wind.
 #[mechanism(gravity = -9.81 * y, derivatives)]
-struct Blown {
+struct BlownParticle {
     mass: f64,
     length: f64,
     oil: f64,
@@ -41,9 +41,9 @@ struct Blown {
 /// `m L² θ̈ + c L² cos² θ θ̇ + L √((m g)² + F²) θ = 0` about `tan θ = F / (m g)`. With `x = L sin θ`, the
 /// coefficients of the form in `x` are these divided by `(L cos θ)²`.
 #[test]
-fn a_particle_on_a_rod_in_wind() {
+fn particle_on_rod_in_wind() {
     let (mass, length, oil, wind) = (2.0, 0.7, 1.3, 8.0);
-    let blown = Blown { mass, length, oil };
+    let blown = BlownParticle { mass, length, oil };
     let problem = constrained_equilibrium(&blown).from([0.2, -0.6].into()).with_inputs([wind].into());
     let form = problem.second_order_form(&problem.find().unwrap()).unwrap();
     let weight = mass * 9.81;
@@ -96,7 +96,7 @@ struct SliderCrank {
 /// `x(θ) = r cos θ + √(l² − r² sin² θ)` and the angle `φ(θ)` of the rod, whose centre of mass is at the crank
 /// pin: `M = J + m₁ r² + I φ'² + m x'²`, `D = c x'²`, `K = k_θ + k (x'² + x x'')`.
 #[test]
-fn a_slider_crank_on_springs() {
+fn slider_crank_on_springs() {
     let (r, l) = (0.1, 0.25);
     let machine =
         SliderCrank { r, l, inertia: 0.02, piston: 3.0, winding: 20.0, stiffness: 700.0, oil: 25.0 };
@@ -127,9 +127,9 @@ fn a_slider_crank_on_springs() {
     );
 }
 
-/// Particle in a rotating bowl, with drag from air at rest.
+/// Test mechanism: particle in a rotating bowl, with drag from air at rest.
 #[mechanism(gravity = -9.81 * z, derivatives)]
-struct Bowl {
+struct RotatingBowl {
     mass: f64,
     radius: f64,
     spin: f64,
@@ -148,12 +148,12 @@ struct Bowl {
     drag: Force,
 }
 
-/// Compares with the closed form `M = m`, `D = c`, `G = 2 m Ω [[0, −1], [1, 0]]`, `K = m (g / a − Ω²)`,
-/// `N = c Ω [[0, −1], [1, 0]]`.
+/// Compares the second-order form with the closed form `M = m`, `D = c`, `G = 2 m Ω [[0, −1], [1, 0]]`,
+/// `K = m (g / a − Ω²)`, `N = c Ω [[0, −1], [1, 0]]`.
 #[test]
-fn a_ball_in_a_turning_bowl() {
+fn particle_in_rotating_bowl() {
     let (mass, radius, spin, air) = (0.4, 0.3, 5.0, 0.7);
-    let bowl = Bowl { mass, radius, spin, air };
+    let bowl = RotatingBowl { mass, radius, spin, air };
     let problem = constrained_equilibrium(&bowl).at_time(0.37);
     let form = problem.second_order_form(&problem.find().unwrap()).unwrap();
     let (one, turn) = (DMatrix::<f64>::identity(2, 2), dmatrix![0.0, -1.0; 1.0, 0.0]);
@@ -164,7 +164,8 @@ fn a_ball_in_a_turning_bowl() {
     assert_same_matrix(&form.circulatory, &(&turn * (air * spin)), 1e-12);
 }
 
-/// Knife edge on ice. The force depends on the lateral position, and the edge prevents lateral velocity.
+/// Test mechanism: knife edge on ice. The force depends on the lateral position, and the edge prevents
+/// lateral velocity.
 #[mechanism(derivatives)]
 struct Skate {
     pull: f64,
@@ -179,7 +180,7 @@ struct Skate {
 }
 
 #[test]
-fn forces_on_coordinates_without_speeds_have_no_form() {
+fn coordinates_without_velocities_have_no_form() {
     let form_with_pull = |pull: f64| -> Result<SecondOrderForm, Error> {
         let skate = Skate { pull };
         let problem = constrained_equilibrium(&skate).fix(Skate::VELOCITIES);

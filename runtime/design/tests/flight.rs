@@ -25,7 +25,7 @@ fn assert_contains_pole(system: &StateSpace, re: f64, im: f64) {
 
 /// Aircraft with lift `k V²` perpendicular to its velocity and without drag (Lanchester 1908).
 #[mechanism(gravity = -g * y, derivatives)]
-struct Lanchester {
+struct LanchesterAircraft {
     g: f64,
     mass: f64,
     k: f64,
@@ -40,9 +40,9 @@ struct Lanchester {
 }
 
 #[test]
-fn phugoid_of_lanchester() {
+fn phugoid_matches_lanchester() {
     let (g, u0, mass) = (9.81, 235.9, 2.9e5);
-    let craft = Lanchester { g, mass, k: mass * g / (u0 * u0) };
+    let craft = LanchesterAircraft { g, mass, k: mass * g / (u0 * u0) };
     let system = linear_system(&craft, &[0.0, 0.0].into(), &[u0, 0.0].into(), &[].into()).unwrap();
     let modes = system.modes().unwrap();
     let phugoid = modes.iter().find(|mode| mode.pole.im > 0.0).unwrap();
@@ -52,7 +52,8 @@ fn phugoid_of_lanchester() {
     assert!(phugoid.pole.re.abs() < 1e-12);
 }
 
-/// A wing with constant coefficients of lift and drag and a thrust along the path, without outputs.
+/// Test mechanism: a wing with constant coefficients of lift and drag and a thrust along the path, without
+/// outputs.
 #[mechanism(gravity = 9.81 * z, derivatives)]
 struct Wing {
     mass: f64,
@@ -75,8 +76,8 @@ struct Wing {
     engine: Force,
 }
 
-/// A glide descends at `tan γ = C_D / C_L`, level flight needs the thrust `m g C_D / C_L`, and with a given
-/// sink rate `w` the thrust is the drag less `m g w / V`.
+/// Checks that a glide descends at `tan γ = C_D / C_L`, that level flight needs the thrust `m g C_D / C_L`,
+/// and that with a given sink rate `w` the thrust is the drag minus `m g w / V`.
 #[test]
 fn glide_and_level_flight_without_outputs() {
     let wing = Wing { mass: 300.0, lift_area: 9.0, drag_area: 0.45 };
@@ -114,7 +115,7 @@ fn glide_and_level_flight_without_outputs() {
     assert!(matches!(twice.find(), Err(Error::Repeated { kind: "condition", .. })));
 }
 
-/// Boat whose thrust follows the throttle with a lag.
+/// Test mechanism: boat whose thrust follows the throttle with a lag.
 #[mechanism(derivatives)]
 struct Boat {
     mass: f64,
@@ -132,7 +133,7 @@ struct Boat {
 }
 
 #[test]
-fn trim_finds_states_of_first_order() {
+fn trim_solves_for_first_order_states() {
     let boat = Boat { mass: 800.0, drag: 20.0, lag: 2.0, thrust: 0.0 };
     let whole = boat.extended();
     // At 5 m/s the drag is 500 N; thrust and throttle must equal it.
@@ -175,31 +176,31 @@ struct DampedRotor {
     friction: Force,
 }
 
-/// Compares with `m z̈ + (cₑ + cᵢ) ż + (k − i cᵢ Ω) z = 0` for `z = x + i y` (Genta, *Dynamics of Rotating
-/// Systems*, 2005, § 2.6). The rotor is unstable above the rate `ω (1 + cₑ / cᵢ)`.
+/// Compares the poles with those of `m z̈ + (cₑ + cᵢ) ż + (k − i cᵢ Ω) z = 0` for `z = x + i y` (Genta,
+/// *Dynamics of Rotating Systems*, 2005, § 2.6). The rotor is unstable above the rate `ω (1 + cₑ / cᵢ)`.
 #[test]
 fn rotor_with_internal_damping() {
     let rotor_with_spin =
         |spin| DampedRotor { mass: 3.0, stiffness: 1200.0, outside: 2.0, within: 5.0, spin };
-    let system_of = |spin| {
+    let system_with_spin = |spin| {
         linear_system(&rotor_with_spin(spin), &[0.0, 0.0].into(), &[0.0, 0.0].into(), &[].into()).unwrap()
     };
     for spin in [0.0, 15.0, 40.0] {
         let (m, c) = (3.0, 7.0);
         let root = (Complex::new(c * c - 4.0 * m * 1200.0, 4.0 * m * 5.0 * spin)).sqrt();
         for pole in [(root - c) / (2.0 * m), (-root - c) / (2.0 * m)] {
-            assert_contains_pole(&system_of(spin), pole.re, pole.im);
-            assert_contains_pole(&system_of(spin), pole.re, -pole.im);
+            assert_contains_pole(&system_with_spin(spin), pole.re, pole.im);
+            assert_contains_pole(&system_with_spin(spin), pole.re, -pole.im);
         }
     }
     let threshold = (1200.0_f64 / 3.0).sqrt() * (1.0 + 2.0 / 5.0);
-    assert!(system_of(threshold * (1.0 - 1e-6)).is_stable().unwrap());
-    assert!(!system_of(threshold * (1.0 + 1e-6)).is_stable().unwrap());
+    assert!(system_with_spin(threshold * (1.0 - 1e-6)).is_stable().unwrap());
+    assert!(!system_with_spin(threshold * (1.0 + 1e-6)).is_stable().unwrap());
 }
 
 /// Test mechanism: a balanced rotor in massless gimbals.
 #[mechanism(derivatives)]
-struct Rotor {
+struct BalancedRotor {
     axial: f64,
     across: f64,
     #[body]
@@ -218,8 +219,8 @@ struct Rotor {
 
 /// Checks the nutation frequency `C n / A` (Magnus, *Kreisel*, 1971).
 #[test]
-fn gyroscope_nutates() {
-    let (rotor, n) = (Rotor { axial: 0.03, across: 0.02 }, 70.0);
+fn gyroscope_nutation_frequency() {
+    let (rotor, n) = (BalancedRotor { axial: 0.03, across: 0.02 }, 70.0);
     let q = [0.0, std::f64::consts::FRAC_PI_2, 0.0].into();
     let system = linear_system(&rotor, &q, &[0.0, 0.0, n].into(), &[].into()).unwrap();
     assert_contains_pole(&system, 0.0, rotor.axial * n / rotor.across);
@@ -227,7 +228,8 @@ fn gyroscope_nutates() {
     assert_eq!(other.iter().filter(|pole| pole.norm() < 1e-6).count(), 4);
 }
 
-/// Satellite on a circular orbit, with x radially outward, y forward and z normal to the orbit.
+/// Test mechanism: satellite on a circular orbit, with x radially outward, y forward and z normal to the
+/// orbit.
 #[mechanism(derivatives)]
 struct Satellite {
     mu: f64,
@@ -252,7 +254,7 @@ struct Satellite {
 /// `s⁴ + (1 + 3 k₁ + k₁ k₃) Ω² s² + 4 k₁ k₃ Ω⁴` with `k₁ = (I_pitch − I_yaw) / I_roll` and
 /// `k₃ = (I_pitch − I_roll) / I_yaw` (Hughes, *Spacecraft Attitude Dynamics*, 1986, § 9.2).
 #[test]
-fn gravity_holds_a_satellite() {
+fn gravity_gradient_stabilises_satellite() {
     let (mu, radius) = (3.986004418e14_f64, 7.0e6_f64);
     let rate = (mu / radius.powi(3)).sqrt();
     let (yaw, roll, pitch) = (100.0, 420.0, 500.0);
@@ -270,7 +272,8 @@ fn gravity_holds_a_satellite() {
     }
 }
 
-/// Sled whose thrust follows the throttle with a lag, with an accelerometer and a gauge as outputs.
+/// Test mechanism: sled whose thrust follows the throttle with a lag, with an accelerometer and a gauge as
+/// outputs.
 #[mechanism(derivatives)]
 struct Sled {
     mass: f64,
@@ -290,9 +293,10 @@ struct Sled {
     gauge: Scalar,
 }
 
-/// Compares with `felt = 1 / (m (τ s + 1))` and `gauge = 1 / (τ s + 1) + ½`.
+/// Compares transfer functions of the outputs with `felt = 1 / (m (τ s + 1))` and
+/// `gauge = 1 / (τ s + 1) + ½`.
 #[test]
-fn outputs_see_states_of_first_order() {
+fn outputs_include_first_order_states() {
     let (mass, lag) = (2.0, 0.25);
     let sled = Sled { mass, lag, thrust: 0.0 };
     let whole = sled.extended();
@@ -307,7 +311,7 @@ fn outputs_see_states_of_first_order() {
     }
 }
 
-/// Carriage on a parabola, with a force as input.
+/// Test mechanism: carriage on a parabola, with a force as input.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Carriage {
     mass: f64,
@@ -326,7 +330,7 @@ struct Carriage {
 /// Checks that a linearisation in all displacements has two zero eigenvalues for a holonomic constraint, in
 /// addition to those of the motion.
 #[test]
-fn displacements_under_constraints_are_not_independent() {
+fn displacements_add_zero_eigenvalues() {
     let zero = SVector::zeros();
     let system = linear_system(&Carriage { mass: 2.0 }, &zero, &zero, &[0.0].into()).unwrap();
     assert_contains_pole(&system, 0.0, (2.0_f64 * 9.81).sqrt());
@@ -336,7 +340,7 @@ fn displacements_under_constraints_are_not_independent() {
 
 /// Checks that a constraint stabilised with the rate `α` adds the eigenvalue `−α` twice.
 #[test]
-fn decaying_constraints_have_their_exponents() {
+fn stabilised_constraints_add_decay_poles() {
     let (carriage, rate) = (Carriage { mass: 2.0 }, 7.0);
     let decaying = stabilized(&carriage, rate);
     let zero = SVector::zeros();

@@ -13,7 +13,7 @@ fn check_and_save_picture(name: &str, svg: &str) {
 }
 
 #[test]
-fn every_picture() {
+fn all_pictures_are_well_formed() {
     let a = dmatrix![
         -0.0558, -0.9968, 0.0802, 0.0415;
         0.598, -0.115, -0.0318, 0.0;

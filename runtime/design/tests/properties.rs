@@ -10,24 +10,24 @@ use nalgebra::{Complex, DMatrix, dmatrix};
 
 type C = Complex<f64>;
 
-struct Random(u64);
+struct RandomNumbers(u64);
 
-impl Random {
-    fn next(&mut self) -> f64 {
+impl RandomNumbers {
+    fn next_number(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
     fn random_matrix(&mut self, rows: usize, columns: usize) -> DMatrix<f64> {
-        DMatrix::from_fn(rows, columns, |_, _| self.next())
+        DMatrix::from_fn(rows, columns, |_, _| self.next_number())
     }
 
-    /// Returns a random system whose states are scaled by factors of up to `10^spread`.
+    /// Returns a random linear system whose states are scaled by factors of up to `10^spread`.
     fn random_system(&mut self, n: usize, m: usize, p: usize, spread: f64) -> StateSpace {
-        let scales: Vec<f64> = (0..n).map(|_| 10f64.powf(spread * self.next())).collect();
-        let a = DMatrix::from_fn(n, n, |i, j| self.next() * scales[i] / scales[j]);
-        let b = DMatrix::from_fn(n, m, |i, _| self.next() * scales[i]);
-        let c = DMatrix::from_fn(p, n, |_, j| self.next() / scales[j]);
+        let scales: Vec<f64> = (0..n).map(|_| 10f64.powf(spread * self.next_number())).collect();
+        let a = DMatrix::from_fn(n, n, |i, j| self.next_number() * scales[i] / scales[j]);
+        let b = DMatrix::from_fn(n, m, |i, _| self.next_number() * scales[i]);
+        let c = DMatrix::from_fn(p, n, |_, j| self.next_number() / scales[j]);
         StateSpace::new(a, b, c, self.random_matrix(p, m)).unwrap()
     }
 
@@ -45,8 +45,8 @@ fn assert_small_matrix(what: &str, m: &DMatrix<f64>, size: f64, tolerance: f64) 
 }
 
 #[test]
-fn linear_matrix_equations() {
-    let mut random = Random(1);
+fn matrix_equations_have_small_residuals() {
+    let mut random = RandomNumbers(1);
     for n in 1..12 {
         let (a, b) = (random.random_matrix(n, n), random.random_matrix(n + 1, n + 1));
         let c = random.random_matrix(n, n + 1);
@@ -77,7 +77,7 @@ fn linear_matrix_equations() {
 
 #[test]
 fn regulators_are_optimal() {
-    let mut random = Random(2);
+    let mut random = RandomNumbers(2);
     for k in 0..60 {
         let (n, m) = (1 + k % 8, 1 + k % 3);
         let system = random.random_system(n, m, 1, 0.5 * f64::from(u8::from(k % 4 == 3)));
@@ -104,7 +104,7 @@ fn regulators_are_optimal() {
 }
 
 #[test]
-fn regulators_that_do_not_exist() {
+fn impossible_regulators_are_errors() {
     let system_from_matrices = |a, b: DMatrix<f64>| {
         let n = b.nrows();
         let m = b.ncols();
@@ -130,7 +130,7 @@ fn regulators_that_do_not_exist() {
 #[test]
 fn eigenvalues_of_hard_matrices() {
     // Known spectra by similarity transformations, and a companion matrix of wide range.
-    let mut random = Random(3);
+    let mut random = RandomNumbers(3);
     for n in 2..20 {
         let diagonal: Vec<f64> = (0..n).map(|k| (k as f64) - 3.5).collect();
         let t = random.random_matrix(n, n) + DMatrix::identity(n, n) * 3.0;
@@ -157,8 +157,8 @@ fn eigenvalues_of_hard_matrices() {
 }
 
 #[test]
-fn zeros_lose_rank() {
-    let mut random = Random(4);
+fn system_matrix_loses_rank_at_zeros() {
+    let mut random = RandomNumbers(4);
     for k in 0..80 {
         let (n, m) = (2 + k % 7, 1 + k % 3);
         let mut system = random.random_system(n, m, m, if k % 5 == 4 { 3.0 } else { 0.0 });
@@ -181,8 +181,8 @@ fn zeros_lose_rank() {
 }
 
 #[test]
-fn discretised_and_back() {
-    let mut random = Random(5);
+fn discretisation_is_inverted() {
+    let mut random = RandomNumbers(5);
     for n in 1..8 {
         let system = random.random_stable_system(n, 2, 2, 0.0);
         for hold in [Hold::Zero, Hold::First, Hold::Tustin, Hold::Prewarped(1.5)] {
@@ -207,8 +207,8 @@ fn discretised_and_back() {
 }
 
 #[test]
-fn energies_agree() {
-    let mut random = Random(6);
+fn gramians_agree_with_energies() {
+    let mut random = RandomNumbers(6);
     for n in 1..6 {
         let system = random.random_stable_system(n, 1, 1, 0.0);
         let system =
@@ -239,12 +239,12 @@ fn energies_agree() {
 
 #[test]
 fn routh_counts_roots() {
-    let mut random = Random(7);
+    let mut random = RandomNumbers(7);
     let mut specials = [0; 2];
     for k in 0..3000 {
         let n = 1 + k % 7;
         // Small integer coefficients produce every singular case.
-        let mut c: Vec<f64> = (0..=n).map(|_| (3.0 * random.next()).round()).collect();
+        let mut c: Vec<f64> = (0..=n).map(|_| (3.0 * random.next_number()).round()).collect();
         c[0] = if c[0] == 0.0 { 1.0 } else { c[0] };
         let mut polynomial = Polynomial::new(c);
         if k % 3 == 0 {
@@ -265,7 +265,7 @@ fn routh_counts_roots() {
 
 #[test]
 fn realisations_are_minimal() {
-    let mut random = Random(8);
+    let mut random = RandomNumbers(8);
     for k in 0..40 {
         let n = 1 + k % 6;
         let seen = random.random_stable_system(n, 1, 1, 0.0);
@@ -297,7 +297,7 @@ fn realisations_are_minimal() {
 }
 
 #[test]
-fn straight_inputs_are_exact() {
+fn linear_inputs_are_exact() {
     // ẋ = −x + t from zero: x = t − 1 + e^{−t}.
     let lag = TransferFunction::new([1.0], [1.0, 1.0]).unwrap().state_space().unwrap();
     let times = lag.times(3.0, 7).unwrap();
@@ -309,8 +309,8 @@ fn straight_inputs_are_exact() {
 }
 
 #[test]
-fn connections() {
-    let mut random = Random(9);
+fn connections_multiply_and_add_responses() {
+    let mut random = RandomNumbers(9);
     let (one, two) = (random.random_stable_system(3, 2, 2, 0.0), random.random_stable_system(2, 2, 2, 0.0));
     let s = C::new(0.2, 0.9);
     let (g, h) = (one.at(s).unwrap(), two.at(s).unwrap());
@@ -328,8 +328,8 @@ fn connections() {
 /// Checks `det(s I − A + B K) = Π (s − pᵢ)` at points away from all poles, including repeated poles and poles
 /// of the open loop.
 #[test]
-fn poles_are_put_where_they_should_be() {
-    let mut random = Random(31);
+fn placed_poles_are_the_required_ones() {
+    let mut random = RandomNumbers(31);
     for k in 0..60 {
         let (n, m) = (2 + k % 6, 1 + k % 3);
         let system = random.random_system(n, m, 1, if k % 4 == 3 { 1.0 } else { 0.0 });
@@ -360,11 +360,11 @@ fn poles_are_put_where_they_should_be() {
 /// Checks that every crossing on a fine grid is found and satisfies its equation, and that the stability
 /// margin is the minimum distance from −1.
 #[test]
-fn margins_miss_no_crossing() {
-    let mut random = Random(7);
+fn margins_include_every_crossing() {
+    let mut random = RandomNumbers(7);
     for k in 0..21 {
         let system = random.random_stable_system(2 + k % 7, 1, 1, if k % 3 == 0 { 2.0 } else { 0.0 });
-        let size = 10f64.powf(2.0 * random.next());
+        let size = 10f64.powf(2.0 * random.next_number());
         let loose = StateSpace::gain(dmatrix![size]).unwrap().series(&system).unwrap();
         let margins = loose.margins().unwrap();
         let grid = loose.natural_frequencies(1500).unwrap();

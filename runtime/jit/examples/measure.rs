@@ -1,4 +1,4 @@
-//! Times of loading and of calls.
+//! Example that measures the times of loading mechanisms and of calls of their functions.
 //!
 //! `cargo run --release -p linkwork-jit --example measure -- FILE [OPTIONS [NAME]]` prints how long loading
 //! and the code of each function take, how long a call takes, and how far the results are from those of the
@@ -73,7 +73,7 @@ fn loader_of_file(file: &str, options: &str, name: Option<&str>) -> Loader {
     name.map_or(loader.clone(), |name| loader.name(name))
 }
 
-/// Sets a value for each parameter that has none.
+/// Returns the robot with a value for each parameter that had none.
 fn fill_missing_parameters(mut robot: Robot) -> Result<Robot, Error> {
     let names: Vec<String> = robot.parameters().iter().map(|p| p.name.clone()).collect();
     for (k, name) in names.iter().enumerate() {

@@ -47,7 +47,7 @@ impl Robot {
         &self.shared.about.documentation
     }
 
-    /// Returns name and unit of each output. The functions of the outputs have these names.
+    /// Returns the name and unit of each output. The functions that compute the outputs have these names.
     #[must_use]
     pub fn outputs(&self) -> &[Quantity] {
         &self.shared.about.outputs

@@ -98,7 +98,7 @@ impl Function {
     }
 }
 
-/// Returns the symbol of an entry of an argument.
+/// Returns the symbol of entry `k` of an argument.
 fn symbol_of_entry(argument: Argument, k: usize) -> Option<Symbol> {
     let quantity = match argument {
         Argument::T => Quantity::Time,
@@ -124,8 +124,8 @@ impl VectorJacobian {
         self.arguments.iter().sum::<usize>() + self.parameters
     }
 
-    /// Writes the derivatives, by the arguments one after the other, then by the parameters. The factors are
-    /// those of all results, in the order of the results of the function.
+    /// Writes the derivatives with respect to the arguments one after the other, then with respect to the
+    /// parameters. The factors are those of all results, in the order of the results of the function.
     ///
     /// # Errors
     ///
@@ -177,12 +177,14 @@ impl VectorJacobian {
 /// Program followed by the instructions of its reverse-mode derivatives, while it is built.
 struct Reversed {
     instructions: Vec<Op>,
-    /// Derivative by each value, and by each input.
+    /// Derivative with respect to the value of each instruction. The field below has the derivatives with
+    /// respect to the inputs.
     values: Vec<Option<Operand>>,
     inputs: HashMap<Symbol, Operand>,
 }
 
-/// Returns the program of the derivatives by inputs; `None` if an instruction has no derivative.
+/// Returns the program of the derivatives with respect to the inputs; `None` if an instruction has no
+/// derivative.
 fn reverse_program(program: &Program, inputs: impl Iterator<Item = Option<Symbol>>) -> Option<Program> {
     let count = program.instructions.len();
     let mut reversed = Reversed {
@@ -220,7 +222,7 @@ impl Reversed {
         }
     }
 
-    /// Returns the derivative by an operand so far.
+    /// Returns the sum of the terms, so far, of the derivative with respect to an operand.
     fn derivative_by_operand(&mut self, operand: Operand) -> Option<Operand> {
         match operand {
             Operand::Symbol(symbol) => self.inputs.get(&symbol).copied(),
@@ -265,7 +267,7 @@ impl Reversed {
         self.set_derivative(operand, sum);
     }
 
-    /// Adds a product to the derivative by an operand.
+    /// Adds the product `a b` to the derivative with respect to an operand.
     fn add_product(&mut self, operand: Operand, a: Operand, b: Operand) {
         if matches!(operand, Operand::Const(_)) || a == Operand::Const(0.0) || b == Operand::Const(0.0) {
             return;
@@ -277,7 +279,7 @@ impl Reversed {
         self.set_derivative(operand, sum);
     }
 
-    /// Subtracts a product from the derivative by an operand.
+    /// Subtracts the product `a b` from the derivative with respect to an operand.
     fn subtract_product(&mut self, operand: Operand, a: Operand, b: Operand) {
         if matches!(operand, Operand::Const(_)) || a == Operand::Const(0.0) || b == Operand::Const(0.0) {
             return;

@@ -1,4 +1,5 @@
-//! Adjoint steps: derivatives by the state before a step from derivatives by the state after it.
+//! Adjoint steps: derivatives with respect to the state before a step from derivatives with respect to the
+//! state after it.
 
 use crate::adjoint::VectorJacobian;
 use crate::error::Error;
@@ -46,7 +47,8 @@ impl Gradient {
         self.product.evaluate_into(robot, &arguments, factors, &mut self.found)
     }
 
-    /// Adds the derivatives by an argument, or by the parameters, to a list.
+    /// Adds the derivatives with respect to the argument `name`, or with respect to the parameters, to a
+    /// list.
     fn add(&self, name: &str, to: &mut [f64]) {
         let mut first = 0;
         for (own, length) in &self.arguments {
@@ -85,7 +87,7 @@ pub struct Sensitivity<'a> {
 }
 
 impl AdjointStepper {
-    /// Returns adjoint steps of a robot with the present values of its parameters.
+    /// Returns a computation of adjoint steps for a robot with the present values of its parameters.
     ///
     /// # Errors
     ///
@@ -104,14 +106,15 @@ impl AdjointStepper {
         Ok(AdjointStepper { stepper, dynamics: Gradient::new(robot, "forward_dynamics")?, forces })
     }
 
-    /// Returns the robot, whose parameters may be changed.
+    /// Returns the robot of the adjoint steps, whose parameters may be changed.
     pub fn robot_mut(&mut self) -> &mut Robot {
         self.stepper.robot_mut()
     }
 
-    /// Replaces derivatives by the state after a step by derivatives by the state before it, and adds those
-    /// by inputs and parameters. The arguments are those of [`Stepper::step`]. Returns the derivatives by the
-    /// time at the start and by the length of the step.
+    /// Replaces the derivatives with respect to the state after a step by derivatives with respect to the
+    /// state before it, and adds those with respect to inputs and parameters. The arguments are those of
+    /// [`Stepper::step`]. Returns the derivatives with respect to the time at the start and to the length of
+    /// the step.
     ///
     /// # Errors
     ///
@@ -209,7 +212,7 @@ impl AdjointStepper {
     }
 }
 
-/// Adds the product of the transpose of a matrix with a vector.
+/// Adds the product of the transposed matrix with the vector `factors` to a list.
 fn add_transposed(matrix: &DMatrix<f64>, factors: &[f64], to: &mut [f64]) {
     for (j, to) in to.iter_mut().enumerate() {
         *to += matrix.column(j).iter().zip(factors).map(|(a, b)| a * b).sum::<f64>();
@@ -220,8 +223,8 @@ fn quaternion_from_list(list: &[f64]) -> Quaternion<f64> {
     Quaternion::new(list[3], list[0], list[1], list[2])
 }
 
-/// Adds the derivatives of `integrate(q, dv)` by the entries of `q` and by `dv` to lists, for factors of the
-/// entries of the result.
+/// Adds to two lists the gradients, with respect to the entries of `q` and to `dv`, of a weighted sum of the
+/// entries of `integrate(q, dv)`.
 pub(crate) fn integrate(
     charts: &[Chart],
     q: &[f64],
@@ -308,8 +311,8 @@ pub(crate) fn tangent_rate(
     add_transposed(&at_v, factors, by_v);
 }
 
-/// Writes the factors of a rotation in body axes for factors of the entries of a unit quaternion, whose rate
-/// is half the product of the quaternion with the angular velocity.
+/// Writes the gradient with respect to a rotation in body axes, given the gradient with respect to the
+/// entries of a unit quaternion, whose rate is half the product of the quaternion with the angular velocity.
 fn rotation_factors(q: &[f64], factors: &[f64], to: &mut [f64]) {
     let product = quaternion_from_list(q).conjugate() * quaternion_from_list(factors);
     to[..3].copy_from_slice(&[0.5 * product.i, 0.5 * product.j, 0.5 * product.k]);

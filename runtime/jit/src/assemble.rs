@@ -18,7 +18,7 @@ enum Question<'a> {
     ProjectVelocity(&'a [f64]),
 }
 
-/// A question at a configuration, with the indices of entries that are fixed.
+/// Computation on constraints at a configuration, with the indices of the coordinates that are fixed.
 struct Asked<'a> {
     question: Question<'a>,
     q: &'a [f64],
@@ -104,8 +104,8 @@ impl Robot {
         Ok(self.ask_question(Question::Assemble(Some(mode)), q, held)?.0)
     }
 
-    /// Returns the configuration to which steps of bounded length lead from `q` that reduce the violation of
-    /// the constraints, whether it satisfies them or not; see [`assemble`](Self::assemble).
+    /// Returns the configuration of least constraint violation near `q`, which steps of bounded length reach.
+    /// It need not satisfy the constraints; see [`assemble`](Self::assemble).
     ///
     /// # Errors
     ///
@@ -115,7 +115,8 @@ impl Robot {
         Ok(self.ask_question(Question::LeastViolation, q, held)?.0)
     }
 
-    /// Returns the heights of terrain, m, at a position along its first two axes, m, for drawings.
+    /// Returns the heights of the terrains that drawings show, m, at a position along their first two axes,
+    /// m.
     #[doc(hidden)]
     #[must_use]
     pub fn terrain_heights(&self, place: [f64; 2]) -> Option<Vec<f64>> {

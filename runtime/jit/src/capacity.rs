@@ -1,16 +1,16 @@
-//! Choice of the dimensions with which the runtime works on a robot.
+//! Choice of the array dimensions with which the runtime computes the motion of a robot.
 
 use crate::error::Error;
 use crate::padded::{Padded, PaddedContacts};
 use crate::robot::Robot;
 use linkwork::Mechanism;
 
-/// Generic code that is instantiated for robots of any dimensions.
+/// Visitor whose generic function is instantiated for the dimensions of a robot.
 pub(crate) trait Visitor {
     /// Type of the visitor's result.
     type Output;
 
-    /// Returns the result for a robot, whose contacts have no effect.
+    /// Returns the result of the visitor for a robot, whose contacts are ignored.
     fn visit<const N: usize>(self, robot: &Padded<N, N, N, &Robot>) -> Self::Output;
 }
 
@@ -23,13 +23,14 @@ pub(crate) trait ContactVisitor {
     fn visit<M: Mechanism<N, N, N, Scalar = f64>, const N: usize>(self, robot: &M) -> Self::Output;
 }
 
-/// Largest number of coordinates, velocities, inputs and constraints.
+/// Maximum number of coordinates, velocities, inputs and constraints of a robot.
 pub(crate) const LARGEST: usize = 64;
 /// Maximum number of unilateral contacts of a robot.
 pub(crate) const MOST_CONTACTS: usize = 64;
 
 impl Robot {
-    /// Largest of the numbers of coordinates, velocities with states of first order, inputs, and constraints.
+    /// Returns the largest of the numbers of coordinates, velocities (including first-order states), inputs,
+    /// and constraints.
     fn largest_dimension(&self) -> usize {
         let velocities = self.nv() + self.shared.states.len();
         [self.nq(), velocities, self.nu(), self.shared.constraints.names.len()]
@@ -50,7 +51,7 @@ impl Robot {
         ))
     }
 
-    /// Passes the robot with suitable dimensions to code of the runtime.
+    /// Calls a visitor with the robot padded to suitable array dimensions.
     pub(crate) fn visit_padded_robot<V: Visitor>(&self, visitor: V) -> Result<V::Output, Error> {
         match self.largest_dimension() {
             ..=8 => Ok(visitor.visit(&Padded::<8, 8, 8, _>::new(self)?)),
@@ -60,7 +61,7 @@ impl Robot {
         }
     }
 
-    /// Passes the robot with its contacts to code of the runtime.
+    /// Calls a visitor with the robot and its contacts, padded to suitable array dimensions.
     pub(crate) fn visit_contacts<V: ContactVisitor>(&self, visitor: V) -> Result<V::Output, Error> {
         let (count, rates) = (self.shared.contacts.len(), self.shared.contact_rates);
         let is_few = count <= 8 && rates <= 24;

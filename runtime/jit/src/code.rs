@@ -1,4 +1,5 @@
-//! Machine code of programs. Together with `kernels`, the only module with `unsafe`.
+//! Compilation of programs to machine code, and calls of the code. Together with `kernels`, the only module
+//! with `unsafe`.
 //!
 //! Memory of code is written first, then made executable and never written again. Every load and store of
 //! generated code is at a constant index that [`Code::call`] compares with the lengths of its slices.
@@ -37,27 +38,27 @@ macro_rules! called {
     };
 }
 
-/// Pointers to the inputs, constants, tables, results and further outputs.
+/// Machine code as a function of pointers to the inputs, constants, tables, results and further outputs.
 #[cfg(target_arch = "x86_64")]
 type Entry = unsafe extern "sysv64" fn(*const *const f64, *const f64, *const AnyTable, *mut f64, *mut f64);
 #[cfg(not(target_arch = "x86_64"))]
 type Entry = unsafe extern "C" fn(*const *const f64, *const f64, *const AnyTable, *mut f64, *mut f64);
 
-/// Machine code of a program.
+/// Machine code of a program, with the data that it reads.
 pub(crate) struct Code {
     entry: Entry,
     /// Constants that the machine code loads; their address is fixed while the code exists.
     constants: Box<[f64]>,
     /// Minimum number of entries of each input of the program.
     lengths: Box<[usize]>,
-    /// Number of tables that the code looks up.
+    /// Number of lookup tables that the code reads.
     tables: usize,
     /// Number of results of the function, and number of further outputs of the program.
     outputs: [usize; 2],
     _memory: Executable,
 }
 
-/// Memory that contains the code. No call is in progress when it is dropped, since a call borrows it.
+/// Memory that contains the machine code. No call is in progress when it is dropped, since a call borrows it.
 enum Executable {
     #[cfg(target_arch = "x86_64")]
     Pages(#[allow(dead_code, reason = "holds the memory")] memmap2::Mmap),
@@ -107,7 +108,7 @@ impl Code {
         Code { entry, constants, lengths, tables: plan.tables, outputs, _memory: memory }
     }
 
-    /// Evaluates the program.
+    /// Evaluates the program by its machine code.
     ///
     /// # Panics
     ///
@@ -176,7 +177,7 @@ called! {
         a.max(b)
     }
 
-    /// Looks a table up. The orders of differentiation are two bits each.
+    /// Returns the value or a derivative of a lookup table. The orders of differentiation are two bits each.
     fn look_up_table(tables: *const AnyTable, table: u64, orders: u64, x: f64, y: f64, z: f64) -> f64 {
         // SAFETY: generated code passes an index below the number of tables, which `Code::call` checks.
         let table = unsafe { &*tables.add(table as usize) };

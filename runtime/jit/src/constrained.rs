@@ -1,4 +1,4 @@
-//! Functions of mechanisms with constraints: the runtime solves for accelerations and multipliers.
+//! Functions of mechanisms with constraints, for which the runtime computes accelerations and multipliers.
 
 use crate::capacity::Visitor;
 use crate::error::Error;
@@ -12,11 +12,11 @@ use linkwork_compiler::catalogue::{Argument, Id};
 /// Function of a constrained mechanism that the runtime evaluates, instead of a compiled program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ConstrainedFunction {
-    /// Accelerations under generalized forces and constraint forces.
+    /// Function that returns the accelerations under generalized forces and constraint forces.
     Accelerations,
-    /// Accelerations and constraint multipliers.
+    /// Function that returns the accelerations and constraint multipliers.
     Dynamics,
-    /// Derivatives of the accelerations of constrained motion.
+    /// Function that returns the derivatives of the accelerations of constrained motion.
     Derivatives,
 }
 
@@ -68,7 +68,8 @@ pub(crate) fn add(maker: &mut Maker<'_, '_>) {
 }
 
 impl Robot {
-    /// Evaluates a function with the arguments `t` (if the mechanism depends on it), `q`, `v` and `tau`.
+    /// Evaluates a function of constrained dynamics with the arguments `t` (if the mechanism depends on it),
+    /// `q`, `v` and `tau`.
     pub(crate) fn call_constrained(
         &self,
         kind: ConstrainedFunction,

@@ -62,7 +62,8 @@ impl Drawing {
         evaluate_program(&self.numbers, robot, [f64::NAN; 2])
     }
 
-    /// Returns the height of each terrain, m, at a position along its first two axes, m.
+    /// Returns the height of each terrain in the drawing, m, at a position along the terrain's first two
+    /// axes, m.
     #[must_use]
     pub fn heights(&self, robot: &Robot, position: [f64; 2]) -> Vec<f64> {
         evaluate_program(&self.heights, robot, position)

@@ -5,7 +5,7 @@ use linkwork::integrate;
 use std::fmt;
 use std::path::PathBuf;
 
-/// Error of loading a mechanism or of a call.
+/// Error of loading a mechanism, or of calling one of its functions.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
@@ -19,7 +19,7 @@ pub enum Error {
     /// Error: the text is not a declaration of a mechanism in Rust's syntax, or the options are not those of
     /// the attribute.
     Syntax(String),
-    /// Errors of the mechanism, as the compiler reports them.
+    /// Error: the mechanism has errors, which are listed as the compiler reports them.
     Mechanism(Vec<String>),
     /// Error: the mechanism has no function, parameter, frame or table of this name.
     Unknown {
@@ -27,7 +27,7 @@ pub enum Error {
         kind: &'static str,
         /// Unknown name that was requested.
         name: String,
-        /// Nearest known name, or the list of them.
+        /// Help for the unknown name: the nearest known name, or the list of all names.
         help: String,
     },
     /// Error: a slice has the wrong length.
@@ -52,18 +52,19 @@ pub enum Error {
     },
     /// Error: parameters or tables, listed by name, have no value yet.
     Missing(Vec<String>),
-    /// No physical mechanism can have this value, or it is not finite.
+    /// Error: no physical mechanism can have this value, or it is not finite.
     Value(String),
     /// Error: the function belongs to another mechanism.
     OtherMechanism(String),
-    /// A motion cannot be simulated or continued, or no state satisfies the constraints.
+    /// Error: a motion cannot be simulated or continued, or no state satisfies the constraints.
     Motion {
-        /// Reason; the names that it contains are numbers, which the message replaces by names.
+        /// Reason why the motion cannot continue. Names in it are numbers, which the message replaces by
+        /// names.
         reason: integrate::Error,
         /// Error message of the motion, with the names of the mechanism.
         message: String,
     },
-    /// Error that indicates a defect of Linkwork itself.
+    /// Error: Linkwork itself has a defect.
     Internal(String),
 }
 

@@ -62,8 +62,8 @@ pub(crate) struct Frames {
     pub names: Vec<String>,
     links: Vec<LinkSteps>,
     frames: Vec<FrameSteps>,
-    /// Programs of the joint velocities, joint accelerations, and the matrix from speeds to joint velocities,
-    /// of a mechanism with generalized speeds.
+    /// Programs of a mechanism with generalized speeds: the joint velocities, the joint accelerations, and
+    /// the matrix from speeds to joint velocities.
     speeds: Option<[Program; 3]>,
     nv: usize,
 }
@@ -88,7 +88,7 @@ impl Frames {
         }
     }
 
-    /// Returns the functions of all frames: placement, velocity, acceleration and Jacobian of each.
+    /// Returns the functions of all frames: placement, velocity, acceleration and Jacobian of each frame.
     pub fn entries(&self, time: bool) -> Vec<Entry> {
         let entries_of_frame = |frame: usize| {
             Access::ALL.into_iter().filter_map(move |access| {
@@ -130,8 +130,8 @@ impl Frames {
         path
     }
 
-    /// Returns the program of the placements of all frames: for each a rotation matrix row by row, and a
-    /// position.
+    /// Returns the program that computes the placements of all frames: for each frame a rotation matrix row
+    /// by row, and a position.
     pub fn placements(&self) -> Program {
         let mut merged = Merged::default();
         let mut links: Vec<Option<Vec<Operand>>> = vec![None; self.links.len()];
@@ -150,7 +150,7 @@ impl Frames {
         merged.finish(outputs)
     }
 
-    /// Returns the program of a quantity of a frame.
+    /// Returns the program that computes a kinematic quantity of a frame.
     pub fn program(&self, access: Access, frame: usize) -> Program {
         let mut merged = Merged::default();
         if let Some([rates, accelerations, _]) = &self.speeds {
@@ -217,7 +217,8 @@ impl Frames {
         merged.finish(outputs)
     }
 
-    /// Multiplies a Jacobian by the matrix from speeds to joint velocities, if there are speeds.
+    /// Multiplies a Jacobian by the matrix from generalized speeds to joint velocities, if the mechanism
+    /// declares speeds.
     fn in_speeds(&self, merged: &mut Merged, jacobian: Vec<Operand>) -> Vec<Operand> {
         let Some([.., matrix]) = &self.speeds else { return jacobian };
         let matrix = merged.append(matrix);

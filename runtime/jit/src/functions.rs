@@ -1,4 +1,4 @@
-//! Functions of a loaded mechanism: their signatures, and how results follow from programs.
+//! Functions of a loaded mechanism: their signatures, and the computation of their results by programs.
 
 use crate::constrained::ConstrainedFunction;
 use crate::frames::Access;
@@ -14,19 +14,19 @@ use linkwork_compiler::lower::{Operand, Program};
 use linkwork_compiler::mechanism::{Model, Quantity, Supplied};
 use linkwork_compiler::syntax::RATE_OF_STATE;
 
-/// A result of a function: a matrix, stored by columns behind the results before it.
+/// Result of a function: a matrix, which is stored by columns behind the previous results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Matrix {
     /// Name of the result, which is a matrix.
     pub name: &'static str,
-    /// Number of rows of the result.
+    /// Number of rows of the result matrix.
     pub rows: usize,
-    /// Number of columns of the result; one for a vector.
+    /// Number of columns of the result matrix; one for a vector.
     pub columns: usize,
 }
 
 impl Matrix {
-    /// Returns the number of entries of the matrix.
+    /// Returns the number of entries of the result matrix.
     #[must_use]
     pub fn length(&self) -> usize {
         self.rows * self.columns
@@ -40,23 +40,24 @@ pub(crate) struct Entry {
     /// Whether the function is hidden from callers and only called by other functions.
     pub hidden: bool,
     pub arguments: Vec<Argument>,
-    /// Number of values of each argument, set at the end of loading.
+    /// Number of values of each argument, set when the mechanism has been loaded completely.
     pub lengths: Vec<usize>,
     pub results: Vec<Matrix>,
     /// Number of dimensions of the results: zero for scalars, one for vectors, two for matrices.
     pub rank: usize,
-    /// Total number of entries of all results.
+    /// Total number of entries of all results of the function.
     pub length: usize,
-    /// Number of work-space values that an evaluation needs.
+    /// Number of values in the workspace that an evaluation of the function needs.
     pub work: usize,
     pub plan: Plan,
 }
 
 /// Method by which the results of a function are assembled from the outputs of programs.
 pub(crate) enum Plan {
-    /// Results that are the outputs of one program.
+    /// The results are the outputs of one program.
     Program(Routine),
-    /// The outputs of a program that is composed of the steps of links.
+    /// The results are the outputs of a program that is composed of the steps of links between the ground and
+    /// a frame.
     Frame(Access, usize, Routine),
     Inverse(Routine, Inverse),
     Forward {
@@ -80,20 +81,21 @@ pub(crate) enum Plan {
         m: usize,
     },
     Space(Space),
-    /// A function of a mechanism with constraints, which the runtime evaluates.
+    /// The results are computed by the runtime, for a mechanism with constraints.
     Constrained(ConstrainedFunction),
 }
 
-/// Derivatives of forward dynamics that call other functions.
+/// Computation of the derivatives of forward dynamics by calls of other functions.
 pub(crate) struct CalledForward {
     /// Program that computes the accelerations and the data for completing the inverse mass matrix.
     accelerations: Routine,
     inverse: Inverse,
     /// Index of the function that computes the derivatives of inverse dynamics.
     forces: usize,
-    /// Program that computes the columns of the derivatives that need no matrix product.
+    /// Program that computes the columns of the derivatives that need no product with the inverse mass
+    /// matrix.
     known: Routine,
-    /// Index of each known column in `∂v̇/∂q`, then in `∂v̇/∂v`.
+    /// Index of each column that needs no matrix product, in `∂v̇/∂q`, then in `∂v̇/∂v`.
     places: Vec<usize>,
     columns: [Vec<Columns>; 2],
     n: usize,
@@ -126,8 +128,8 @@ impl Plan {
 }
 
 impl Entry {
-    /// Selects the entries of each argument that belong to state `k`. An argument with the entries of one
-    /// state is common to all states.
+    /// Selects the entries of each argument that belong to state `k` of a batch. An argument with the entries
+    /// of one state is common to all states.
     pub fn select<'a>(&self, k: usize, arguments: &[&'a [f64]], to: &mut [&'a [f64]]) {
         for ((to, list), length) in to.iter_mut().zip(arguments).zip(&self.lengths) {
             *to = if list.len() == *length { list } else { &list[k * length..(k + 1) * length] };
@@ -218,7 +220,8 @@ impl CalledForward {
     }
 }
 
-/// Replaces derivatives of forces by derivatives of accelerations.
+/// Replaces derivatives of generalized forces by derivatives of accelerations, by products with the inverse
+/// mass matrix.
 fn solve_for_accelerations(
     n: usize,
     inverse: &[f64],
@@ -269,7 +272,7 @@ impl Maker<'_, '_> {
         self.entries.iter().position(|entry| entry.name == name)
     }
 
-    /// Adds the functions that the compiler has derived.
+    /// Adds the functions that the compiler has derived to the callable functions.
     pub fn add_derived(&mut self) {
         let output = self.output;
         for f in &output.functions {
@@ -278,7 +281,8 @@ impl Maker<'_, '_> {
         }
     }
 
-    /// Returns the name under which a function is called; `None` for a function that is not called by itself.
+    /// Returns the name by which callers find a derived function; `None` for a function that callers cannot
+    /// call.
     fn name_of_function<'f>(&self, f: &'f derive::Function) -> Option<&'f str> {
         match f.id {
             Id::InputDerivatives => Some("generalized_forces_derivatives"),
@@ -293,7 +297,7 @@ impl Maker<'_, '_> {
         }
     }
 
-    /// Returns the entry of a derived function; `None` for a function that is not called by itself.
+    /// Returns the callable function for a derived function; `None` for a function that callers cannot call.
     fn entry_of_function(&self, f: &derive::Function) -> Option<Entry> {
         let hidden = is_internal(f.id);
         let has_dynamics = self.find_function(Id::ForwardDynamics).is_some();
@@ -388,7 +392,7 @@ impl Maker<'_, '_> {
         Some(Entry { hidden, work, rank, ..Entry::new(name, documentation, arguments, results, plan) })
     }
 
-    /// Returns the columns of `∂τ/∂q` and `∂τ/∂v` that are multiplied by the inverse.
+    /// Returns the columns of `∂τ/∂q` and `∂τ/∂v` that are multiplied by the inverse mass matrix.
     fn multiplied_columns(
         &self,
         f: &derive::Function,
@@ -428,7 +432,8 @@ impl Maker<'_, '_> {
         merged.finish(outputs)
     }
 
-    /// Returns the function of an output with reactions: of the motion that state and inputs determine.
+    /// Returns the function of an output that contains joint reactions, for the motion that state and inputs
+    /// determine.
     fn reaction_entry(&self, f: &derive::Function) -> Option<Entry> {
         let name = f.name.strip_prefix(REACTION)?;
         let mut merged = Merged::default();
@@ -460,7 +465,7 @@ impl Maker<'_, '_> {
 }
 
 impl Entry {
-    /// Returns a public function without work space, whose results are vectors.
+    /// Returns a callable function without workspace, whose results are vectors.
     pub fn new(
         name: &str,
         documentation: String,
@@ -484,7 +489,7 @@ impl Entry {
     }
 }
 
-/// Returns names and dimensions of the results of a function; scalars and plain arrays are named `result`.
+/// Returns names and dimensions of the results of a function. Scalars and plain arrays are named `result`.
 fn matrices_of_shape(shape: Shape, outputs: usize) -> Vec<Matrix> {
     let arrays = shape.result_arrays();
     match arrays.is_empty() {
@@ -493,7 +498,7 @@ fn matrices_of_shape(shape: Shape, outputs: usize) -> Vec<Matrix> {
     }
 }
 
-/// Returns whether a function is called only by the runtime.
+/// Whether only the runtime calls the function.
 fn is_internal(id: Id) -> bool {
     matches!(
         id,
@@ -513,7 +518,8 @@ fn is_internal(id: Id) -> bool {
     )
 }
 
-/// Returns the number of dimensions of the results.
+/// Returns the number of dimensions of a function's results: zero for scalars, one for vectors, two for
+/// matrices.
 fn rank_of_shape(shape: Shape) -> usize {
     match shape {
         Shape::Scalar => 0,
@@ -524,7 +530,7 @@ fn rank_of_shape(shape: Shape) -> usize {
     }
 }
 
-/// Returns whether callers pass this argument.
+/// Whether callers pass this argument.
 pub(crate) fn is_passed(argument: &Argument) -> bool {
     !matches!(argument, Argument::Into(..) | Argument::Called(_))
 }

@@ -1,4 +1,4 @@
-//! Inverse mass matrices of the parts that programs compute.
+//! Assembly of inverse mass matrices from the parts that programs compute.
 
 use crate::kernels::{self, Kernel, add_multiple};
 use linkwork_compiler::catalogue::InverseForm;
@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 pub(crate) struct Inverse {
     n: usize,
     trunk: Vec<usize>,
-    /// Limb of each velocity, `None` for the trunk; no list for an update of low rank.
+    /// Limb of each velocity, `None` for velocities of the trunk; no list for an update of low rank.
     limbs: Option<Vec<Option<usize>>>,
 }
 
@@ -25,25 +25,26 @@ impl Inverse {
         }
     }
 
-    /// Returns the number of outputs after the columns.
+    /// Returns the number of the program's outputs after the columns.
     pub fn further_length(&self) -> usize {
         self.n * self.trunk.len()
     }
 
-    /// Returns the number of work-space values that operations with the inverse mass matrix need.
+    /// Returns the number of workspace values that operations with the inverse mass matrix need.
     pub fn work(&self) -> usize {
         let width = self.trunk.len();
         self.n * width + width * width + 2 * self.n
     }
 
-    /// Completes the inverse from its columns and the further outputs.
+    /// Completes the inverse mass matrix from the columns that the program has computed and its further
+    /// outputs.
     pub fn complete(&self, matrix: &mut [f64], beside: &[f64], work: &mut [f64]) {
         if !self.trunk.is_empty() || self.limbs.is_some() {
             kernels::run_kernel(self.n, Completion { inverse: self, matrix, beside, work });
         }
     }
 
-    /// Adds to every column its combination of the columns of the trunk.
+    /// Adds to every column of the inverse its combination of the columns of the trunk.
     #[inline(always)]
     fn add_trunk(&self, matrix: &mut [f64], factors: &[f64], mul_add: impl Fn(f64, f64, f64) -> f64 + Copy) {
         let (n, width) = (self.n, self.trunk.len());
@@ -62,8 +63,8 @@ impl Inverse {
         }
     }
 
-    /// Inverts a mass matrix of a trunk and limbs: the matrix has the inverse of the block of each limb,
-    /// `borders` the rows of the trunk.
+    /// Inverts a mass matrix of a trunk and limbs. On entry, the matrix contains the inverse of the block of
+    /// each limb, and `borders` the rows of the trunk.
     #[inline(always)]
     fn invert_with_limbs(
         &self,

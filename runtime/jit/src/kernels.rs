@@ -1,4 +1,5 @@
-//! Loops over matrices, for the instructions of the host; products with the inverse mass matrix.
+//! Loops over matrices that are compiled for the host's instructions, such as products with the inverse mass
+//! matrix.
 
 #![allow(unsafe_code, reason = "calls of functions for the instructions of the host")]
 
@@ -14,7 +15,7 @@ pub(crate) trait Kernel {
     fn run(self, mul_add: impl Fn(f64, f64, f64) -> f64 + Copy);
 }
 
-/// Runs a loop over matrices of `n` rows.
+/// Runs a loop over matrices of `n` rows with the instruction set of the host.
 pub(crate) fn run_kernel(n: usize, kernel: impl Kernel) {
     #[cfg(target_arch = "x86_64")]
     {
@@ -52,7 +53,7 @@ pub(crate) struct Columns {
 impl Columns {
     const MOST: usize = 4;
 
-    /// Groups columns of a matrix of `n` rows by a predicate of column and row.
+    /// Groups columns of a matrix of `n` rows, according to a predicate of column and row for zero entries.
     pub fn group(n: usize, columns: &[usize], is_zero: impl Fn(usize, usize) -> bool) -> Vec<Columns> {
         let groups = columns.chunks(Columns::MOST).map(|columns| Columns {
             columns: columns.to_vec(),
@@ -84,7 +85,7 @@ pub(crate) fn add_multiple(
     }
 }
 
-/// Number of values of work space that products of matrices with `n` rows need.
+/// Returns the number of workspace values that products of matrices with `n` rows need.
 pub(crate) fn work_space_size(n: usize) -> usize {
     Columns::MOST * n
 }
@@ -160,7 +161,7 @@ fn multiply_small<'a, const N: usize>(
     }
 }
 
-/// Products of more than [`ROWS`] rows with `M` columns.
+/// Multiplies matrices of more than [`ROWS`] rows, with `M` columns at a time.
 #[inline(always)]
 fn multiply_in_tiles<const M: usize>(
     n: usize,

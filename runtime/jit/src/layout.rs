@@ -4,7 +4,7 @@ use linkwork_compiler::catalogue::Argument;
 use linkwork_compiler::expr::Symbol;
 use linkwork_compiler::mechanism::Quantity;
 
-/// Order in which a program takes its inputs.
+/// Order in which a program receives its inputs.
 pub(crate) struct Layout {
     arguments: Vec<Argument>,
 }
@@ -13,7 +13,7 @@ impl Layout {
     /// Maximum number of inputs of a program, including the parameters.
     pub const MOST: usize = 12;
 
-    /// Returns the layout of the parameters and these arguments; `None` if there are too many.
+    /// Returns the layout of the parameters and these arguments; `None` if there are too many of them.
     pub fn new(arguments: &[Argument]) -> Option<Layout> {
         (arguments.len() < Layout::MOST).then(|| Layout { arguments: arguments.to_vec() })
     }
@@ -23,7 +23,8 @@ impl Layout {
         1 + self.arguments.len()
     }
 
-    /// Returns the input and the index in it of a symbol; `None` if no input contains it.
+    /// Returns the index of the input that contains a symbol, and the symbol's index in it; `None` if no
+    /// input contains it.
     pub fn locate(&self, symbol: Symbol) -> Option<(usize, usize)> {
         match Quantity::from_symbol(symbol) {
             Quantity::Parameter(k) => Some((0, k)),

@@ -62,11 +62,11 @@ pub struct Loader {
     interpreted: bool,
 }
 
-/// Stack of the thread that compiles mechanisms: deeply nested expressions fit in it.
+/// Stack size of the thread that compiles mechanisms, bytes, sufficient for deeply nested expressions.
 const STACK: usize = 256 << 20;
 
 impl Loader {
-    /// Creates a loader for a file.
+    /// Creates a loader for a mechanism in a file.
     pub fn file(path: impl AsRef<Path>) -> Loader {
         Loader::new(Origin::File(path.as_ref().to_path_buf()))
     }
@@ -82,8 +82,9 @@ impl Loader {
         Loader { origin, options, name, folder, readable_equations: false, interpreted: false }
     }
 
-    /// Adds options of the attribute, in the same syntax: `base = free, derivatives`. Functions are in double
-    /// precision, with `scalar = f32` as well; `prepare`, `batch` and `packed` have no effect.
+    /// Adds options of the attribute `#[mechanism]`, in the same syntax: `base = free, derivatives`.
+    /// Functions are in double precision, with `scalar = f32` as well; `prepare`, `batch` and `packed` have
+    /// no effect.
     #[must_use]
     pub fn options(mut self, options: &str) -> Loader {
         let separator = if self.options.is_empty() || options.is_empty() { "" } else { ", " };
@@ -91,14 +92,15 @@ impl Loader {
         self
     }
 
-    /// Chooses the struct of a text or Rust file that declares several mechanisms.
+    /// Chooses a struct by its name, in a text or Rust file that declares several mechanisms.
     #[must_use]
     pub fn name(mut self, name: &str) -> Loader {
         self.name = Some(name.to_string());
         self
     }
 
-    /// Sets the folder in which files named in the text are searched; by default it is the current folder.
+    /// Sets the folder in which files named in the declaration are searched; by default it is the current
+    /// folder.
     #[must_use]
     pub fn folder(mut self, folder: impl AsRef<Path>) -> Loader {
         self.folder = Some(folder.as_ref().to_path_buf());
@@ -249,7 +251,7 @@ fn is_rust(path: &Path) -> bool {
     path.extension().is_some_and(|end| end.eq_ignore_ascii_case("rs"))
 }
 
-/// Returns the message of a panic.
+/// Returns the message of a caught panic.
 fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(ToString::to_string);
     text.or_else(|| panic.downcast_ref::<String>().cloned())
@@ -279,7 +281,7 @@ pub fn compiled(source: &Source, model: &Model<'_>, output: linkwork_compiler::d
     Robot::new(Arc::new(shared_mechanism(source, model, output)), false)
 }
 
-/// Removes the options that only generated Rust has.
+/// Removes options that only apply to generated Rust code.
 #[doc(hidden)]
 pub fn without_rust(source: &mut Source) {
     let requests = &mut source.mechanism.requests;

@@ -4,7 +4,7 @@ use linkwork_compiler::expr::Symbol;
 use linkwork_compiler::lower::{Op, Operand, Program};
 use std::collections::HashMap;
 
-/// A program under construction, and replacements of symbols in the programs that follow.
+/// Program under construction, with replacements of symbols in the programs that are appended.
 #[derive(Default)]
 pub(crate) struct Merged {
     program: Program,
@@ -38,7 +38,7 @@ impl Merged {
         }
     }
 
-    /// Replaces a symbol in the programs that follow.
+    /// Replaces a symbol in the programs that are appended after this call.
     pub fn bind(&mut self, symbol: Symbol, operand: Operand) {
         self.bound.insert(symbol, operand);
     }
@@ -64,7 +64,8 @@ mod tests {
     use linkwork_compiler::lower::lower;
     use linkwork_compiler::mechanism::{Quantity, Supplied};
 
-    /// sin(2 x) of the program `2 x` and the program `sin(y)`.
+    /// Checks that a program `2 x`, followed by a program `sin(y)` whose `y` is bound to its result, is
+    /// `sin(2 x)`.
     #[test]
     fn results_replace_symbols() {
         let graph = Graph::new();

@@ -1,4 +1,4 @@
-//! The main functions of mechanisms by methods, on slices and on vectors and matrices of nalgebra.
+//! Methods for the main functions of mechanisms, on slices and on vectors and matrices of nalgebra.
 
 use crate::error::Error;
 use crate::robot::{Robot, State};
@@ -38,7 +38,7 @@ impl Robot {
         }))
     }
 
-    /// Returns the placement of a frame in the ground.
+    /// Returns the placement of a frame in the ground frame.
     ///
     /// # Errors
     ///
@@ -52,7 +52,7 @@ impl Robot {
         Ok(Isometry3::from_parts(position, rotation.into()))
     }
 
-    /// Returns the velocity of a frame in ground axes: of its origin, then angular.
+    /// Returns the velocity of a frame in ground axes: that of its origin, then the angular velocity.
     ///
     /// # Errors
     ///
@@ -62,7 +62,7 @@ impl Robot {
         self.state_call(index, State { q, v, ..State::default() }).map(DVector::from_vec)
     }
 
-    /// Returns the acceleration of a frame in ground axes: of its origin, then angular.
+    /// Returns the acceleration of a frame in ground axes: that of its origin, then the angular acceleration.
     ///
     /// # Errors
     ///
@@ -78,7 +78,8 @@ impl Robot {
         self.state_call(index, State { q, v, a, ..State::default() }).map(DVector::from_vec)
     }
 
-    /// Returns the Jacobian of a frame, whose product with the velocity is that of the frame.
+    /// Returns the Jacobian of a frame, whose product with the velocity of the mechanism is the velocity of
+    /// the frame.
     ///
     /// # Errors
     ///
@@ -155,8 +156,8 @@ macro_rules! methods {
 methods! {
     /// Returns the mass matrix at configuration `q`.
     matrix mass_matrix mass_matrix_into(q);
-    /// Returns the generalized forces that keep the accelerations zero: of gravity, springs, dampers, and
-    /// velocities.
+    /// Returns the bias forces: the generalized forces that keep the accelerations zero, due to gravity,
+    /// springs, dampers and velocities.
     vector bias_forces bias_forces_into(q, v);
     /// Returns the accelerations caused by the generalized forces `tau`.
     vector forward_dynamics forward_dynamics_into(q, v, tau);
@@ -172,13 +173,13 @@ methods! {
     scalar kinetic_energy kinetic_energy_into(q, v);
     /// Returns the potential energy of the mechanism, J.
     scalar potential_energy potential_energy_into(q);
-    /// Returns the center of mass in the ground, m.
+    /// Returns the centre of mass of the mechanism in the ground frame, m.
     vector center_of_mass center_of_mass_into(q);
     /// Returns the inverse of the mass matrix (option `derivatives`).
     matrix mass_matrix_inverse mass_matrix_inverse_into(q);
-    /// Returns the derivatives of inverse dynamics by `q` and `v` (option `derivatives`).
+    /// Returns the derivatives of inverse dynamics with respect to `q` and `v` (option `derivatives`).
     two inverse_dynamics_derivatives inverse_dynamics_derivatives_into(q, v, a);
-    /// Returns the derivatives of forward dynamics by `q`, `v` and `tau` (option `derivatives`).
+    /// Returns the derivatives of forward dynamics with respect to `q`, `v` and `tau` (option `derivatives`).
     three forward_dynamics_derivatives forward_dynamics_derivatives_into(q, v, tau);
     /// Returns the matrices `A` and `B` of the linearised equations `ẋ = A x + B u` of displacements and
     /// velocities (option `derivatives`).
@@ -220,6 +221,6 @@ others! {
     integrate integrate_into(q, dv) State { q, other: [dv, &[], &[]], ..State::default() };
     /// Returns the constant joint velocity that leads from one configuration to another in one unit of time.
     difference difference_into(from, to) State { other: [from, to, &[]], ..State::default() };
-    /// Returns the rate of `dv` for which `integrate(q, dv)` moves with velocity `v`.
+    /// Returns the rate of the displacement `dv` for which `integrate(q, dv)` moves with velocity `v`.
     tangent_rate tangent_rate_into(dv, v) State { v, other: [dv, &[], &[]], ..State::default() };
 }

@@ -3,7 +3,7 @@
 
 use crate::shared::Shared;
 
-/// List that a name in a message belongs to.
+/// List of names in a mechanism to which a name in a message belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum List {
     Configuration,
@@ -34,7 +34,7 @@ const fn digit_table() -> [[u8; DIGITS]; 5 * COUNT] {
     all
 }
 
-/// Returns the numbers of the first names of a list.
+/// Returns the placeholder numbers for the first names of a list.
 pub(crate) const fn numbers_of_names<const N: usize>(list: List) -> [&'static str; N] {
     let mut all = [""; N];
     let mut k = 0;
@@ -48,7 +48,7 @@ pub(crate) const fn numbers_of_names<const N: usize>(list: List) -> [&'static st
 }
 
 impl Shared {
-    /// Returns the name that a number of [`numbers_of_names`] stands for.
+    /// Returns the name that a placeholder number of [`numbers_of_names`] represents.
     fn name_of_number(&self, number: usize) -> Option<&str> {
         let k = number % COUNT;
         match number / COUNT {

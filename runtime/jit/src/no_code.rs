@@ -4,11 +4,11 @@ use crate::AnyTable;
 use crate::layout::Layout;
 use linkwork_compiler::lower::Program;
 
-/// A compiled program: this type has no values.
+/// Compiled program on unsupported processors: this type has no values.
 pub(crate) enum Code {}
 
 impl Code {
-    /// Returns an error: there is no code generator.
+    /// Returns an error, because no code generator exists for this processor.
     pub fn compile(_program: &Program, _layout: &Layout, _results: usize) -> Result<Code, String> {
         Err("there is no code generator for this processor".to_string())
     }

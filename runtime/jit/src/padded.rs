@@ -1,4 +1,5 @@
-//! Loaded mechanisms for the runtime's integrators and all other code for any mechanism.
+//! Adapters that pass loaded mechanisms to the runtime's integrators and other code that is generic over
+//! mechanisms.
 
 mod constraints;
 mod contacts;
@@ -16,7 +17,8 @@ use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{ByMotion, Constrained, ConstraintError, Mechanism};
 use std::borrow::Borrow;
 
-/// A robot as a [`Mechanism`] of constant dimensions, for integrators and all other code for any mechanism.
+/// Robot as a [`Mechanism`] of constant dimensions, for integrators and other code that is generic over
+/// mechanisms.
 ///
 /// The dimensions are at least those of the robot. Further coordinates have unit inertia, and only
 /// generalized forces act on them; further inputs have no effect. With equal dimensions nothing is padded.
@@ -60,7 +62,7 @@ pub struct Padded<const NQ: usize, const NV: usize, const NU: usize, R = Robot> 
 }
 
 impl Robot {
-    /// Returns the robot as a mechanism of constant dimensions; changes of parameters are made before.
+    /// Returns the robot as a mechanism of constant dimensions. Its parameters cannot be changed afterwards.
     ///
     /// # Errors
     ///
@@ -79,7 +81,8 @@ impl Robot {
 }
 
 impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded<NQ, NV, NU, R> {
-    /// Checks the dimensions, and whether the robot can move. Contacts have no effect.
+    /// Returns the robot padded to constant dimensions, or an error if it is too large or has no dynamics.
+    /// Its contacts have no effect.
     pub(crate) fn new(robot: R) -> Result<Self, Error> {
         let own: &Robot = robot.borrow();
         let velocities = own.nv() + own.shared.states.len();
@@ -107,7 +110,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         self.robot.borrow()
     }
 
-    /// Number of velocities, and number of velocities and states of first order.
+    /// Returns the number of velocities, and the number of velocities and first-order states together.
     fn velocity_counts(&self) -> [usize; 2] {
         let robot = self.robot();
         [robot.nv(), robot.nv() + robot.shared.states.len()]
@@ -144,7 +147,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         }
     }
 
-    /// Evaluates a function whose results are the first `count` entries of a vector.
+    /// Returns a vector whose first `count` entries are the results of a function, and whose other entries
+    /// are those of `all`.
     fn fill_vector<const N: usize>(
         &self,
         f: Internal,
@@ -156,7 +160,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         all
     }
 
-    /// Fills the first rows and columns of a matrix.
+    /// Returns a matrix whose first rows and columns are the results of a function, and whose other entries
+    /// are those of `all`.
     fn fill_matrix<const N: usize, const M: usize>(
         &self,
         f: Internal,
@@ -175,7 +180,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         all
     }
 
-    /// Adds the rates of the states of first order, for inputs, to the entries behind the velocities.
+    /// Adds the rates of the first-order states under inputs, times a factor, to the entries behind the
+    /// velocities.
     fn add_state_rates(&self, state: State<'_>, factor: f64, to: &mut SVector<f64, NV>) {
         let robot = self.robot();
         let n = robot.nv();
@@ -188,7 +194,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         }
     }
 
-    /// Adds the rates of the states of first order without inputs.
+    /// Adds the rates of the first-order states without inputs, times a factor, to the entries behind the
+    /// velocities.
     fn add_free_rates(&self, state: State<'_>, factor: f64, to: &mut SVector<f64, NV>) {
         if !self.robot().shared.states.is_empty() {
             let u = SVector::<f64, NU>::zeros();
@@ -201,7 +208,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
     }
 }
 
-/// Writes the columns of a block with these rows to the first rows and columns of a matrix.
+/// Writes the columns of a block with this number of rows to the first rows and columns of a matrix.
 fn write_block<const N: usize, const M: usize>(all: &mut SMatrix<f64, N, M>, rows: usize, block: &[f64]) {
     for (j, column) in block.chunks_exact(rows.max(1)).enumerate() {
         all.as_mut_slice()[j * N..j * N + rows].copy_from_slice(column);

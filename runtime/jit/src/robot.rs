@@ -21,7 +21,7 @@ pub struct Robot {
     pub(crate) shared: Arc<Shared>,
     parameters: Vec<f64>,
     tables: Vec<AnyTable>,
-    /// Number of parameters and tables without a value.
+    /// Number of parameters and tables of the robot that have no value yet.
     missing: usize,
     time: f64,
     interpreted: bool,
@@ -34,7 +34,7 @@ impl fmt::Debug for Robot {
     }
 }
 
-/// A function of a robot: looked up by its name once, then called without a search.
+/// Function of a robot, looked up by its name once and then called without a search.
 #[derive(Clone)]
 pub struct Function {
     shared: Arc<Shared>,
@@ -68,7 +68,7 @@ impl Function {
         &self.shared.entries[self.index].documentation
     }
 
-    /// Returns name and length of each argument of the function, in order.
+    /// Returns the name and length of each argument of the function, in order.
     #[must_use]
     pub fn arguments(&self) -> Vec<(&'static str, usize)> {
         let entry = &self.shared.entries[self.index];
@@ -89,20 +89,20 @@ impl Function {
         self.shared.entries[self.index].rank
     }
 
-    /// Returns the number of values of all results.
+    /// Returns the total number of values of the function's results.
     #[must_use]
     pub fn length(&self) -> usize {
         self.shared.entries[self.index].length
     }
 
-    /// Generates the machine code now instead of at the first call. Returns false if the function is
-    /// interpreted: on processors without code generator, and if the code would be too long.
+    /// Generates the machine code of the function now instead of at the first call. Returns false if the
+    /// function is interpreted: on processors without code generator, and if the code would be too long.
     pub fn compile(&self) -> bool {
         self.shared.prepare(self.index)
     }
 }
 
-/// Limits of a coordinate, infinite without a bound.
+/// Limits of a coordinate, its velocity and the generalized force on it; infinite if unlimited.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
     /// Index of the velocity of the limited coordinate.
@@ -111,9 +111,9 @@ pub struct Limit {
     pub lower: f64,
     /// Maximum value of the limited coordinate.
     pub upper: f64,
-    /// Maximum magnitude of the velocity.
+    /// Maximum magnitude of the velocity of the limited coordinate.
     pub velocity: f64,
-    /// Maximum magnitude of the generalized force.
+    /// Maximum magnitude of the generalized force on the limited coordinate.
     pub effort: f64,
 }
 
@@ -150,7 +150,7 @@ impl Robot {
         &self.shared.name
     }
 
-    /// Returns the number of configuration coordinates.
+    /// Returns the number of entries of the configuration.
     #[must_use]
     pub fn nq(&self) -> usize {
         self.shared.sizes.nq
@@ -168,37 +168,37 @@ impl Robot {
         self.shared.sizes.nu
     }
 
-    /// Returns the number of states of first order, which are parameters as well.
+    /// Returns the number of first-order states, which are parameters as well.
     #[must_use]
     pub fn states(&self) -> usize {
         self.shared.states.len()
     }
 
-    /// Returns name and unit of each configuration coordinate.
+    /// Returns the name and unit of each entry of the configuration.
     #[must_use]
     pub fn configuration(&self) -> &[Quantity] {
         &self.shared.configuration
     }
 
-    /// Returns name and unit of each velocity. Accelerations and generalized forces have the same order.
+    /// Returns the name and unit of each velocity. Accelerations and generalized forces have the same order.
     #[must_use]
     pub fn velocities(&self) -> &[Quantity] {
         &self.shared.velocities
     }
 
-    /// Returns name and unit of each input.
+    /// Returns the name and unit of each input.
     #[must_use]
     pub fn inputs(&self) -> &[Quantity] {
         &self.shared.inputs
     }
 
-    /// Returns name and unit of each parameter.
+    /// Returns the name and unit of each parameter.
     #[must_use]
     pub fn parameters(&self) -> &[Quantity] {
         &self.shared.parameters
     }
 
-    /// Returns the values of the parameters, NaN for those without a value.
+    /// Returns the values of the parameters, with NaN for parameters that have no value yet.
     #[must_use]
     pub fn parameter_values(&self) -> &[f64] {
         &self.parameters
@@ -209,25 +209,26 @@ impl Robot {
         &self.tables
     }
 
-    /// Returns name and number of variables of each table.
+    /// Returns the name of each interpolation table, and its number of variables.
     #[must_use]
     pub fn tables(&self) -> &[(String, usize)] {
         &self.shared.tables
     }
 
-    /// Returns the names of the frames.
+    /// Returns the names of the frames of the mechanism.
     #[must_use]
     pub fn frames(&self) -> &[String] {
         &self.shared.frames.names
     }
 
-    /// Returns the equations of motion as text, if the options ask for them.
+    /// Returns the equations of motion as text, if the loader was set to produce them; otherwise an empty
+    /// text.
     #[must_use]
     pub fn equations(&self) -> &str {
         &self.shared.equations
     }
 
-    /// Whether functions take time as their first argument.
+    /// Whether the functions of the mechanism have time as their first argument.
     #[must_use]
     pub fn depends_on_time(&self) -> bool {
         self.shared.time
@@ -252,7 +253,7 @@ impl Robot {
         Ok(Function { shared: self.shared.clone(), index })
     }
 
-    /// Returns the values of a parameter.
+    /// Returns the value of a parameter by its name.
     ///
     /// # Errors
     ///
@@ -268,7 +269,7 @@ impl Robot {
         })
     }
 
-    /// Sets a parameter.
+    /// Sets the value of a parameter by its name.
     ///
     /// # Errors
     ///
@@ -288,7 +289,7 @@ impl Robot {
         Ok(())
     }
 
-    /// Sets all parameters, in their order.
+    /// Sets the values of all parameters, in their order.
     ///
     /// # Errors
     ///
@@ -308,7 +309,7 @@ impl Robot {
         Ok(self)
     }
 
-    /// Sets a table: a `Table<1>`, `Table<2>` or `Table<3>`.
+    /// Sets an interpolation table by its name: a `Table<1>`, `Table<2>` or `Table<3>`.
     ///
     /// # Errors
     ///
@@ -385,8 +386,8 @@ impl Robot {
         self.time = time;
     }
 
-    /// Evaluates a function of arguments in their order, and writes its results one after the other, matrices
-    /// by columns. Allocates nothing after the first call of a thread.
+    /// Evaluates a function and writes its results one after the other, matrices by columns. The arguments
+    /// are in the order of the function. Allocates nothing after the first call of a thread.
     ///
     /// # Errors
     ///
@@ -395,7 +396,7 @@ impl Robot {
         self.evaluate_many_into(f, 1, arguments, out)
     }
 
-    /// Evaluates a function; see [`evaluate_into`](Self::evaluate_into).
+    /// Evaluates a function and returns its results; see [`evaluate_into`](Self::evaluate_into).
     ///
     /// # Errors
     ///
@@ -407,7 +408,7 @@ impl Robot {
     }
 
     /// Evaluates a function for `count` sets of arguments. Each argument has the values of all sets one after
-    /// the other, or those of one set, which all share.
+    /// the other, or those of one set, which is used for all.
     ///
     /// # Errors
     ///
@@ -425,7 +426,8 @@ impl Robot {
         }
     }
 
-    /// Evaluates a function by its index; see [`evaluate_many_into`](Self::evaluate_many_into).
+    /// Evaluates a function, given by its index, for several sets of arguments; see
+    /// [`evaluate_many_into`](Self::evaluate_many_into).
     fn call_by_index(
         &self,
         parameters: &[f64],
@@ -536,7 +538,7 @@ impl Robot {
     }
 }
 
-/// Returns the error of a call whose arguments or results have the wrong length.
+/// Returns the error for a call whose arguments or results have the wrong length.
 #[cold]
 fn length_error(entry: &Entry, count: usize, arguments: &[&[f64]], out: usize) -> Error {
     let of = entry.name.clone();

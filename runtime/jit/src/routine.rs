@@ -1,4 +1,4 @@
-//! A program with its machine code, which is generated at the first call.
+//! Program of a function with its machine code, which is generated at the first call.
 
 use crate::AnyTable;
 use crate::code::Code;
@@ -12,17 +12,17 @@ use std::sync::OnceLock;
 pub(crate) struct Routine {
     program: OnceLock<Program>,
     layout: Layout,
-    /// Number of outputs that are results of the function.
+    /// Number of the program's outputs that are results of the function.
     results: usize,
     code: OnceLock<Option<Code>>,
 }
 
-/// The values that a program is evaluated with.
+/// Values with which a program is evaluated.
 #[derive(Clone, Copy)]
 pub(crate) struct Values<'a> {
     /// Inputs of the program: the parameters, then the arguments of its function.
     pub inputs: &'a [&'a [f64]],
-    /// Interpolation tables that the program looks up.
+    /// Interpolation tables that the program reads.
     pub tables: &'a [AnyTable],
     /// Whether programs are interpreted instead of compiled.
     pub interpreted: bool,
@@ -36,23 +36,24 @@ impl Routine {
         Some(Routine { program: OnceLock::from(program), ..routine })
     }
 
-    /// Returns the routine of a program that is made at the first call.
+    /// Returns the routine of a program that is built at the first call.
     pub fn deferred(arguments: &[Argument], results: usize) -> Option<Routine> {
         let layout = Layout::new(arguments)?;
         Some(Routine { program: OnceLock::new(), layout, results, code: OnceLock::new() })
     }
 
-    /// Builds the program if it does not exist yet.
+    /// Builds the program of the routine by `make`, unless it exists already.
     pub fn ensure(&self, make: impl FnOnce() -> Program) {
         self.program.get_or_init(make);
     }
 
-    /// Returns the program, if it has been built.
+    /// Returns the program of the routine, if it has been built.
     pub fn program(&self) -> Option<&Program> {
         self.program.get()
     }
 
-    /// Generates machine code at the first call. Returns false if the program is interpreted.
+    /// Generates the machine code of the routine at the first call. Returns false if the program is
+    /// interpreted.
     pub fn prepare(&self) -> bool {
         let compile_program = || Code::compile(self.program.get()?, &self.layout, self.results).ok();
         self.code.get_or_init(compile_program).is_some()

@@ -18,7 +18,7 @@ pub(crate) struct Sizes {
 }
 
 impl Sizes {
-    /// Returns the number of entries of an argument.
+    /// Returns the number of entries that an argument has for a mechanism of these sizes.
     pub fn length(&self, argument: Argument) -> usize {
         argument.length([self.nq, self.nv, self.nu])
     }
@@ -29,7 +29,7 @@ impl Sizes {
 pub struct Quantity {
     /// Name of the coordinate, velocity, input or parameter.
     pub name: String,
-    /// Unit, for example `rad/s`; empty for a pure number.
+    /// Unit of the coordinate, velocity, input or parameter, for example `rad/s`; empty for a pure number.
     pub unit: String,
 }
 
@@ -45,11 +45,12 @@ pub(crate) struct Requirement {
 #[derive(Default)]
 pub(crate) struct Constraints {
     pub names: Vec<String>,
-    /// Number of constraints on configurations, which come first.
+    /// Number of holonomic constraints, which restrict configurations and come first.
     pub holonomic: usize,
     /// Group of each constraint. Constraints in one group are components of one vector equation.
     pub groups: Vec<usize>,
-    /// Indices of the constraints whose multipliers are normal forces of friction.
+    /// Indices of the constraints of sliding contacts, whose multipliers are normal forces on which friction
+    /// depends.
     pub slipping: Vec<usize>,
     /// Indices of the constraints that determine coordinates without inertia.
     pub determining: Vec<usize>,
@@ -57,18 +58,19 @@ pub(crate) struct Constraints {
     pub rank: usize,
     /// Whether some constraints are redundant in every configuration.
     pub overdetermined: bool,
-    /// Whether accelerations are eliminated by pivots that are chosen in advance.
+    /// Whether the elimination for the accelerations has pivots that are chosen in advance.
     pub independent: bool,
     /// Indices of the configuration coordinates that are angles.
     pub angles: Vec<usize>,
 }
 
-/// Unilateral contact of a loaded mechanism, which opens and closes.
+/// Unilateral contact of a loaded mechanism.
 pub(crate) struct Contact {
     pub name: String,
     /// First row, and number of rows, in the contact velocities.
     pub rows: [usize; 2],
-    /// Index of the contact whose normal force causes the friction: its own, except of friction moments.
+    /// Index of the contact whose normal force bounds the friction of this contact: its own, except for
+    /// friction moments.
     pub pressed_by: usize,
     /// Whether the restitution coefficient is a ratio of impulses instead of velocities.
     pub of_impulses: bool,
@@ -82,7 +84,7 @@ pub(crate) struct FirstOrder {
     pub rate: Option<usize>,
 }
 
-/// Loaded mechanism: the data that its robots share.
+/// Loaded mechanism: the data that all its robots share.
 pub(crate) struct Shared {
     pub name: String,
     pub sizes: Sizes,
@@ -90,11 +92,11 @@ pub(crate) struct Shared {
     pub velocities: Vec<Quantity>,
     pub inputs: Vec<Quantity>,
     pub parameters: Vec<Quantity>,
-    /// Values of a file, NaN for parameters that have none.
+    /// Default values of the parameters from a robot file, NaN for parameters that have none.
     pub defaults: Vec<f64>,
-    /// Names and numbers of variables of the tables.
+    /// Names of the interpolation tables, and their numbers of variables.
     pub tables: Vec<(String, usize)>,
-    /// Index in `v`, and which of the bounds are present, of each limit.
+    /// For each limit, the index of its velocity in `v`, and which of the four bounds are present.
     pub limits: Vec<(usize, [bool; 4])>,
     pub requirements: Vec<Requirement>,
     pub equations: String,
@@ -128,8 +130,8 @@ impl Shared {
         public.map(|entry| entry.name.as_str())
     }
 
-    /// Evaluates a function that another function calls. It takes the arguments of the caller, some of them
-    /// replaced.
+    /// Evaluates a function that another function calls. It receives the arguments of the caller, some of
+    /// them replaced.
     pub fn call(
         &self,
         function: usize,

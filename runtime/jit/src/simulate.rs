@@ -11,7 +11,8 @@ use driver::{Driver, Given, Moving, Settings, on_large_stack};
 pub use method::Method;
 use method::STEP;
 
-/// Function of time, configuration and velocity that writes the inputs. An error ends the run.
+/// Controller of a simulation: a function of time, configuration and velocity that writes the inputs. An
+/// error ends the simulation.
 pub type Controller<'a> = &'a mut (dyn FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), String> + Send);
 
 /// Inputs of the mechanism during a simulation.
@@ -30,9 +31,11 @@ pub enum Inputs<'a> {
         /// Values of the inputs: one row for each time, row after row.
         values: &'a [f64],
     },
-    /// A function that is continuous in time and state; velocities are followed by states of first order.
+    /// Inputs from a function that is continuous in time and state. The velocities that it receives are
+    /// followed by first-order states.
     Function(Controller<'a>),
-    /// A function that is called once in every period, s, and whose values are constant in between.
+    /// Inputs from a function that is called once in every period, s, and whose values are constant in
+    /// between.
     Sampled(f64, Controller<'a>),
 }
 
@@ -43,9 +46,9 @@ pub struct Sample {
     pub t: f64,
     /// Configuration of the sample.
     pub q: Vec<f64>,
-    /// Velocity, followed by the states of first order.
+    /// Velocity of the sample, followed by the first-order states.
     pub v: Vec<f64>,
-    /// Inputs at the time of the sample.
+    /// Inputs of the mechanism at the time of the sample.
     pub u: Vec<f64>,
 }
 
@@ -99,7 +102,7 @@ pub struct Simulation<'a, 'i> {
 }
 
 impl Robot {
-    /// Returns a simulation, from the neutral configuration at rest at t = 0 with zero inputs.
+    /// Returns a simulation of the robot, from the neutral configuration at rest at t = 0 with zero inputs.
     pub fn simulate(&self) -> Simulation<'_, 'static> {
         Simulation {
             robot: self,
@@ -128,7 +131,7 @@ impl<'a, 'i> Simulation<'a, 'i> {
         Self { start: t, ..self }
     }
 
-    /// Sets the integration method.
+    /// Sets the integration method of the simulation.
     pub fn method(self, method: Method) -> Self {
         Self { method, ..self }
     }
@@ -149,7 +152,7 @@ impl<'a, 'i> Simulation<'a, 'i> {
         Self { every: Some(interval), ..self }
     }
 
-    /// Leaves the contacts out: bodies pass through each other.
+    /// Simulates the mechanism without its contacts, so that bodies pass through each other.
     pub fn without_contacts(self) -> Self {
         Self { contacts: false, ..self }
     }
@@ -159,7 +162,7 @@ impl<'a, 'i> Simulation<'a, 'i> {
         Self { overlaps, ..self }
     }
 
-    /// Runs the simulation.
+    /// Runs the simulation and returns its samples.
     ///
     /// # Errors
     ///

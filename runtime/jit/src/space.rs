@@ -1,4 +1,5 @@
-//! The configuration space: motions along velocities, differences of configurations, rates of displacements.
+//! Functions of the configuration space: motions along velocities, differences of configurations, rates of
+//! displacements.
 
 use crate::functions::{Entry, Maker, Matrix, Plan};
 use crate::routine::Values;
@@ -19,14 +20,14 @@ enum Kind {
     DisplacementRate,
 }
 
-/// A function of the configuration space, with the indices of the functions that exchange speeds and joint
-/// velocities, if the mechanism has speeds.
+/// Function of the configuration space, with the indices of the functions that convert between generalized
+/// speeds and joint velocities, if the mechanism declares speeds.
 pub(crate) struct Space {
     kind: Kind,
     speeds: Option<[usize; 2]>,
 }
 
-/// Returns the entries of a list from an index on.
+/// Returns `N` entries of a list, from the index `first` on.
 fn array_from_list<const N: usize>(list: &[f64], first: usize) -> [f64; N] {
     std::array::from_fn(|k| list[first + k])
 }
@@ -81,7 +82,7 @@ pub(crate) fn tangent_rate(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut [f
     }
 }
 
-/// Writes a velocity in the axes that ball and free joints have after a displacement.
+/// Writes a velocity in the axes that ball and free joints have after a displacement `dv`.
 pub(crate) fn transport_velocity(charts: &[Chart], dv: &[f64], v: &[f64], out: &mut [f64]) {
     for chart in charts {
         match *chart {
@@ -175,7 +176,7 @@ impl Space {
         }
     }
 
-    /// Returns the indices of the functions that are called.
+    /// Returns the indices of the functions that this function calls.
     pub fn calls(&self) -> Vec<usize> {
         self.speeds.into_iter().flatten().collect()
     }

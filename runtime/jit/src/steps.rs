@@ -60,7 +60,7 @@ pub(crate) struct Functions {
     linearize: Option<usize>,
 }
 
-/// State at which a Runge–Kutta stage is evaluated, with its time derivatives.
+/// State at which a stage of a Runge–Kutta step is evaluated, with its time derivatives.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stage {
     pub displacement: Vec<f64>,
@@ -75,14 +75,15 @@ pub(crate) struct Stage {
 /// at its start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Jacobians {
-    /// Derivatives of the displacement of the configuration at the end by configuration, velocity and inputs.
+    /// Derivatives of the displacement of the configuration at the end of the step with respect to
+    /// configuration, velocity and inputs.
     pub q: [DMatrix<f64>; 3],
     /// Derivatives of the velocity at the end of the step with respect to configuration, velocity and inputs.
     pub v: [DMatrix<f64>; 3],
 }
 
 impl Stepper {
-    /// Returns steps of a robot with the present values of its parameters.
+    /// Returns a computation of steps for a robot with the present values of its parameters.
     ///
     /// # Errors
     ///
@@ -119,13 +120,13 @@ impl Stepper {
         Ok(Stepper { robot: robot.clone(), functions, stages, displacement: zero_vector(nv) })
     }
 
-    /// Returns the robot, whose parameters may be changed.
+    /// Returns the robot of the stepper, whose parameters may be changed.
     pub fn robot_mut(&mut self) -> &mut Robot {
         &mut self.robot
     }
 
-    /// Writes configuration and velocity after a step of `h` seconds from the time `t`, the configuration,
-    /// the velocity and the inputs at its start.
+    /// Writes configuration and velocity after a step of `h` seconds. The start consists of the time `t`, and
+    /// of configuration, velocity and inputs.
     ///
     /// # Errors
     ///
@@ -152,7 +153,7 @@ impl Stepper {
         }
     }
 
-    /// Evaluates the stages and the displacement of a step.
+    /// Evaluates the stages of a step, and the displacement of the configuration over the step.
     pub(crate) fn evaluate_step(&mut self, t: f64, [q, v, u]: [&[f64]; 3], h: f64) -> Result<(), Error> {
         let (robot, functions) = (&mut self.robot, self.functions);
         robot.check_length("q", robot.nq(), q.len())?;
@@ -272,7 +273,7 @@ impl Stepper {
     }
 }
 
-/// Derivatives of a vector of the tangent space by configuration, velocity and inputs at the start of a step.
+/// Derivatives of a tangent vector with respect to configuration, velocity and inputs at the start of a step.
 #[derive(Clone)]
 struct Sensitive {
     by_q: DMatrix<f64>,
@@ -285,7 +286,8 @@ impl Sensitive {
         Sensitive { by_q: DMatrix::zeros(n, n), by_v: DMatrix::zeros(n, n), by_u: DMatrix::zeros(n, m) }
     }
 
-    /// Returns the derivatives of the velocity at the start.
+    /// Returns the derivatives of the velocity at the start of the step: the identity with respect to itself,
+    /// otherwise zero.
     fn velocity_derivatives(n: usize, m: usize) -> Sensitive {
         Sensitive { by_v: DMatrix::identity(n, n), ..Sensitive::zero(n, m) }
     }
@@ -307,13 +309,13 @@ impl Sensitive {
         Sensitive { by_q: &self.by_q * s, by_v: &self.by_v * s, by_u: &self.by_u * s }
     }
 
-    /// Returns the products of a matrix with the derivatives.
+    /// Returns the products of the matrix `by` with the derivatives.
     fn multiplied_by_matrix(&self, by: &DMatrix<f64>) -> Sensitive {
         Sensitive { by_q: by * &self.by_q, by_v: by * &self.by_v, by_u: by * &self.by_u }
     }
 }
 
-/// Returns the derivatives of the motion of the configuration that a displacement from the start leads to.
+/// Returns the derivatives of the configuration that a displacement from the start leads to.
 fn end_derivatives(charts: &[Chart], displacement: &[f64], derivatives: &Sensitive) -> Sensitive {
     let [by_q, by_dv] = integrate_derivatives(charts, displacement);
     let mut motion = derivatives.multiplied_by_matrix(&by_dv);
@@ -325,7 +327,7 @@ fn array_from_list<const N: usize>(list: &[f64], first: usize) -> [f64; N] {
     std::array::from_fn(|k| list[first + k])
 }
 
-/// Writes a block, which is a list of columns, on the diagonal of a matrix.
+/// Writes a square block, given as a list of columns, to the diagonal of a matrix, from row `first` on.
 fn place_diagonal_block<const N: usize>(matrix: &mut DMatrix<f64>, first: usize, block: [[f64; N]; N]) {
     for (j, column) in block.into_iter().enumerate() {
         for (i, entry) in column.into_iter().enumerate() {
@@ -334,8 +336,8 @@ fn place_diagonal_block<const N: usize>(matrix: &mut DMatrix<f64>, first: usize,
     }
 }
 
-/// Returns the derivatives of `integrate(q, dv)` by displacements of `q` and by `dv`, for velocities that are
-/// joint velocities.
+/// Returns the derivatives of `integrate(q, dv)` with respect to displacements of `q` and to `dv`, for
+/// velocities that are joint velocities.
 pub(crate) fn integrate_derivatives(charts: &[Chart], dv: &[f64]) -> [DMatrix<f64>; 2] {
     let n = dv.len();
     let (mut by_q, mut by_dv) = (DMatrix::identity(n, n), DMatrix::identity(n, n));
@@ -357,7 +359,7 @@ pub(crate) fn integrate_derivatives(charts: &[Chart], dv: &[f64]) -> [DMatrix<f6
     [by_q, by_dv]
 }
 
-/// Returns the derivatives of `tangent_rate(dv, v)` by `dv` and by `v`.
+/// Returns the derivatives of `tangent_rate(dv, v)` with respect to `dv` and to `v`.
 pub(crate) fn tangent_rate_derivatives(charts: &[Chart], dv: &[f64], v: &[f64]) -> [DMatrix<f64>; 2] {
     let n = dv.len();
     let (mut by_dv, mut by_v) = (DMatrix::zeros(n, n), DMatrix::identity(n, n));
@@ -382,7 +384,8 @@ pub(crate) fn tangent_rate_derivatives(charts: &[Chart], dv: &[f64], v: &[f64]) 
 }
 
 impl Robot {
-    /// Returns the derivatives of [`integrate`](Self::integrate) by displacements of `q` and by `dv`.
+    /// Returns the derivatives of [`integrate`](Self::integrate) with respect to displacements of `q` and to
+    /// `dv`.
     ///
     /// # Errors
     ///
@@ -392,7 +395,7 @@ impl Robot {
         Ok(integrate_derivatives(&self.shared.charts, dv))
     }
 
-    /// Returns the derivatives of [`tangent_rate`](Self::tangent_rate) by `dv` and by `v`.
+    /// Returns the derivatives of [`tangent_rate`](Self::tangent_rate) with respect to `dv` and to `v`.
     ///
     /// # Errors
     ///

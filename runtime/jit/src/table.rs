@@ -1,4 +1,4 @@
-//! Tables of a mechanism with any number of variables: functions that are parameters.
+//! Interpolation tables of a mechanism with any number of variables, which are parameters.
 
 use linkwork::Table;
 
@@ -6,7 +6,7 @@ use linkwork::Table;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum AnyTable {
-    /// No table has been set: its values are NaN.
+    /// Missing table, which has not been set: its values are NaN.
     Missing,
     /// Interpolation table of one variable.
     One(Table<1>),
@@ -17,7 +17,7 @@ pub enum AnyTable {
 }
 
 impl AnyTable {
-    /// Returns the number of variables, zero for a missing table.
+    /// Returns the number of variables of the table, zero for a missing table.
     #[must_use]
     pub fn variables(&self) -> usize {
         match self {

@@ -1,4 +1,4 @@
-//! Mechanisms for pages that simulate themselves: their programs as WebAssembly, and their data as JSON.
+//! Mechanisms for web pages that simulate them: their programs as WebAssembly, and their data as JSON.
 
 mod module;
 
@@ -13,7 +13,7 @@ use linkwork_compiler::mechanism::{Chart, InQ, InV};
 use module::BinaryModule;
 use std::fmt::Write;
 
-/// State and inputs at the start of a simulation.
+/// State and inputs at the start of a simulation in a web page.
 #[derive(Clone, Copy, Debug)]
 pub struct WebStart<'a> {
     /// Initial configuration of the simulation.
@@ -26,9 +26,9 @@ pub struct WebStart<'a> {
     pub u: &'a [f64],
 }
 
-/// Functions of a mechanism without constraints and contacts.
+/// Names of the functions that a web page needs for a mechanism without constraints and contacts.
 const FREE: &[&str] = &["forward_dynamics"];
-/// Functions of a mechanism with constraints or contacts.
+/// Names of the functions that a web page needs for a mechanism with constraints or contacts.
 const BOUND: &[&str] = &["mass_matrix", "bias_forces"];
 /// Names of the functions that a web page includes for every mechanism that has them.
 const ALL: &[&str] = &[
@@ -45,10 +45,10 @@ const ALL: &[&str] = &[
     "contact_jacobian",
     "__contact_laws",
 ];
-/// Accelerations with friction of sliding contacts that never open.
+/// Name of the function that returns the accelerations with friction of sliding contacts that never open.
 const SLIPPING: &str = "__constrained_dynamics";
 
-/// A module with the signatures of its functions as JSON.
+/// WebAssembly module, with the signatures of its functions as JSON.
 #[derive(Default)]
 struct WebModule {
     module: BinaryModule,
@@ -85,9 +85,9 @@ impl WebModule {
 }
 
 impl Robot {
-    /// Returns the mechanism for a page that simulates it, as JSON: names, units, structure, values of the
-    /// parameters and the start; and a WebAssembly module of its functions. `drawing` computes the numbers of
-    /// the drawing from the parameters.
+    /// Returns the data of the mechanism for a page that simulates it, as JSON (names, units, structure,
+    /// values of the parameters and the start), and a WebAssembly module of its functions. `drawing` computes
+    /// the numbers of the drawing from the parameters.
     ///
     /// # Errors
     ///
@@ -140,7 +140,7 @@ impl Robot {
         Ok(written)
     }
 
-    /// Returns the structure of the mechanism: names and values of JSON fields.
+    /// Returns the structure of the mechanism for a web page, as names and values of JSON fields.
     fn web_structure(&self) -> Vec<(&'static str, String)> {
         let shared = &self.shared;
         let encode_quantities = |list: &[Quantity]| {
@@ -187,17 +187,17 @@ impl Robot {
     }
 }
 
-/// Returns a JSON list of items that are already JSON.
+/// Formats a JSON array of items that are already JSON texts.
 fn json_list(items: impl Iterator<Item = String>) -> String {
     format!("[{}]", items.collect::<Vec<_>>().join(","))
 }
 
-/// Returns a JSON list of numbers, with `null` for numbers that are not finite.
+/// Formats a JSON array of numbers, with `null` for numbers that are not finite.
 fn json_numbers(list: &[f64]) -> String {
     json_list(list.iter().map(|x| if x.is_finite() { format!("{x:?}") } else { "null".to_string() }))
 }
 
-/// Returns a JSON string without characters of markup.
+/// Formats a text as a JSON string without characters of HTML markup.
 fn json_string(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {

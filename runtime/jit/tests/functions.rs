@@ -68,7 +68,7 @@ both! {
     }
 }
 
-/// Returns `n` reproducible values between -0.6 and 0.6.
+/// Returns `n` reproducible sample values between −0.6 and 0.6.
 fn sample_values(seed: usize, n: usize) -> Vec<f64> {
     (0..n).map(|k| 0.6 * ((7 * k + 3 * seed + 1) as f64).sin()).collect()
 }
@@ -270,7 +270,7 @@ fn errors_are_typed() -> Result<(), Error> {
     Ok(())
 }
 
-/// Names, units, limits and documentation of a file.
+/// Checks names, units, limits and documentation of a robot that is loaded from a file.
 #[test]
 fn robots_of_files_have_names_and_limits() -> Result<(), Error> {
     let urdf = r#"<robot name="r"><link name="a"/><link name="b"><inertial><mass value="2"/>

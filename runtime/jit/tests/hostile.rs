@@ -1,4 +1,4 @@
-//! Loading is safe in processes of others: memory is returned, and no input crashes the process.
+//! Checks that loading is safe within other programs: memory is returned, and no input crashes the process.
 //!
 //! `LINKWORK_LOADS` and `LINKWORK_INPUTS` choose the numbers of loads and of random inputs, `LINKWORK_SEED`
 //! the first seed. Each input is in a file `input` in a folder of the temporary folder until the next one.
@@ -14,12 +14,12 @@ mod random;
 
 /// Lock that prevents tests from running at the same time, so that each measures only its own memory.
 static TURN: Mutex<()> = Mutex::new(());
-/// Default numbers of loads and of random inputs that the tests use.
+/// Default number of loads in the memory test. The constant below is the number of random inputs.
 const LOADS: u64 = 200;
 const INPUTS: u64 = 120;
 /// Maximum growth of memory during all loads, bytes: less than one retained page per load.
 const GROWTH: u64 = 4096 * LOADS / 2;
-/// Maximum time of one mutated input in a debug build on a busy machine.
+/// Maximum time to load one mutated input in a debug build on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 fn number_from_environment(name: &str, default: u64) -> u64 {
@@ -161,7 +161,7 @@ fn fuzz_subjects() -> Vec<(String, String)> {
     all
 }
 
-/// Applies random mutations to a text.
+/// Applies random mutations to a text, which may insert parts of another text.
 fn change_text(text: &mut String, other: &str, random: &mut Random) {
     let random_char_boundary = |text: &str, random: &mut Random| {
         let mut at = random.index_below(text.len() + 1);
@@ -213,7 +213,7 @@ fn change_text(text: &mut String, other: &str, random: &mut Random) {
     }
 }
 
-/// Calls the functions of a robot with values of all kinds.
+/// Calls the functions of a robot with random values, including NaN, infinite and very large ones.
 fn call_all_functions(mut robot: Robot, random: &mut Random) -> Result<(), Error> {
     let names: Vec<String> = robot.parameters().iter().map(|parameter| parameter.name.clone()).collect();
     for name in names {

@@ -73,8 +73,8 @@ fn assert_close_entries(found: &[f64], expected: &[f64], tolerance: f64) {
     }
 }
 
-/// Accelerations with multipliers, also in a singular configuration, projections, impulses, derivatives,
-/// assembly.
+/// Checks accelerations with multipliers, also in a singular configuration, projections, impulses,
+/// derivatives and assembly against generated Rust code.
 #[test]
 fn constraints_agree_with_generated_rust() -> Result<(), std::boxed::Box<dyn std::error::Error>> {
     let robot = Loader::text(SLIDER).load()?;
@@ -120,7 +120,7 @@ fn constraints_agree_with_generated_rust() -> Result<(), std::boxed::Box<dyn std
     Ok(())
 }
 
-/// Every method has the motion of generated Rust.
+/// Checks that every integration method computes the motion of generated Rust code.
 #[test]
 fn motions_under_constraints_agree_with_generated_rust() -> Result<(), Error> {
     let robot = Loader::text(SLIDER).load()?;
@@ -150,7 +150,8 @@ fn motions_under_constraints_agree_with_generated_rust() -> Result<(), Error> {
     Ok(())
 }
 
-/// A box that tumbles to rest, in time steps and by events.
+/// Checks a box that tumbles to rest, with time stepping and with located events, against generated Rust
+/// code.
 #[test]
 fn contacts_agree_with_generated_rust() -> Result<(), Error> {
     let robot = Loader::text(BOX).load()?;
@@ -192,7 +193,7 @@ fn contacts_agree_with_generated_rust() -> Result<(), Error> {
     Ok(())
 }
 
-/// A ball that slides on a floor is braked by `μ g`, until it rolls after `2 v / (7 μ g)`.
+/// Checks that a ball that slides on a floor is decelerated by `μ g`, until it rolls after `2 v / (7 μ g)`.
 #[test]
 fn sliding_constraints_have_friction() -> Result<(), Error> {
     let robot = Loader::text(WEDGE).load()?;
@@ -208,7 +209,8 @@ fn sliding_constraints_have_friction() -> Result<(), Error> {
     Ok(())
 }
 
-/// Declared speeds, states of first order, time: closed forms.
+/// Checks motions with declared generalized speeds, first-order states and explicit time against closed
+/// forms.
 #[test]
 fn speeds_states_and_time_are_integrated() -> Result<(), Error> {
     let rotor = linkwork_jit::declare(
@@ -274,7 +276,7 @@ const CART: &str = "#[mechanism]
         push: Force,
     }";
 
-/// Inputs of all kinds, with jumps; a failing controller.
+/// Checks inputs of all kinds, with jumps, and a controller that fails.
 #[test]
 fn inputs_are_followed_exactly() -> Result<(), Error> {
     let cart = Loader::text(CART).load()?;
@@ -321,7 +323,7 @@ fn inputs_are_followed_exactly() -> Result<(), Error> {
     Ok(())
 }
 
-/// An overdamped oscillator: the implicit method takes over, and the motion has the closed form.
+/// Checks an overdamped oscillator: the implicit method takes over, and the motion has the closed form.
 #[test]
 fn stiff_motions_are_integrated_by_an_implicit_method() -> Result<(), Error> {
     let (fast, slow) = (1e5, 2.0);

@@ -29,7 +29,8 @@ impl Failure {
     }
 }
 
-/// Function that reads its arguments from arrays and writes its results to arrays.
+/// Function that evaluates a generated function: reads its arguments from arrays and writes its results to
+/// arrays.
 pub type Body<M> = fn(
     &M,
     Given<'_, <M as Library>::Number>,
@@ -51,17 +52,17 @@ pub struct Function<M: Library> {
 
 /// Argument and result arrays of a function for many states, one state after the other.
 pub struct Batch<'a, N> {
-    /// Argument arrays, one per argument, each with the values for all states.
+    /// Argument arrays, one per argument, each with the values for all states of the batch.
     pub arguments: Vec<&'a [N]>,
-    /// Result arrays, one per result, each with the values for all states.
+    /// Result arrays, one per result, each with the values for all states of the batch.
     pub results: Vec<&'a mut [N]>,
     /// Number of states in the batch.
     pub states: usize,
-    /// Number of threads; zero for the number of processors.
+    /// Number of threads that evaluate the batch; zero for the number of processors.
     pub threads: usize,
 }
 
-/// Calls a function for every state. Results of a state whose evaluation fails are NaN.
+/// Calls a generated function for every state of a batch. Results of a state whose evaluation fails are NaN.
 ///
 /// # Errors
 ///
@@ -81,7 +82,7 @@ pub fn call<M: Library>(m: &M, f: &Function<M>, batch: Batch<'_, M::Number>) -> 
         return call_guarded(m, f.one, &arguments, &mut results);
     }
     let share = states_per_thread(states, threads, LANES);
-    let parts = shared_out(f, &arguments, results, states, share);
+    let parts = distribute_states(f, &arguments, results, states, share);
     let first = match parts.len() {
         0 => None,
         1 => parts.into_iter().find_map(|part| evaluate_states(m, f, part)),
@@ -109,20 +110,20 @@ pub(crate) fn states_per_thread(states: usize, threads: usize, lanes: usize) -> 
 }
 
 /// Range of states in a batch that one thread evaluates.
-struct Part<'a, N> {
+struct StateRange<'a, N> {
     first: usize,
     states: usize,
     arguments: Vec<&'a [N]>,
     results: Vec<&'a mut [N]>,
 }
 
-fn shared_out<'a, M: Library>(
+fn distribute_states<'a, M: Library>(
     f: &Function<M>,
     arguments: &[&'a [M::Number]],
     mut rest: Vec<&'a mut [M::Number]>,
     states: usize,
     share: usize,
-) -> Vec<Part<'a, M::Number>> {
+) -> Vec<StateRange<'a, M::Number>> {
     let mut parts = Vec::new();
     let mut first = 0;
     while first < states {
@@ -136,19 +137,20 @@ fn shared_out<'a, M: Library>(
             behind.push(back);
         }
         rest = behind;
-        parts.push(Part { first, states: count, arguments, results });
+        parts.push(StateRange { first, states: count, arguments, results });
         first += count;
     }
     parts
 }
 
-/// Evaluates the states of one thread. Returns the index of the first state that fails, with the error.
+/// Evaluates a function for the states of one thread. Returns the index of the first state that fails, with
+/// the error.
 fn evaluate_states<M: Library>(
     m: &M,
     f: &Function<M>,
-    part: Part<'_, M::Number>,
+    part: StateRange<'_, M::Number>,
 ) -> Option<(usize, Failure)> {
-    let Part { first, states, arguments, results } = part;
+    let StateRange { first, states, arguments, results } = part;
     let mut failed = None;
     let mut at = 0;
     let mut results = results;
@@ -176,7 +178,7 @@ fn evaluate_states<M: Library>(
     failed
 }
 
-/// Calls a function; if it fails or panics, the results are set to NaN.
+/// Calls a generated function; if it fails or panics, the results are set to NaN.
 fn call_guarded<M: Library>(
     m: &M,
     body: Body<M>,

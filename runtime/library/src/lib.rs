@@ -25,24 +25,24 @@ pub trait Library: Sized + Sync + 'static {
     /// Generated functions of the mechanism, in the order of the description.
     const FUNCTIONS: &'static [Function<Self>];
 
-    /// Creates the mechanism with these parameters, in the order of the description.
+    /// Creates the mechanism with these values of its parameters, in the order of the description.
     fn from_parameters(parameters: &[Self::Number]) -> Self;
 
-    /// Checks whether the parameters are admissible.
+    /// Checks whether a physical mechanism can have the values of the parameters.
     ///
     /// # Errors
     ///
     /// The error of the mechanism's `validate`.
     fn check(&self) -> Result<(), Failure>;
 
-    /// Simulates, and writes one sample to each row of `samples`.
+    /// Simulates the mechanism, and writes one sample to each row of `samples`.
     ///
     /// # Errors
     ///
     /// The errors of the integration method and of the controller.
     fn simulate(&self, motion: &mut Motion<'_, Self::Number>) -> Result<(), Failure>;
 
-    /// Advances many states by many steps.
+    /// Advances many states of the mechanism by many steps.
     ///
     /// # Errors
     ///

@@ -34,7 +34,7 @@ pub enum Way<N> {
     TimeSteppingLeapfrog(N),
 }
 
-/// Interval between calls of the controller.
+/// Interval between calls of the controller of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Every<N> {
     /// The controller is called at every evaluation of the dynamics.
@@ -56,21 +56,21 @@ pub struct Motion<'a, N> {
     pub v: &'a [N],
     /// Duration of the simulation, s.
     pub duration: N,
-    /// Time between samples, s.
+    /// Time between samples of the simulation, s.
     pub interval: N,
     /// Integration method of the simulation.
     pub way: Way<N>,
-    /// Interval between calls of the controller.
+    /// Interval between calls of the controller of the simulation.
     pub every: Every<N>,
-    /// Controller that computes the inputs.
+    /// Controller that computes the inputs of the simulation.
     pub control: Control<'a, N>,
-    /// Samples: rows of time, configuration, velocity and inputs.
+    /// Samples of the simulation: rows of time, configuration, velocity and inputs.
     pub samples: &'a mut [N],
     /// Number of sample rows that were written.
     pub count: usize,
 }
 
-/// Simulates a mechanism without unilateral contacts.
+/// Simulates a mechanism without unilateral contacts, with settings from another language.
 ///
 /// # Errors
 ///
@@ -98,7 +98,7 @@ where
     }
 }
 
-/// Simulates a mechanism with unilateral contacts.
+/// Simulates a mechanism with unilateral contacts, with settings from another language.
 ///
 /// # Errors
 ///

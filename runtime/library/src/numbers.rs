@@ -9,7 +9,7 @@ use std::fmt::Display;
 
 /// Scalar type of the library's arrays: `f64` or `f32`.
 pub trait Number: Real + Send + Sync + Display + Default {
-    /// Value NaN of the scalar type.
+    /// NaN value of the scalar type.
     const NAN: Self;
 }
 
@@ -102,7 +102,7 @@ entry!(f64, f32);
 
 /// Argument of a generated function that is read from an array.
 pub trait Argument<N> {
-    /// Reads the argument from the numbers of an array.
+    /// Reads an argument of a generated function from the numbers of an array.
     fn take(numbers: &[N]) -> Self;
 }
 
@@ -120,7 +120,8 @@ macro_rules! scalars {
             }
         }
 
-        /// Sign such as an assembly mode, read as the integer part of a number.
+        /// Small integer, such as the sign that denotes an assembly mode, read as the integer part of a
+        /// number.
         impl Argument<$number> for i8 {
             fn take(numbers: &[$number]) -> Self {
                 numbers.first().map_or(0, |number| *number as i8)
@@ -162,7 +163,7 @@ impl<N, E: Entry<N>, const R: usize, const C: usize> Argument<N> for SMatrix<E, 
     }
 }
 
-/// Indices of the nonzero entries of an array, which mark a selection.
+/// Indices of the nonzero entries of an array that marks a selection.
 #[derive(Clone, Debug)]
 pub struct Marked(Vec<usize>);
 
@@ -191,7 +192,7 @@ pub fn given<N, A: Argument<N>>(all: Given<'_, N>, k: usize) -> A {
 }
 
 impl<N: Number> Given<'_, N> {
-    /// Reads an argument that marks a selection by nonzero entries.
+    /// Reads argument `k`, which marks a selection by nonzero entries, as their indices.
     pub fn marked(self, k: usize) -> Marked {
         given(self, k)
     }
@@ -220,7 +221,7 @@ impl<'a, 'b, N> Sink<'a, 'b, N> {
 /// Result of a generated function that is written to arrays: matrices in column-major order, placements as 4
 /// × 4 matrices.
 pub trait Results<N> {
-    /// Writes the result.
+    /// Writes the result of a generated function to arrays.
     ///
     /// # Errors
     ///

@@ -96,7 +96,7 @@ pub unsafe fn call<M: Library>(
     })))
 }
 
-/// Checks whether the parameters are admissible.
+/// Checks whether a physical mechanism can have the values of the parameters.
 ///
 /// # Safety
 ///
@@ -108,7 +108,7 @@ pub unsafe fn check<M: Library>(parameters: *const M::Number) -> c_int {
     })))
 }
 
-/// Copies numbers to an array of the caller.
+/// Copies numbers to an array of the calling program.
 ///
 /// # Safety
 ///
@@ -129,7 +129,7 @@ pub struct Settings<N> {
     pub start: N,
     /// Duration of the simulation, s.
     pub duration: N,
-    /// Time between samples, s.
+    /// Time between samples of the simulation, s.
     pub interval: N,
     /// Name of the method: `dormand_prince`, `dormand_prince8`, `rodas`, `event_driven`, each with its
     /// tolerance; `rk4`, `implicit_midpoint`, `time_stepping`, `time_stepping_midpoint`,
@@ -137,15 +137,16 @@ pub struct Settings<N> {
     pub method: *const c_char,
     /// Tolerance or step size of the integration method.
     pub setting: N,
-    /// Interval between calls of the controller, s; zero to call it at every evaluation of the dynamics.
+    /// Interval between calls of the controller of the simulation, s; zero to call it at every evaluation of
+    /// the dynamics.
     pub period: N,
-    /// Controller that computes the inputs, if any.
+    /// Controller that computes the inputs of the simulation, if any.
     pub control: Option<Controller<N>>,
     /// Pointer that is passed to the controller as its first argument.
     pub user: *mut c_void,
 }
 
-/// Simulates, and writes samples as rows of time, configuration, velocity and inputs.
+/// Simulates a mechanism, and writes samples as rows of time, configuration, velocity and inputs.
 ///
 /// # Safety
 ///
@@ -213,20 +214,20 @@ pub unsafe fn simulate<M: Library>(
 pub struct RolloutSettings<N> {
     /// Initial time of the rollout, s.
     pub start: N,
-    /// Duration of one step, s.
+    /// Duration of one step of the rollout, s.
     pub step: N,
     /// Number of steps of the rollout.
     pub steps: usize,
     /// Number of states that are advanced.
     pub states: usize,
-    /// Number of threads; zero for the number of processors.
+    /// Number of threads of the rollout; zero for the number of processors.
     pub threads: usize,
     /// Layout of the inputs: 0 none, 1 common to all states for each step, 2 separate for each state and
     /// step.
     pub inputs_of: c_int,
 }
 
-/// Advances many states by many steps.
+/// Advances many states of a mechanism by many steps.
 ///
 /// # Safety
 ///

@@ -11,14 +11,14 @@ use linkwork::{Batch, Lanes, Mechanism, discrete};
 pub struct Rollout<'a, N> {
     /// Initial time of the rollout, s.
     pub start: N,
-    /// Duration of one step, s.
+    /// Duration of one step of the rollout, s.
     pub step: N,
     /// Number of steps of the rollout.
     pub steps: usize,
-    /// Number of threads; zero for the number of processors.
+    /// Number of threads of the rollout; zero for the number of processors.
     pub threads: usize,
-    /// Configurations of all states after 0, 1, 2, … steps. Those after 0 steps are an argument, the others
-    /// are results.
+    /// Configurations of all states after 0, 1, 2, … steps. The first ones, after 0 steps, are an argument;
+    /// the others are results.
     pub q: &'a mut [N],
     /// Velocities of all states after 0, 1, 2, … steps, in the layout of the configurations.
     pub v: &'a mut [N],
@@ -30,26 +30,26 @@ pub struct Rollout<'a, N> {
 }
 
 /// Range of states in a rollout that one thread advances.
-struct Part<'a, N> {
+struct StateRange<'a, N> {
     first: usize,
     q: &'a mut [N],
     v: &'a mut [N],
     inputs: &'a [N],
 }
 
-/// Settings of a rollout that all threads share.
+/// Settings of a rollout that all threads use.
 #[derive(Clone, Copy)]
-struct Plan<N> {
+struct RolloutPlan<N> {
     start: N,
     step: N,
     steps: usize,
     own_inputs: bool,
 }
 
-/// Index of the first state that failed, and the reason.
-type Failed = Option<(usize, Failure)>;
+/// Index of the first state of the rollout that failed, and the reason.
+type FailedState = Option<(usize, Failure)>;
 
-/// Advances states by steps of the classical Runge–Kutta method, one state after the other.
+/// Advances states by steps of the classical Runge–Kutta method, one state after another.
 ///
 /// # Errors
 ///
@@ -63,7 +63,9 @@ where
     M: Mechanism<NQ, NV, NU, Scalar = N> + Sync,
     N: Number + Entry<N>,
 {
-    shared_out(rollout, [NQ, NV, NU], 1, |plan, part| one_by_one::<M, N, NQ, NV, NU>(m, plan, part))
+    distribute_states(rollout, [NQ, NV, NU], 1, |plan, part| {
+        advance_one_by_one::<M, N, NQ, NV, NU>(m, plan, part)
+    })
 }
 
 /// Advances states as [`roll_out`] does, eight at a time in SIMD lanes.
@@ -80,42 +82,42 @@ where
     N: Number + Entry<N>,
     Lanes<N, LANES>: Entry<N>,
 {
-    shared_out(rollout, [NQ, NV, NU], LANES, |plan, part| {
+    distribute_states(rollout, [NQ, NV, NU], LANES, |plan, part| {
         let (q, v, u) = (NQ * (plan.steps + 1), NV * (plan.steps + 1), NU * plan.steps);
         let count = part.q.len() / q.max(1);
         let whole = count - count % LANES;
         let mut failed = None;
         for at in (0..whole).step_by(LANES) {
             let own = if plan.own_inputs { &part.inputs[at * u..(at + LANES) * u] } else { part.inputs };
-            let group = Part {
+            let group = StateRange {
                 first: part.first + at,
                 q: &mut part.q[at * q..(at + LANES) * q],
                 v: &mut part.v[at * v..(at + LANES) * v],
                 inputs: own,
             };
-            let found = side_by_side::<M, N, NQ, NV, NU>(m, plan, group);
+            let found = advance_in_lanes::<M, N, NQ, NV, NU>(m, plan, group);
             failed = failed.or(found);
         }
         let own = if plan.own_inputs { &part.inputs[whole * u..] } else { part.inputs };
-        let rest = Part {
+        let rest = StateRange {
             first: part.first + whole,
             q: &mut part.q[whole * q..],
             v: &mut part.v[whole * v..],
             inputs: own,
         };
-        failed.or(one_by_one::<M, N, NQ, NV, NU>(m, plan, rest))
+        failed.or(advance_one_by_one::<M, N, NQ, NV, NU>(m, plan, rest))
     })
 }
 
-/// Distributes the states over threads, after checking the lengths of the arrays.
-fn shared_out<N: Number>(
+/// Distributes the states of a rollout over threads, after checking the lengths of the arrays.
+fn distribute_states<N: Number>(
     rollout: Rollout<'_, N>,
     [nq, nv, nu]: [usize; 3],
     lanes: usize,
-    work: impl Fn(Plan<N>, Part<'_, N>) -> Failed + Sync,
+    work: impl Fn(RolloutPlan<N>, StateRange<'_, N>) -> FailedState + Sync,
 ) -> Result<(), Failure> {
     let Rollout { start, step, steps, threads, q, v, inputs, own_inputs } = rollout;
-    let plan = Plan { start, step, steps, own_inputs };
+    let plan = RolloutPlan { start, step, steps, own_inputs };
     let (of_q, of_v, of_u) = (nq * (steps + 1), nv * (steps + 1), nu * steps);
     let states = if nq > 0 { q.len() / of_q } else { v.len().checked_div(of_v).unwrap_or(0) };
     let needed = match (inputs.is_empty(), own_inputs) {
@@ -127,7 +129,7 @@ fn shared_out<N: Number>(
         return Err(Failure::new("the arrays do not have the lengths that the rollout needs"));
     }
     let own_inputs = own_inputs && !inputs.is_empty();
-    let plan = Plan { own_inputs, ..plan };
+    let plan = RolloutPlan { own_inputs, ..plan };
     let share = states_per_thread(states, threads, lanes);
     let mut parts = Vec::new();
     let (mut q, mut v, mut first) = (q, v, 0);
@@ -137,7 +139,7 @@ fn shared_out<N: Number>(
         let (front_v, behind_v) = v.split_at_mut(count * of_v);
         (q, v) = (behind_q, behind_v);
         let own = if own_inputs { &inputs[first * of_u..(first + count) * of_u] } else { inputs };
-        parts.push(Part { first, q: front_q, v: front_v, inputs: own });
+        parts.push(StateRange { first, q: front_q, v: front_v, inputs: own });
         first += count;
     }
     let work = &work;
@@ -158,16 +160,16 @@ fn shared_out<N: Number>(
     }
 }
 
-/// Returns the time at the start of a step.
-fn time_of_step<N: Number>(plan: &Plan<N>, step: usize) -> N {
+/// Returns the time at the start of a step of the rollout, s.
+fn time_of_step<N: Number>(plan: &RolloutPlan<N>, step: usize) -> N {
     plan.start + plan.step * linkwork::nalgebra::convert::<f64, N>(step as f64)
 }
 
-fn one_by_one<M, N, const NQ: usize, const NV: usize, const NU: usize>(
+fn advance_one_by_one<M, N, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
-    plan: Plan<N>,
-    part: Part<'_, N>,
-) -> Failed
+    plan: RolloutPlan<N>,
+    part: StateRange<'_, N>,
+) -> FailedState
 where
     M: Mechanism<NQ, NV, NU, Scalar = N>,
     N: Number + Entry<N>,
@@ -199,11 +201,11 @@ where
 }
 
 /// Advances eight states together, one in each SIMD lane.
-fn side_by_side<M, N, const NQ: usize, const NV: usize, const NU: usize>(
+fn advance_in_lanes<M, N, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
-    plan: Plan<N>,
-    part: Part<'_, N>,
-) -> Failed
+    plan: RolloutPlan<N>,
+    part: StateRange<'_, N>,
+) -> FailedState
 where
     M: Batch<NQ, NV, NU, Scalar = N>,
     N: Number,
@@ -214,7 +216,7 @@ where
     // Interleaved layout: entry i of all states, then entry i + 1.
     let mut q: Vec<N> = (0..NQ * LANES).map(|k| part.q[k % LANES * of_q + k / LANES]).collect();
     let mut v: Vec<N> = (0..NV * LANES).map(|k| part.v[k % LANES * of_v + k / LANES]).collect();
-    let mut failed: Failed = None;
+    let mut failed: FailedState = None;
     for step in 0..plan.steps {
         let stride = if plan.own_inputs { plan.steps * NU } else { 0 };
         let u = SVector::<Lanes<N, LANES>, NU>::from_fn(|i, _| {

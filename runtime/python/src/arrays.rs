@@ -1,4 +1,4 @@
-//! Entries of NumPy's arrays. The only module with `unsafe`.
+//! Access to the entries of NumPy arrays. This is the only module with `unsafe`.
 
 #![allow(unsafe_code, reason = "entries of arrays that Python owns")]
 
@@ -12,7 +12,7 @@ pub fn entries<'a>(array: &'a Bound<'_, PyArray1<f64>>) -> Result<&'a [f64], AsS
     unsafe { array.as_slice() }
 }
 
-/// Returns a matrix of values that are stored by columns.
+/// Returns a Python matrix with values that are stored by columns.
 pub fn matrix<'py>(
     py: Python<'py>,
     rows: usize,

@@ -24,7 +24,7 @@ fn raise(
     }
 }
 
-/// Returns the exception of an error; `state` is the index of the state of a batch.
+/// Returns the Python exception for an error. `state` is the index of the failed state in a batch.
 pub fn exception(py: Python<'_>, error: &Error, state: Option<usize>) -> PyErr {
     static UNKNOWN: PyOnceLock<Py<PyType>> = PyOnceLock::new();
     let text = match state {

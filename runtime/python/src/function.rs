@@ -65,7 +65,7 @@ enum Kind {
     Constraint(OnConstraints),
 }
 
-/// A function that finds a state which satisfies the constraints.
+/// Function that finds a configuration or velocity which satisfies the constraints.
 #[derive(Clone, Copy)]
 pub enum OnConstraints {
     Assemble,
@@ -198,7 +198,8 @@ impl Function {
         (&self.signature.name, &self.signature.documentation)
     }
 
-    /// Returns name and shape of each argument; of a frame, `None` instead of the shape.
+    /// Returns the name and shape of each argument of the function. An argument that names a frame has `None`
+    /// instead of a shape.
     #[getter]
     fn arguments(&self) -> Vec<(&str, Option<Vec<usize>>)> {
         let frame = (!self.signature.frames.is_empty()).then_some(("frame", None));
@@ -213,7 +214,8 @@ impl Function {
         self.signature.results.iter().map(|result| (result.name.as_str(), &*result.shape)).collect()
     }
 
-    /// Returns the function of a mechanism, which then keeps it as an attribute.
+    /// Binds the function to a mechanism when Python reads it as an attribute; the mechanism then stores the
+    /// bound function.
     fn __get__<'py>(
         slf: &Bound<'py, Self>,
         instance: &Bound<'py, PyAny>,
@@ -241,8 +243,9 @@ impl Function {
         )))
     }
 
-    /// Writes derivatives of the sum of the results, each times a factor: by the arguments of each state,
-    /// then by the parameters. Factors of matrices are stored by columns.
+    /// Writes derivatives of a weighted sum of the results, with a factor for each: with respect to the
+    /// arguments of each state, then with respect to the parameters. Factors of matrices are stored by
+    /// columns.
     #[pyo3(signature = (robot, frame, arguments, factors, out, states, threads))]
     #[allow(clippy::too_many_arguments, reason = "arguments of Python")]
     fn pull_back(
@@ -379,7 +382,7 @@ impl BoundFunction {
         self.function.getattr(py, intern!(py, "__doc__"))
     }
 
-    /// Returns attributes that are not defined here from the unbound function.
+    /// Returns attributes that a bound function does not define from the unbound function.
     fn __getattr__(&self, py: Python<'_>, name: &Bound<'_, PyString>) -> PyResult<Py<PyAny>> {
         self.function.getattr(py, name)
     }

@@ -73,7 +73,7 @@ fn placement(robot: &linkwork_jit::Robot, frame: &str, q: &[f64]) -> Result<Isom
     Ok(IsometryMatrix3::from_parts(found.translation, found.rotation.to_rotation_matrix()))
 }
 
-/// Returns unit, name and values of each quantity.
+/// Returns the unit, the name and the values of each quantity, as curves of a plot.
 fn curves<'a>(list: &'a [Quantity], values: &[f64]) -> Vec<(&'a str, &'a str, Vec<f64>)> {
     let column_of_values =
         |k: usize| values.iter().skip(k).step_by(list.len()).copied().collect::<Vec<f64>>();

@@ -15,7 +15,7 @@ use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Mutex;
 
-/// A loaded mechanism with the values of its parameters, or with one set of values for each state of a batch.
+/// Loaded mechanism with the values of its parameters, or with one set of values for each state of a batch.
 #[pyclass(frozen, module = "linkwork._native")]
 pub struct Robot {
     pub robot: linkwork_jit::Robot,
@@ -23,7 +23,7 @@ pub struct Robot {
     pub sets: Option<(usize, Vec<f64>)>,
 }
 
-/// Returns the loader of a file or a text.
+/// Returns the loader for a mechanism in a file or a text.
 pub fn loader(
     source: &str,
     is_file: bool,
@@ -61,17 +61,17 @@ pub fn load(
     Ok(Robot { robot, sets: None })
 }
 
-/// Names and units of a list of quantities.
+/// Returns the names and units of a list of quantities.
 fn names_and_units(list: &[Quantity]) -> Vec<(&str, &str)> {
     list.iter().map(|entry| (entry.name.as_str(), entry.unit.as_str())).collect()
 }
 
-/// Index of the velocity, lower, upper, velocity and effort limit of a coordinate.
+/// Limits of a coordinate: the index of its velocity, then the lower, upper, velocity and effort limit.
 type LimitValues = (usize, f64, f64, f64, f64);
 
 #[pymethods]
 impl Robot {
-    /// Returns names, units and numbers of the mechanism.
+    /// Returns the names, units and sizes of all quantities of the mechanism.
     fn describe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (robot, about) = (&self.robot, PyDict::new(py));
         about.set_item("name", robot.name())?;
@@ -101,7 +101,8 @@ impl Robot {
         self.robot.equations()
     }
 
-    /// Returns index of the velocity, lower, upper, velocity and effort limit of each limited coordinate.
+    /// Returns the limits of each limited coordinate: the index of its velocity, then the lower, upper,
+    /// velocity and effort limit.
     fn limits(&self, py: Python<'_>) -> PyResult<Vec<LimitValues>> {
         let limits = self.robot.limits().map_err(|error| exception(py, &error, None))?;
         let tuple_of_limit = |limit: linkwork_jit::Limit| {
@@ -110,7 +111,7 @@ impl Robot {
         Ok(limits.into_iter().map(tuple_of_limit).collect())
     }
 
-    /// Returns the number of states, if each has its own values of the parameters.
+    /// Returns the number of parameter sets, if each state of a batch has its own values of the parameters.
     #[getter]
     fn sets(&self) -> Option<usize> {
         self.sets.as_ref().map(|(count, _)| *count)
@@ -229,8 +230,9 @@ impl Robot {
     }
 }
 
-/// Writes derivatives of a function of rollouts by inputs and parameters, and replaces derivatives by the
-/// states of the motions by derivatives by the initial states, in the first rows.
+/// Writes derivatives of a function of rollouts with respect to inputs and parameters. The arrays of
+/// derivatives with respect to the states of the motions are overwritten: their first rows become the
+/// derivatives with respect to the initial states.
 #[pyfunction]
 #[pyo3(signature = (robot, q, v, inputs, by_q, by_v, by_inputs, by_parameters, *, start, h, threads))]
 #[allow(clippy::too_many_arguments, reason = "arguments of Python")]
@@ -311,7 +313,7 @@ pub fn roll_back(
     failed.map_or(Ok(()), |(state, error)| Err(exception(py, &error, Some(state))))
 }
 
-/// Sets the parameters of the mechanism to those of one state, if each state has its own.
+/// Sets the parameters of the mechanism to those of one state of a batch, if each state has its own.
 pub fn set_parameters(
     robot: &mut linkwork_jit::Robot,
     sets: Option<&(usize, Vec<f64>)>,
@@ -323,7 +325,7 @@ pub fn set_parameters(
     robot.set_parameters(&values[first..first + width])
 }
 
-/// Returns a table. Equal values share memory, which lives as long as the process.
+/// Returns a lookup table for these axes and values. Equal values share memory, which is never freed.
 fn table(
     axes: &[Vec<f64>],
     values: &[f64],

@@ -14,8 +14,9 @@ fn share(states: usize, threads: usize) -> usize {
     states.div_ceil(threads.clamp(1, states.max(1))).max(1)
 }
 
-/// Splits states into shares with `split`, which takes the number of states of a share, and works on the
-/// shares in parallel: `work` takes the index of the first state, the number of states, and the share.
+/// Splits the states of a batch into shares with `split`, which takes the number of states of a share, and
+/// works on the shares in parallel: `work` takes the index of the first state, the number of states, and the
+/// share.
 pub fn distribute<P: Send>(
     states: usize,
     threads: usize,
@@ -46,7 +47,7 @@ pub fn distribute<P: Send>(
     })
 }
 
-/// Returns the message of a panic.
+/// Returns the message of a caught panic.
 fn message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(ToString::to_string);
     text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "a panic".to_string())

@@ -11,7 +11,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 pub trait Number<A: Registers>:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// Returns the number of this scalar type that is nearest to `x`.
+    /// Returns the floating-point number nearest to `x`, in this scalar type or in every lane.
     fn constant(x: f64) -> Self;
     /// Returns `a b + c` with a single rounding.
     fn fused(a: Self, b: Self, c: Self) -> Self;
@@ -49,9 +49,10 @@ macro_rules! elementary {
                 $(#[$doc])*
                 fn $name($x: Self $(, $y: Self)?) -> Self;
             )+
-            /// Returns sines and cosines of several angles, rad.
+            /// Returns sines and cosines of `N` angles, rad.
             fn sin_cos_all<const N: usize>(x: [Self; N]) -> ([Self; N], [Self; N]);
-            /// Returns the value of a table, or its derivative of these orders.
+            /// Returns the value of a table by interpolation, or its derivative. `orders` are the orders of
+            /// differentiation with respect to each argument.
             fn tabulated<const N: usize>(table: &Table<N>, x: [Self; N], orders: [u8; N]) -> Self;
         }
 
@@ -147,8 +148,8 @@ macro_rules! elementary {
 
 elementary_functions!(elementary);
 
-/// Returns the smaller number; the other number if one is NaN. With the feature `reproducible` a zero has the
-/// sign plus; otherwise the sign of the minimum of two zeros depends on the target.
+/// Returns the smaller of two numbers; if one is NaN, the other one. With the feature `reproducible`, a zero
+/// has a positive sign; otherwise the sign of the minimum of two zeros depends on the target.
 #[inline(always)]
 fn smaller<T: Real>(x: T, y: T) -> T {
     match cfg!(feature = "reproducible") {
@@ -157,7 +158,7 @@ fn smaller<T: Real>(x: T, y: T) -> T {
     }
 }
 
-/// Returns the larger number; the other number if one is NaN. Zeros are treated as by [`smaller`].
+/// Returns the larger of two numbers; if one is NaN, the other one. Zeros are treated as by [`smaller`].
 #[inline(always)]
 fn larger<T: Real>(x: T, y: T) -> T {
     match cfg!(feature = "reproducible") {

@@ -76,7 +76,7 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
         Vector::from_array(numbers)
     }
 
-    /// Returns the first `M` lanes. Does not compile if there are fewer.
+    /// Returns the first `M` lanes of the vector. Does not compile if there are fewer.
     #[inline]
     pub fn first<const M: usize>(&self) -> Vector<A, T, M> {
         Vector::from(self.0.first())
@@ -84,7 +84,8 @@ impl<A, T: Copy, const N: usize> Vector<A, T, N> {
 }
 
 impl<A, T: Real, const N: usize> Vector<A, T, N> {
-    /// Returns a lane and a lane of another vector, if both exist. The indices are constant after inlining.
+    /// Returns lane `i` of this vector and lane `j` of another vector, if both exist. The indices are
+    /// constant after inlining.
     #[inline(always)]
     pub(crate) fn pair_of_lanes<const M: usize>(
         &self,

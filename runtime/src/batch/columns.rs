@@ -4,24 +4,25 @@ use super::Error;
 use crate::{Lanes, Real};
 use nalgebra::SMatrix;
 
-/// Lanes of values, aligned to cache lines.
+/// Values in SIMD lanes, aligned to cache lines.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(super) struct Line<T>(pub(super) T);
+pub(super) struct AlignedLanes<T>(pub(super) T);
 
 /// Read access to the values of many states: entry `i` (column by column of a matrix) of state `k` is
 /// `numbers[i * count + k]`.
 #[derive(Clone, Copy)]
-pub(super) struct Input<'a, T, const R: usize> {
+pub(super) struct InputColumns<'a, T, const R: usize> {
     entries: [&'a [T]; R],
 }
 
 /// Write access to the values of many states, in the layout of [`Input`].
-pub(super) struct Output<'a, T, const R: usize, const C: usize> {
+pub(super) struct OutputColumns<'a, T, const R: usize, const C: usize> {
     entries: [[&'a mut [T]; R]; C],
 }
 
-/// Checks the length of a slice.
+/// Checks that a slice has `entries` values for each of `count` states, and otherwise returns an error with
+/// the name of the argument.
 ///
 /// # Errors
 ///
@@ -38,7 +39,7 @@ pub(super) fn count_states(numbers: usize, entries: usize) -> usize {
     numbers.checked_div(entries).unwrap_or(0)
 }
 
-impl<'a, T: Real, const R: usize> Input<'a, T, R> {
+impl<'a, T: Real, const R: usize> InputColumns<'a, T, R> {
     pub(super) fn new(name: &'static str, numbers: &'a [T], count: usize) -> Result<Self, Error> {
         check_slice_length(name, numbers.len(), R, count)?;
         let mut rest = numbers;
@@ -50,15 +51,18 @@ impl<'a, T: Real, const R: usize> Input<'a, T, R> {
         Ok(Self { entries })
     }
 
-    /// Loads the states from index `first` on; lanes beyond the last state contain the last state.
+    /// Loads the states from index `first` on into lanes; lanes beyond the last state contain the last state.
     #[inline(always)]
-    pub(super) fn load<const L: usize>(&self, first: usize) -> Line<SMatrix<Lanes<T, L>, R, 1>> {
-        Line(SMatrix::from_fn(|i, _| load(self.entries[i], first)))
+    pub(super) fn load_states<const L: usize>(
+        &self,
+        first: usize,
+    ) -> AlignedLanes<SMatrix<Lanes<T, L>, R, 1>> {
+        AlignedLanes(SMatrix::from_fn(|i, _| load_entry(self.entries[i], first)))
     }
 }
 
 #[inline(always)]
-fn load<T: Real, const L: usize>(entry: &[T], first: usize) -> Lanes<T, L> {
+fn load_entry<T: Real, const L: usize>(entry: &[T], first: usize) -> Lanes<T, L> {
     if let Some(full) = entry.get(first..first + L)
         && let Ok(full) = full.try_into()
     {
@@ -67,7 +71,7 @@ fn load<T: Real, const L: usize>(entry: &[T], first: usize) -> Lanes<T, L> {
     Lanes::from_fn(|k| entry.get(first + k).or(entry.last()).copied().unwrap_or(T::zero()))
 }
 
-impl<'a, T: Real, const R: usize, const C: usize> Output<'a, T, R, C> {
+impl<'a, T: Real, const R: usize, const C: usize> OutputColumns<'a, T, R, C> {
     pub(super) fn new(name: &'static str, numbers: &'a mut [T], count: usize) -> Result<Self, Error> {
         check_slice_length(name, numbers.len(), R * C, count)?;
         let mut rest = numbers;
@@ -82,7 +86,7 @@ impl<'a, T: Real, const R: usize, const C: usize> Output<'a, T, R, C> {
         Ok(Self { entries })
     }
 
-    /// Splits into the states before index `at` and the states from `at` on.
+    /// Splits the values into those of the states before index `at` and those of the states from `at` on.
     #[cfg(feature = "rayon")]
     pub(super) fn split_at_state(self, at: usize) -> (Self, Self) {
         let empty_columns = || core::array::from_fn(|_| core::array::from_fn(|_| <&'a mut [T]>::default()));
@@ -94,7 +98,7 @@ impl<'a, T: Real, const R: usize, const C: usize> Output<'a, T, R, C> {
         (Self { entries: before }, Self { entries: after })
     }
 
-    /// Stores the existing states from index `first` on.
+    /// Stores the lanes of existing states, from state `first` on; lanes beyond the last state are ignored.
     #[inline(always)]
     pub(super) fn store_lanes<const L: usize>(&mut self, first: usize, values: &SMatrix<Lanes<T, L>, R, C>) {
         for (entries, values) in self.entries.iter_mut().zip(&values.data.0) {
@@ -111,11 +115,14 @@ impl<'a, T: Real, const R: usize, const C: usize> Output<'a, T, R, C> {
     }
 }
 
-impl<T: Real, const R: usize> Output<'_, T, R, 1> {
-    /// Loads the states from index `first` on; lanes beyond the last state contain the last state.
+impl<T: Real, const R: usize> OutputColumns<'_, T, R, 1> {
+    /// Loads the states from index `first` on into lanes; lanes beyond the last state contain the last state.
     #[inline(always)]
-    pub(super) fn load<const L: usize>(&self, first: usize) -> Line<SMatrix<Lanes<T, L>, R, 1>> {
-        Line(SMatrix::from_fn(|i, _| load(self.entries[0][i], first)))
+    pub(super) fn load_states<const L: usize>(
+        &self,
+        first: usize,
+    ) -> AlignedLanes<SMatrix<Lanes<T, L>, R, 1>> {
+        AlignedLanes(SMatrix::from_fn(|i, _| load_entry(self.entries[0][i], first)))
     }
 
     /// Stores the values of one state, which are in one lane.

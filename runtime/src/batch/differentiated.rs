@@ -8,21 +8,21 @@ use crate::lanes::{lane, set_lane};
 use crate::{Lanes, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// Result of a function for one state, which can be stored in a lane.
-trait Laned<T: Real, const L: usize> {
+/// Stores the values of one state, taken from one lane.
+trait ResultInLanes<T: Real, const L: usize> {
     /// Type that holds the results of all lanes.
     type All;
 
-    fn none() -> Self::All;
+    fn zero_results() -> Self::All;
 
-    /// Writes the result of one state to lane `k`.
+    /// Writes the result of one state to lane `k` of the results.
     fn write_lane(self, all: &mut Self::All, k: usize);
 }
 
-impl<T: Real, const L: usize, const R: usize, const C: usize> Laned<T, L> for SMatrix<T, R, C> {
+impl<T: Real, const L: usize, const R: usize, const C: usize> ResultInLanes<T, L> for SMatrix<T, R, C> {
     type All = SMatrix<Lanes<T, L>, R, C>;
 
-    fn none() -> Self::All {
+    fn zero_results() -> Self::All {
         zeros()
     }
 
@@ -31,11 +31,11 @@ impl<T: Real, const L: usize, const R: usize, const C: usize> Laned<T, L> for SM
     }
 }
 
-impl<T: Real, const L: usize, A: Laned<T, L>, B: Laned<T, L>> Laned<T, L> for (A, B) {
+impl<T: Real, const L: usize, A: ResultInLanes<T, L>, B: ResultInLanes<T, L>> ResultInLanes<T, L> for (A, B) {
     type All = (A::All, B::All);
 
-    fn none() -> Self::All {
-        (A::none(), B::none())
+    fn zero_results() -> Self::All {
+        (A::zero_results(), B::zero_results())
     }
 
     fn write_lane(self, all: &mut Self::All, k: usize) {
@@ -44,11 +44,13 @@ impl<T: Real, const L: usize, A: Laned<T, L>, B: Laned<T, L>> Laned<T, L> for (A
     }
 }
 
-impl<T: Real, const L: usize, A: Laned<T, L>, B: Laned<T, L>, C: Laned<T, L>> Laned<T, L> for (A, B, C) {
+impl<T: Real, const L: usize, A: ResultInLanes<T, L>, B: ResultInLanes<T, L>, C: ResultInLanes<T, L>>
+    ResultInLanes<T, L> for (A, B, C)
+{
     type All = (A::All, B::All, C::All);
 
-    fn none() -> Self::All {
-        (A::none(), B::none(), C::none())
+    fn zero_results() -> Self::All {
+        (A::zero_results(), B::zero_results(), C::zero_results())
     }
 
     fn write_lane(self, all: &mut Self::All, k: usize) {
@@ -59,8 +61,8 @@ impl<T: Real, const L: usize, A: Laned<T, L>, B: Laned<T, L>, C: Laned<T, L>> La
 }
 
 /// Returns the results of all lanes, each computed by `of`.
-fn results_of_all_lanes<T: Real, const L: usize, R: Laned<T, L>>(of: impl Fn(usize) -> R) -> R::All {
-    let mut all = R::none();
+fn results_of_all_lanes<T: Real, const L: usize, R: ResultInLanes<T, L>>(of: impl Fn(usize) -> R) -> R::All {
+    let mut all = R::zero_results();
     for k in 0..L {
         of(k).write_lane(&mut all, k);
     }
@@ -76,8 +78,8 @@ macro_rules! of_each {
     )+};
 }
 
-type Square<T, const NV: usize> = SMatrix<T, NV, NV>;
-type Pair<T, const NV: usize> = (Square<T, NV>, Square<T, NV>);
+type SquareMatrix<T, const NV: usize> = SMatrix<T, NV, NV>;
+type MatrixPair<T, const NV: usize> = (SquareMatrix<T, NV>, SquareMatrix<T, NV>);
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, const L: usize, const NQ: usize, const NV: usize, const NU: usize> Derivatives<NQ, NV, NU>
@@ -89,16 +91,16 @@ where
     constants!(derivatives, M);
 
     of_each! {
-        integrate_derivatives[](dv: NV) -> Pair<Self::Scalar, NV>;
-        tangent_rate_derivatives[](dv: NV, v: NV) -> Pair<Self::Scalar, NV>;
-        integrate_derivatives_at[](q: NQ, dv: NV) -> Pair<Self::Scalar, NV>;
+        integrate_derivatives[](dv: NV) -> MatrixPair<Self::Scalar, NV>;
+        tangent_rate_derivatives[](dv: NV, v: NV) -> MatrixPair<Self::Scalar, NV>;
+        integrate_derivatives_at[](q: NQ, dv: NV) -> MatrixPair<Self::Scalar, NV>;
         displacement_rate_derivatives[](q: NQ, dv: NV, v: NV) -> ByMotion<Self::Scalar, NV, NV>;
-        turning[](q: NQ, v: NV) -> Square<Self::Scalar, NV>;
-        coriolis_matrix[t](q: NQ, v: NV) -> Square<Self::Scalar, NV>;
-        inverse_dynamics_derivatives[t](q: NQ, v: NV, a: NV) -> Pair<Self::Scalar, NV>;
+        turning[](q: NQ, v: NV) -> SquareMatrix<Self::Scalar, NV>;
+        coriolis_matrix[t](q: NQ, v: NV) -> SquareMatrix<Self::Scalar, NV>;
+        inverse_dynamics_derivatives[t](q: NQ, v: NV, a: NV) -> MatrixPair<Self::Scalar, NV>;
         generalized_forces_derivatives[t](q: NQ, v: NV, u: NU) -> ByMotion<Self::Scalar, NV, NU>;
-        generalized_momentum_derivatives[t](q: NQ, v: NV) -> Square<Self::Scalar, NV>;
-        momentum_rate_derivatives[t](q: NQ, v: NV) -> Pair<Self::Scalar, NV>;
+        generalized_momentum_derivatives[t](q: NQ, v: NV) -> SquareMatrix<Self::Scalar, NV>;
+        momentum_rate_derivatives[t](q: NQ, v: NV) -> MatrixPair<Self::Scalar, NV>;
         forward_dynamics_derivatives[t](q: NQ, v: NV, tau: NV) -> ByMotion<Self::Scalar, NV, NV>;
     }
 
@@ -108,9 +110,9 @@ where
         q: &SVector<Self::Scalar, NQ>,
         v: &SVector<Self::Scalar, NV>,
         tau: &SVector<Self::Scalar, NV>,
-        by_q: &mut Square<Self::Scalar, NV>,
-        by_v: &mut Square<Self::Scalar, NV>,
-        by_tau: &mut Square<Self::Scalar, NV>,
+        by_q: &mut SquareMatrix<Self::Scalar, NV>,
+        by_v: &mut SquareMatrix<Self::Scalar, NV>,
+        by_tau: &mut SquareMatrix<Self::Scalar, NV>,
     ) -> SVector<Self::Scalar, NV> {
         let (acceleration, found) = results_of_all_lanes(|k| {
             let (mut by_q, mut by_v, mut by_tau) = (zeros(), zeros(), zeros());
@@ -130,7 +132,7 @@ where
         acceleration
     }
 
-    /// Returns `None`: constraints of lanes are not available.
+    /// Returns `None`, because generic code over constraints is not available for lanes.
     fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>
     where
         V: crate::constraint::Visitor<Self::Scalar, NQ, NV, NU>,

@@ -7,7 +7,7 @@ use core::fmt;
 #[derive(Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// The length of a slice does not match the number of states. Nothing was written.
+    /// Error: the length of a slice does not match the number of states. Nothing was written.
     Length {
         /// Name of the argument with the wrong length.
         name: &'static str,
@@ -16,9 +16,10 @@ pub enum Error {
         /// Actual length of the argument.
         found: usize,
     },
-    /// A setting of the method is invalid. Nothing was written.
+    /// Error: a setting of the method is invalid. Nothing was written.
     Method(integrate::Error),
-    /// The motion of some states failed before the end. These states are unchanged; all others are done.
+    /// Error: the motion of some states failed before the end. These states are unchanged; all others are
+    /// done.
     Motion {
         /// Index of the first state that failed.
         state: usize,
@@ -27,7 +28,7 @@ pub enum Error {
         /// Error of the first state that failed.
         source: integrate::Error,
     },
-    /// The caller cancelled the rollout. Every state is either done or unchanged.
+    /// Error: the caller cancelled the rollout. Every state is either done or unchanged.
     Cancelled {
         /// Number of states that were done before the cancellation.
         done: usize,

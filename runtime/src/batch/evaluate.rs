@@ -1,6 +1,6 @@
 //! Functions of a mechanism for many states, from arrays to arrays.
 
-use super::columns::{Input, Line, Output, count_states};
+use super::columns::{AlignedLanes, InputColumns, OutputColumns, count_states};
 use super::{Batch, Error, Lanewise};
 use crate::{Lanes, Mechanism};
 use nalgebra::SMatrix;
@@ -24,13 +24,16 @@ macro_rules! evaluations {
             M: Batch<NQ, NV, NU>,
         {
             let count = count_states($first.len(), $first_of);
-            let $first = Input::<_, $first_of>::new(stringify!($first), $first, count)?;
-            $(let $argument = Input::<_, $of>::new(stringify!($argument), $argument, count)?;)*
-            let mut to = Output::<_, { $rows }, { $columns }>::new(stringify!($result), $result, count)?;
+            let $first = InputColumns::<_, $first_of>::new(stringify!($first), $first, count)?;
+            $(let $argument = InputColumns::<_, $of>::new(stringify!($argument), $argument, count)?;)*
+            let mut to =
+                OutputColumns::<_, { $rows }, { $columns }>::new(stringify!($result), $result, count)?;
             for state in (0..count).step_by(L.max(1)) {
-                let $first = $first.load::<L>(state);
-                $(let $argument = $argument.load::<L>(state);)*
-                let values = Line($turn(Mechanism::$function(self, $(Lanes::splat($time),)? &$first.0 $(, &$argument.0)*)));
+                let $first = $first.load_states::<L>(state);
+                $(let $argument = $argument.load_states::<L>(state);)*
+                let values = AlignedLanes($turn(Mechanism::$function(
+                    self, $(Lanes::splat($time),)? &$first.0 $(, &$argument.0)*
+                )));
                 to.store_lanes(state, &values.0);
             }
             Ok(())

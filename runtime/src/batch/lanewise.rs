@@ -1,6 +1,6 @@
 //! Adapter that makes a mechanism evaluate several states in SIMD lanes as its scalar type.
 
-use super::{Batch, Column};
+use super::{Batch, LaneColumn};
 use crate::blocks::zeros;
 use crate::contact::{Assumed, Impulses, Touched};
 use crate::forward::constants;
@@ -32,7 +32,7 @@ impl<'m, M, const L: usize> Lanewise<'m, M, L> {
     }
 }
 
-/// Defines functions of `t` and vectors that call the counterpart for lanes.
+/// Defines functions of `t` and vectors that call the function of the wrapped mechanism for several lanes.
 macro_rules! lanewise {
     ($($name:ident = $twin:ident[$($time:ident)?]($($argument:ident: $of:ident),*) -> $result:ty;)+) => {$(
         #[inline(always)]
@@ -102,13 +102,14 @@ where
         Features::of_mechanism::<Self, Lanes<M::Scalar, L>, NQ, NV, NU>()
     }
 
-    /// Projects lane by lane. A lane whose projection fails becomes NaN; it is an error if all lanes fail.
+    /// Projects the state of each lane onto the constraints. A lane whose projection fails becomes NaN; it is
+    /// an error if all lanes fail.
     fn project(
         &self,
         t: Lanes<M::Scalar, L>,
-        q: &Column<M::Scalar, L, NQ>,
-        v: &Column<M::Scalar, L, NV>,
-    ) -> Result<(Column<M::Scalar, L, NQ>, Column<M::Scalar, L, NV>), ConstraintError> {
+        q: &LaneColumn<M::Scalar, L, NQ>,
+        v: &LaneColumn<M::Scalar, L, NV>,
+    ) -> Result<(LaneColumn<M::Scalar, L, NQ>, LaneColumn<M::Scalar, L, NV>), ConstraintError> {
         let results: [_; L] =
             core::array::from_fn(|k| self.mechanism.project(t.0[k], &lane(q, k), &lane(v, k)));
         if let Some(Err(error)) = results.first()
@@ -128,8 +129,8 @@ where
     fn is_nearly_singular(
         &self,
         t: Lanes<M::Scalar, L>,
-        q: &Column<M::Scalar, L, NQ>,
-        dv: &Column<M::Scalar, L, NV>,
+        q: &LaneColumn<M::Scalar, L, NQ>,
+        dv: &LaneColumn<M::Scalar, L, NV>,
     ) -> bool {
         M::CONSTRAINED && (0..L).any(|k| self.mechanism.is_nearly_singular(t.0[k], &lane(q, k), &lane(dv, k)))
     }
@@ -138,9 +139,9 @@ where
     fn acceleration_derivatives(
         &self,
         t: Lanes<M::Scalar, L>,
-        q: &Column<M::Scalar, L, NQ>,
-        v: &Column<M::Scalar, L, NV>,
-        u: &Column<M::Scalar, L, NU>,
+        q: &LaneColumn<M::Scalar, L, NQ>,
+        v: &LaneColumn<M::Scalar, L, NV>,
+        u: &LaneColumn<M::Scalar, L, NU>,
     ) -> Option<ByMotion<Lanes<M::Scalar, L>, NV, NU>> {
         let mut all: ByMotion<Lanes<M::Scalar, L>, NV, NU> = (zeros(), zeros(), zeros());
         for k in 0..L {
@@ -157,10 +158,10 @@ where
     fn carry(
         &self,
         t: Lanes<M::Scalar, L>,
-        q: &Column<M::Scalar, L, NQ>,
-        dv: &Column<M::Scalar, L, NV>,
-        v: &Column<M::Scalar, L, NV>,
-    ) -> Column<M::Scalar, L, NV> {
+        q: &LaneColumn<M::Scalar, L, NQ>,
+        dv: &LaneColumn<M::Scalar, L, NV>,
+        v: &LaneColumn<M::Scalar, L, NV>,
+    ) -> LaneColumn<M::Scalar, L, NV> {
         lane_by_lane(|k| self.mechanism.carry(t.0[k], &lane(q, k), &lane(dv, k), &lane(v, k)))
     }
 
@@ -168,15 +169,19 @@ where
     fn carry_rate(
         &self,
         t: Lanes<M::Scalar, L>,
-        dv: &Column<M::Scalar, L, NV>,
-        v: &Column<M::Scalar, L, NV>,
-    ) -> Option<Column<M::Scalar, L, NV>> {
+        dv: &LaneColumn<M::Scalar, L, NV>,
+        v: &LaneColumn<M::Scalar, L, NV>,
+    ) -> Option<LaneColumn<M::Scalar, L, NV>> {
         let rate = |k: usize| self.mechanism.carry_rate(t.0[k], &lane(dv, k), &lane(v, k));
         let is_known = L > 0 && rate(0).is_some();
         is_known.then(|| lane_by_lane(|k| rate(k).unwrap_or_else(SVector::zeros)))
     }
 
-    fn translation(&self, t: Lanes<M::Scalar, L>, dv: &Column<M::Scalar, L, NV>) -> Column<M::Scalar, L, NV> {
+    fn translation(
+        &self,
+        t: Lanes<M::Scalar, L>,
+        dv: &LaneColumn<M::Scalar, L, NV>,
+    ) -> LaneColumn<M::Scalar, L, NV> {
         lane_by_lane(|k| self.mechanism.translation(t.0[k], &lane(dv, k)))
     }
 
@@ -185,9 +190,9 @@ where
     fn contact_start(
         &self,
         t: Lanes<M::Scalar, L>,
-        q: &Column<M::Scalar, L, NQ>,
+        q: &LaneColumn<M::Scalar, L, NQ>,
         parts: bool,
-    ) -> Result<Column<M::Scalar, L, NQ>, ConstraintError> {
+    ) -> Result<LaneColumn<M::Scalar, L, NQ>, ConstraintError> {
         let results: [_; L] =
             core::array::from_fn(|k| self.mechanism.contact_start(t.0[k], &lane(q, k), parts));
         if let Some(Err(error)) = results.iter().find(|result| result.is_err()) {
@@ -196,13 +201,13 @@ where
         Ok(lane_by_lane(|k| results[k].unwrap_or_else(|_| lane(q, k))))
     }
 
-    /// Solves the contacts lane by lane. A lane whose contacts have no solution becomes NaN; it is an error
-    /// if all lanes fail.
+    /// Solves the contacts of each lane separately. A lane whose contacts have no solution becomes NaN; it is
+    /// an error if all lanes fail.
     fn contact_step(
         &self,
         t: Lanes<M::Scalar, L>,
-        start: (&Column<M::Scalar, L, NQ>, &Column<M::Scalar, L, NV>),
-        end: (&Column<M::Scalar, L, NQ>, &Column<M::Scalar, L, NV>),
+        start: (&LaneColumn<M::Scalar, L, NQ>, &LaneColumn<M::Scalar, L, NV>),
+        end: (&LaneColumn<M::Scalar, L, NQ>, &LaneColumn<M::Scalar, L, NV>),
         (given, impulses): Assumed<'_, Lanes<M::Scalar, L>, NV>,
         h: Lanes<M::Scalar, L>,
     ) -> Result<Touched<Lanes<M::Scalar, L>, NQ, NV>, ConstraintError> {
@@ -238,15 +243,15 @@ where
         None
     }
 
-    /// Computes the impulse lane by lane if there are constraints.
+    /// Computes the velocity change by an impulse for each lane separately if there are constraints.
     fn impulse(
         &self,
         t: Lanes<M::Scalar, L>,
-        q: &Column<M::Scalar, L, NQ>,
-        v: &Column<M::Scalar, L, NV>,
+        q: &LaneColumn<M::Scalar, L, NQ>,
+        v: &LaneColumn<M::Scalar, L, NV>,
         h: Lanes<M::Scalar, L>,
-        p: &Column<M::Scalar, L, NV>,
-    ) -> Column<M::Scalar, L, NV> {
+        p: &LaneColumn<M::Scalar, L, NV>,
+    ) -> LaneColumn<M::Scalar, L, NV> {
         if M::CONSTRAINED {
             let one =
                 |k: usize| self.mechanism.impulse(t.0[k], &lane(q, k), &lane(v, k), h.0[k], &lane(p, k));

@@ -1,6 +1,6 @@
 //! Rollouts of many states on all processors.
 
-use super::rollout::{Part, Tally};
+use super::rollout::{RolloutTally, StateRange};
 use super::{Batch, Error, Lanewise, Lockstep, Progress, Rollout};
 use crate::Lanes;
 use core::ops::ControlFlow;
@@ -11,7 +11,7 @@ use nalgebra::SVector;
 const GRAIN: usize = 4;
 
 /// Progress and cancellation flag of a rollout, shared by all threads.
-struct Shared<W> {
+struct SharedProgress<W> {
     watch: W,
     done: AtomicUsize,
     cancelled: AtomicBool,
@@ -46,9 +46,13 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         M: Batch<NQ, NV, NU> + Sync,
         S: Lockstep<M::Scalar> + Sync,
     {
-        let part = Part::all_states(rollout, q, v)?;
-        let shared =
-            Shared { watch, done: AtomicUsize::new(0), cancelled: AtomicBool::new(false), count: part.count };
+        let part = StateRange::all_states(rollout, q, v)?;
+        let shared = SharedProgress {
+            watch,
+            done: AtomicUsize::new(0),
+            cancelled: AtomicBool::new(false),
+            count: part.count,
+        };
         self.divide_recursively(rollout, part, &control, &shared).rollout_result()
     }
 
@@ -56,10 +60,10 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
     fn divide_recursively<S, C, W, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,
-        mut part: Part<'_, M::Scalar, NQ, NV>,
+        mut part: StateRange<'_, M::Scalar, NQ, NV>,
         control: &C,
-        shared: &Shared<W>,
-    ) -> Tally
+        shared: &SharedProgress<W>,
+    ) -> RolloutTally
     where
         M: Batch<NQ, NV, NU> + Sync,
         S: Lockstep<M::Scalar> + Sync,
@@ -82,7 +86,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
             return front.combine_with(back);
         }
         if shared.cancelled.load(Ordering::Relaxed) {
-            return Tally { cancelled: true, ..Tally::default() };
+            return RolloutTally { cancelled: true, ..RolloutTally::default() };
         }
         let mut before = 0;
         self.roll_out_part(rollout, &mut part, control, |here| {

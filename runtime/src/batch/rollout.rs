@@ -1,6 +1,6 @@
 //! Motions of many states over a fixed number of steps.
 
-use super::columns::{Output, count_states};
+use super::columns::{OutputColumns, count_states};
 use super::{Batch, Error, Lanewise};
 use crate::integrate::{self, ContinuousInputs, Method, Rk4, SemiImplicitEuler, State, System};
 use crate::lanes::{lane, lane_by_lane};
@@ -16,27 +16,27 @@ pub trait Lockstep<T: Real>: Method<T> {
     const ITERATES_CONSTRAINTS: bool = false;
 
     /// Same integration method with SIMD lanes as its scalar type.
-    type Wide<const L: usize>: Method<Lanes<T, L>>;
+    type MethodInLanes<const L: usize>: Method<Lanes<T, L>>;
 
-    /// Returns the method with the same step in all lanes.
-    fn wide<const L: usize>(&self) -> Self::Wide<L>;
+    /// Returns the method with SIMD lanes as its scalar type, and the same step size in all lanes.
+    fn in_lanes<const L: usize>(&self) -> Self::MethodInLanes<L>;
 }
 
 impl<T: Real> Lockstep<T> for Rk4<T> {
-    type Wide<const L: usize> = Rk4<Lanes<T, L>>;
+    type MethodInLanes<const L: usize> = Rk4<Lanes<T, L>>;
 
-    fn wide<const L: usize>(&self) -> Self::Wide<L> {
-        Rk4::step(Lanes::splat(self.length()))
+    fn in_lanes<const L: usize>(&self) -> Self::MethodInLanes<L> {
+        Rk4::step(Lanes::splat(self.nominal_step_length()))
     }
 }
 
 impl<T: Real> Lockstep<T> for SemiImplicitEuler<T> {
     const ITERATES_CONSTRAINTS: bool = true;
 
-    type Wide<const L: usize> = SemiImplicitEuler<Lanes<T, L>>;
+    type MethodInLanes<const L: usize> = SemiImplicitEuler<Lanes<T, L>>;
 
-    fn wide<const L: usize>(&self) -> Self::Wide<L> {
-        SemiImplicitEuler::step(Lanes::splat(self.length()))
+    fn in_lanes<const L: usize>(&self) -> Self::MethodInLanes<L> {
+        SemiImplicitEuler::step(Lanes::splat(self.nominal_step_length()))
     }
 }
 
@@ -77,7 +77,7 @@ pub fn unwatched(_: Progress) -> ControlFlow<()> {
 
 /// Outcome of a rollout for a range of states.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Tally {
+pub(super) struct RolloutTally {
     /// Number of states in the range that are done, including failed ones.
     pub(super) done: usize,
     /// Number of states in the range that failed.
@@ -88,10 +88,10 @@ pub(super) struct Tally {
     pub(super) cancelled: bool,
 }
 
-impl Tally {
-    /// Returns the outcome combined with that of the states `behind` these.
-    pub(super) fn combine_with(self, behind: Tally) -> Tally {
-        Tally {
+impl RolloutTally {
+    /// Returns the combined outcome of this range and the range `behind` it.
+    pub(super) fn combine_with(self, behind: RolloutTally) -> RolloutTally {
+        RolloutTally {
             done: self.done + behind.done,
             failed: self.failed + behind.failed,
             first: self.first.or(behind.first),
@@ -109,16 +109,16 @@ impl Tally {
 }
 
 /// Range of the states to be rolled out.
-pub(super) struct Part<'a, T, const NQ: usize, const NV: usize> {
+pub(super) struct StateRange<'a, T, const NQ: usize, const NV: usize> {
     /// Index of the first state of the range among all states.
     pub(super) first: usize,
-    pub(super) q: Output<'a, T, NQ, 1>,
-    pub(super) v: Output<'a, T, NV, 1>,
+    pub(super) q: OutputColumns<'a, T, NQ, 1>,
+    pub(super) v: OutputColumns<'a, T, NV, 1>,
     pub(super) count: usize,
 }
 
-impl<'a, T: Real, const NQ: usize, const NV: usize> Part<'a, T, NQ, NV> {
-    /// Returns the range of all states.
+impl<'a, T: Real, const NQ: usize, const NV: usize> StateRange<'a, T, NQ, NV> {
+    /// Returns the range of all states, or an error if the slices have different numbers of states.
     ///
     /// # Errors
     ///
@@ -129,15 +129,15 @@ impl<'a, T: Real, const NQ: usize, const NV: usize> Part<'a, T, NQ, NV> {
         v: &'a mut [T],
     ) -> Result<Self, Error> {
         let count = count_states(q.len(), NQ);
-        let (q, v) = (Output::new("q", q, count)?, Output::new("v", v, count)?);
+        let (q, v) = (OutputColumns::new("q", q, count)?, OutputColumns::new("v", v, count)?);
         rollout.method.check().map_err(Error::Method)?;
         Ok(Self { first: 0, q, v, count })
     }
 }
 
 #[cfg(feature = "rayon")]
-impl<T: Real, const NQ: usize, const NV: usize> Part<'_, T, NQ, NV> {
-    /// Splits into the states before index `at` and the states from `at` on.
+impl<T: Real, const NQ: usize, const NV: usize> StateRange<'_, T, NQ, NV> {
+    /// Splits the range into the states before index `at` and the states from `at` on.
     pub(super) fn split_at_state(self, at: usize) -> (Self, Self) {
         let ((q, other_q), (v, other_v)) = (self.q.split_at_state(at), self.v.split_at_state(at));
         let front = Self { first: self.first, q, v, count: at };
@@ -146,7 +146,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Part<'_, T, NQ, NV> {
 }
 
 /// Group of lanes after its last step, with the errors of the lanes that failed.
-struct Group<T, const L: usize, const NQ: usize, const NV: usize> {
+struct FinishedGroup<T, const L: usize, const NQ: usize, const NV: usize> {
     end: State<Lanes<T, L>, NQ, NV>,
     failures: [Option<integrate::Error>; L],
 }
@@ -188,7 +188,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         M: Batch<NQ, NV, NU>,
         S: Lockstep<M::Scalar>,
     {
-        let mut part = Part::all_states(rollout, q, v)?;
+        let mut part = StateRange::all_states(rollout, q, v)?;
         let count = part.count;
         self.roll_out_part(rollout, &mut part, &control, |done| watch(Progress { done, count }))
             .rollout_result()
@@ -199,10 +199,10 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
     pub(super) fn roll_out_part<S, C, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,
-        part: &mut Part<'_, M::Scalar, NQ, NV>,
+        part: &mut StateRange<'_, M::Scalar, NQ, NV>,
         control: &C,
         mut watch: impl FnMut(usize) -> ControlFlow<()>,
-    ) -> Tally
+    ) -> RolloutTally
     where
         M: Batch<NQ, NV, NU>,
         S: Lockstep<M::Scalar>,
@@ -213,15 +213,15 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
             &SVector<Lanes<M::Scalar, L>, NV>,
         ) -> SVector<Lanes<M::Scalar, L>, NU>,
     {
-        let mut tally = Tally::default();
+        let mut tally = RolloutTally::default();
         for state in (0..part.count).step_by(L.max(1)) {
-            let (q, v) = (part.q.load::<L>(state), part.v.load::<L>(state));
+            let (q, v) = (part.q.load_states::<L>(state), part.v.load_states::<L>(state));
             let start = State { t: Lanes::splat(rollout.start), q: q.0, v: v.0 };
             let group = self.roll_out_group(rollout, part.first + state, start, control);
             let present = L.min(part.count - state);
             for (k, failure) in group.failures.iter().enumerate().take(present) {
                 let failed = failure.map(|error| (part.first + state + k, error));
-                tally = tally.combine_with(Tally {
+                tally = tally.combine_with(RolloutTally {
                     done: 1,
                     failed: failed.iter().count(),
                     first: failed,
@@ -247,7 +247,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         first: usize,
         start: State<Lanes<M::Scalar, L>, NQ, NV>,
         control: &C,
-    ) -> Group<M::Scalar, L, NQ, NV>
+    ) -> FinishedGroup<M::Scalar, L, NQ, NV>
     where
         M: Batch<NQ, NV, NU>,
         S: Lockstep<M::Scalar>,
@@ -259,13 +259,13 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
         ) -> SVector<Lanes<M::Scalar, L>, NU>,
     {
         if M::CONSTRAINED && S::ITERATES_CONSTRAINTS {
-            return self.one_by_one(rollout, first, start, control);
+            return self.roll_out_one_by_one(rollout, first, start, control);
         }
         let inputs = ContinuousInputs(|t, q: &SVector<_, NQ>, v: &SVector<_, NV>| control(first, t, q, v));
         let mut system: System<'_, Self, _, NU> = System::new(self, inputs);
-        let method = rollout.method.wide::<L>();
+        let method = rollout.method.in_lanes::<L>();
         let mut memory = method.memory();
-        let mut group = Group { end: start, failures: [None; L] };
+        let mut group = FinishedGroup { end: start, failures: [None; L] };
         for _ in 0..rollout.steps {
             let begin = group.end;
             match method.advance(&mut memory, &mut system, &begin, None, false) {
@@ -287,13 +287,13 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
     }
 
     /// Advances the states of a group one after another, instead of together in lanes.
-    fn one_by_one<S, C, const NQ: usize, const NV: usize, const NU: usize>(
+    fn roll_out_one_by_one<S, C, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         rollout: &Rollout<M::Scalar, S>,
         first: usize,
         start: State<Lanes<M::Scalar, L>, NQ, NV>,
         control: &C,
-    ) -> Group<M::Scalar, L, NQ, NV>
+    ) -> FinishedGroup<M::Scalar, L, NQ, NV>
     where
         M: Batch<NQ, NV, NU>,
         S: Lockstep<M::Scalar>,
@@ -330,7 +330,7 @@ impl<M, const L: usize> Lanewise<'_, M, L> {
             q: lane_by_lane(|k| ends[k].q),
             v: lane_by_lane(|k| ends[k].v),
         };
-        Group { end, failures }
+        FinishedGroup { end, failures }
     }
 }
 

@@ -26,10 +26,10 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
             if (others == 1) & (*diagonal == T::one()) {
                 continue;
             }
-            let is_other = |x: &T| *x != T::zero();
+            let is_nonzero = |x: &T| *x != T::zero();
             (first, end) = (first.min(j), end.max(j + 1));
-            first = first.min(above.iter().position(is_other).unwrap_or(j));
-            end = end.max(below.iter().rposition(is_other).map_or(0, |i| j + 2 + i));
+            first = first.min(above.iter().position(is_nonzero).unwrap_or(j));
+            end = end.max(below.iter().rposition(is_nonzero).map_or(0, |i| j + 2 + i));
         }
         Self { matrix, first, end }
     }
@@ -44,7 +44,8 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         (self.first, self.end)
     }
 
-    /// Returns `Dᵀ`; its columns that differ from the identity are written to `into`.
+    /// Returns the transpose `Dᵀ` of this matrix. Its columns that differ from the identity are written to
+    /// `into`.
     pub fn transposed<'b>(&self, into: &'b mut SMatrix<T, N, N>) -> NearlyIdentity<'b, T, N> {
         let some = self.first..self.end;
         let rows = self.matrix.data.0.get(some.clone()).unwrap_or(&[]);
@@ -59,14 +60,15 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
     /// Replaces a matrix `A` by the product `A D` with this matrix `D`.
     pub fn follow<const R: usize>(&self, a: &mut SMatrix<T, R, N>) {
         if self.end - self.first.min(self.end) > 8 {
-            self.follow_by::<R, N>(a)
+            self.follow_with_storage::<R, N>(a)
         } else {
-            self.follow_by::<R, 8>(a)
+            self.follow_with_storage::<R, 8>(a)
         }
     }
 
-    /// Replaces `A` by `A D`, with storage for `C` columns that differ from the identity.
-    fn follow_by<const R: usize, const C: usize>(&self, a: &mut SMatrix<T, R, N>) {
+    /// Replaces a matrix `A` by the product `A D`, with storage for `C` columns of `D` that differ from the
+    /// identity.
+    fn follow_with_storage<const R: usize, const C: usize>(&self, a: &mut SMatrix<T, R, N>) {
         let mut sums = zeros::<T, R, C>();
         let some = self.first..self.end;
         let from = a.data.0.get(some.clone()).unwrap_or(&[]);
@@ -86,7 +88,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
     /// Replaces a matrix `A` by the product `D A` with this matrix `D`.
     pub fn lead<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
         if self.end - self.first.min(self.end) > 8 {
-            return self.lead_many(a);
+            return self.lead_many_rows(a);
         }
         let (start, is_other) = self.eight_rows_of_range();
         for column in &mut a.data.0 {
@@ -110,19 +112,19 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
             }
         }
         if !few {
-            self.lead_many(into);
+            self.lead_many_rows(into);
         }
     }
 
-    /// Returns the first of eight rows that contain the range, and which of the eight rows belong to it. All
-    /// other rows are zero in these columns.
+    /// Returns the first of eight rows that contain the range of this matrix, and which of the eight rows
+    /// belong to it. All other rows are zero in these columns.
     #[inline(always)]
     fn eight_rows_of_range(&self) -> (usize, [bool; 8]) {
         let start = self.first.min(N - N.min(8));
         (start, core::array::from_fn(|k| (self.first..self.end).contains(&(start + k))))
     }
 
-    /// Replaces one column `x` by `D x`, as a step of [`lead`](Self::lead).
+    /// Replaces one column `x` by `D x` with this matrix `D`, as a step of [`lead`](Self::lead).
     #[inline(always)]
     fn lead_column(&self, column: &mut [T; N], start: usize, is_other: [bool; 8]) {
         let sum = self.product_rows(column, start);
@@ -143,7 +145,7 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         }
     }
 
-    /// Returns eight rows, from `start` on, of the product with a column.
+    /// Returns eight rows, from `start` on, of the product of this matrix with a column.
     #[inline(always)]
     fn product_rows(&self, column: &[T], start: usize) -> Vector<Compiled, T, 8> {
         let mut sum = Vector::<Compiled, T, 8>::splat(T::zero());
@@ -155,8 +157,8 @@ impl<'a, T: Real, const N: usize> NearlyIdentity<'a, T, N> {
         sum
     }
 
-    /// Computes [`lead`](Self::lead) for a range of more than eight rows.
-    fn lead_many<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
+    /// Computes [`lead`](Self::lead) for a matrix that differs from the identity in more than eight rows.
+    fn lead_many_rows<const C: usize>(&self, a: &mut SMatrix<T, N, C>) {
         let length = N.min(8);
         for column in &mut a.data.0 {
             let given = *column;

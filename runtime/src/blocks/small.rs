@@ -7,7 +7,7 @@ use crate::multiplication::{part, write_entries};
 /// Maximum number of rows and columns of a small matrix: it occupies half of 32 registers of four numbers.
 pub(super) const MOST: usize = 8;
 
-/// Computes `C += A B`, column by column of `B`.
+/// Adds a matrix product, `C += A B`, column by column of `B`, with `A` in registers.
 #[inline(always)]
 pub(super) fn add_product<A: Arithmetic, T: Real, const R: usize, const K: usize>(
     sums: &mut [[T; R]],

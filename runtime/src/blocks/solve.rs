@@ -8,8 +8,9 @@ use crate::arithmetic::{Arithmetic, Compiled};
 use crate::multiplication::{part, registers_of_eight, registers_of_four, write_entries};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
-/// Returns the factors `L` (below the diagonal) and `1/D` of `H + r = L D Lᵀ`, where `L` has ones on its
-/// diagonal. The error is the index of a pivot that is not positive.
+/// Returns the factors `L` (below the diagonal) and `1/D` of the regularised symmetric matrix
+/// `H + r = L D Lᵀ`, where `L` has ones on its diagonal. The error is the index of a pivot that is not
+/// positive.
 pub fn factors<T: Real, const N: usize>(
     matrix: &SMatrix<T, N, N>,
     regularisation: T,
@@ -36,7 +37,7 @@ pub fn factors<T: Real, const N: usize>(
     Ok((matrix_from_storage(l), SMatrix::from_array_storage(ArrayStorage([inverse]))))
 }
 
-/// Replaces the matrix `B` by `−(L D Lᵀ)⁻¹ B`.
+/// Replaces the matrix `B` by `−(L D Lᵀ)⁻¹ B`, given the factors `L` and `1/D`.
 pub fn solve<T: Real, const N: usize, const C: usize>(
     l: &SMatrix<T, N, N>,
     inverse: &SVector<T, N>,
@@ -45,7 +46,7 @@ pub fn solve<T: Real, const N: usize, const C: usize>(
     *b = transposed(&solved_rows(l, inverse, &transposed(b)));
 }
 
-/// Returns the matrix `−B (L D Lᵀ)⁻¹`.
+/// Returns the matrix `−B (L D Lᵀ)⁻¹`, given the factors `L` and `1/D`.
 fn solved_rows<T: Real, const N: usize, const R: usize>(
     l: &SMatrix<T, N, N>,
     inverse: &SVector<T, N>,
@@ -56,7 +57,7 @@ fn solved_rows<T: Real, const N: usize, const R: usize>(
     solved
 }
 
-/// Writes `−B (L D Lᵀ)⁻¹` to a matrix.
+/// Writes the matrix `−B (L D Lᵀ)⁻¹` to `into`, given the factors `L` and `1/D`.
 #[inline(never)]
 pub fn solve_rows_into<T: Real, const N: usize, const R: usize>(
     l: &SMatrix<T, N, N>,
@@ -64,17 +65,19 @@ pub fn solve_rows_into<T: Real, const N: usize, const R: usize>(
     b: &SMatrix<T, R, N>,
     into: &mut SMatrix<T, R, N>,
 ) {
-    dispatch::<1, T, _, _>(&Solve { l, inverse, b }, into);
+    dispatch::<1, T, _, _>(&SymmetricSystem { l, inverse, b }, into);
 }
 
 /// Factors and right-hand sides of a symmetric linear system.
-pub(super) struct Solve<'a, T, const N: usize, const R: usize> {
+pub(super) struct SymmetricSystem<'a, T, const N: usize, const R: usize> {
     pub(super) l: &'a SMatrix<T, N, N>,
     pub(super) inverse: &'a SVector<T, N>,
     pub(super) b: &'a SMatrix<T, R, N>,
 }
 
-impl<T: Real, const N: usize, const R: usize> Evaluate<1, &mut SMatrix<T, R, N>> for Solve<'_, T, N, R> {
+impl<T: Real, const N: usize, const R: usize> Evaluate<1, &mut SMatrix<T, R, N>>
+    for SymmetricSystem<'_, T, N, R>
+{
     type Output = ();
 
     #[inline(always)]
@@ -95,7 +98,7 @@ impl<T: Real, const N: usize, const R: usize> Evaluate<1, &mut SMatrix<T, R, N>>
     }
 }
 
-impl<T: Real, const N: usize, const R: usize> Solve<'_, T, N, R> {
+impl<T: Real, const N: usize, const R: usize> SymmetricSystem<'_, T, N, R> {
     /// Solves the linear system for one register of right-hand sides, beginning with the one at index `from`.
     #[inline(always)]
     fn solve_one_register<A: Arithmetic, const W: usize>(&self, out: &mut [[T; R]; N], from: usize) {

@@ -1,27 +1,32 @@
-//! Products and solutions compared with nalgebra's, for all register widths and numbers of remaining rows.
+//! Tests that compare matrix products and solutions with those of nalgebra, for all register widths and
+//! numbers of remaining rows.
 
-use super::solve::Solve;
+use super::solve::SymmetricSystem;
 use super::*;
-use crate::multiplication::testing::numbers;
+use crate::multiplication::testing::pseudorandom_matrix;
 
 /// Checks the product of a matrix of `R` rows that is added to another matrix, and solutions of linear
 /// systems for `R` right-hand sides.
 fn check_product_and_solution<A: Arithmetic, const R: usize, const C: usize>() {
-    let (a, b, start) = (numbers::<R, 5>(0.0), numbers::<5, C>(1.0), numbers::<R, C>(2.0));
+    let (a, b, start) = (
+        pseudorandom_matrix::<R, 5>(0.0),
+        pseudorandom_matrix::<5, C>(1.0),
+        pseudorandom_matrix::<R, C>(2.0),
+    );
     let mut found = start;
-    Product { a: &a, b: &b }.evaluate::<A>(&mut found);
+    MatrixProduct { a: &a, b: &b }.evaluate::<A>(&mut found);
     assert!((found - (start + a * b)).amax() < 1e-13, "{R} rows, {C} columns");
 
-    let half = numbers::<5, 5>(3.0);
+    let half = pseudorandom_matrix::<5, 5>(3.0);
     let matrix = half * half.transpose() + SMatrix::identity();
     let (l, inverse) = factors(&matrix, 0.25).expect("it is positive definite");
     let mut solved = zeros();
-    Solve { l: &l, inverse: &inverse, b: &a }.evaluate::<A>(&mut solved);
+    SymmetricSystem { l: &l, inverse: &inverse, b: &a }.evaluate::<A>(&mut solved);
     let left = solved * (matrix + SMatrix::identity() * 0.25) + a;
     assert!(left.amax() < 1e-12, "{R} right-hand sides: {left}");
 }
 
-fn all_rows<A: Arithmetic>() {
+fn check_all_row_counts<A: Arithmetic>() {
     macro_rules! each {
         ($($columns:literal: $($rows:literal)*;)*) => {
             $($(check_product_and_solution::<A, $rows, $columns>();)*)*
@@ -37,8 +42,8 @@ fn all_rows<A: Arithmetic>() {
 }
 
 #[test]
-fn products_and_solutions_are_nalgebras() {
-    all_rows::<Compiled>();
+fn products_and_solutions_match_nalgebra() {
+    check_all_row_counts::<Compiled>();
     #[cfg(all(
         feature = "std",
         target_arch = "x86_64",
@@ -47,10 +52,10 @@ fn products_and_solutions_are_nalgebras() {
     {
         use crate::lanes::x86::{avx2, avx512};
         if avx2::is_available() {
-            all_rows::<avx2::Avx2>();
+            check_all_row_counts::<avx2::Avx2>();
         }
         if avx512::is_available() {
-            all_rows::<avx512::Avx512>();
+            check_all_row_counts::<avx512::Avx512>();
         }
     }
 }

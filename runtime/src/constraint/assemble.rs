@@ -12,11 +12,12 @@ const MOST_STEPS: usize = 200;
 /// leads to this mode.
 const LONGEST: f64 = 0.3;
 
-/// Number of further starting points around the guess. Their distances grow from `NEAR` to `FAR`, m or rad.
+/// Number of further starting points around the guess of an assembly. Their distances grow from `NEAR` to
+/// `FAR`, m or rad.
 const AGAIN: usize = 24;
 const NEAR: f64 = 0.05;
 const FAR: f64 = 3.0;
-/// Number of repetitions of all starting points if a particular assembly mode is requested.
+/// Number of repetitions of all starting points of an assembly if a particular assembly mode is requested.
 const ROUNDS: usize = 8;
 
 /// Constraints of a mechanism with or without inertia, for assembly.
@@ -37,9 +38,9 @@ pub struct Loops<'a, R, J, I, const NV: usize, const NC: usize> {
     pub integrate: I,
 }
 
-/// Finds a configuration that satisfies the constraints. Starts at the guess. If the steps end at a nonzero
-/// residual, or lead more than half a revolution away, points around the guess are tried. If `mode` is given,
-/// the result has this [`assembly_mode`].
+/// Finds a configuration that satisfies the constraints, starting at a guess. If the descent ends at a
+/// nonzero residual, or more than half a revolution away, points around the guess are tried. If `mode` is
+/// given, the result has this [`assembly_mode`].
 pub fn assemble<
     T: Real,
     R: Fn(&SVector<T, NQ>) -> SVector<T, NH>,
@@ -195,7 +196,7 @@ pub fn least_violation<
         if size <= constant::<T>(4.0) * epsilon() {
             break;
         }
-        let rows = open_rows::<T, NV, NH, NC>(&(loops.jacobian)(&q), held);
+        let rows = free_holonomic_rows::<T, NV, NH, NC>(&(loops.jacobian)(&q), held);
         let mut normal = rows * rows.transpose();
         // Relative to each row, so that units have no effect. Zero rows are skipped.
         for k in 0..NH {
@@ -229,8 +230,9 @@ fn limit_angle_steps<T: Real, const NV: usize>(step: SVector<T, NV>, turns: &[bo
     if longest > constant(LONGEST) { step * (constant::<T>(LONGEST) / longest) } else { step }
 }
 
-/// Returns the rows of the holonomic constraints, with zeros for velocities that are held.
-fn open_rows<T: Real, const NV: usize, const NH: usize, const NC: usize>(
+/// Returns the rows of the holonomic constraints in the Jacobian, with zeros in the columns of velocities
+/// that are held.
+fn free_holonomic_rows<T: Real, const NV: usize, const NH: usize, const NC: usize>(
     jacobian: &SMatrix<T, NC, NV>,
     held: &[usize],
 ) -> SMatrix<T, NH, NV> {
@@ -266,7 +268,7 @@ where
         return None;
     }
     // One row per constraint, then one per held velocity.
-    let open = open_rows::<T, NV, NH, NC>(&(loops.jacobian)(q), held);
+    let open = free_holonomic_rows::<T, NV, NH, NC>(&(loops.jacobian)(q), held);
     let mut rows = [[T::zero(); NV]; NV];
     let mut fixed = (0..NV).filter(|k| is_held_velocity(*k));
     for (i, row) in rows.iter_mut().enumerate() {

@@ -4,7 +4,9 @@
 
 mod passing;
 
-use super::span::{Metric, Span, dot, entry_or_zero, norm, orthonormalise_vectors, rounding_threshold};
+use super::span::{
+    ColumnSpan, MassFactorisation, dot, entry_or_zero, norm, orthonormalise_vectors, rounding_threshold,
+};
 use super::{Constrained, Solution};
 use crate::Real;
 use crate::private::{constant, epsilon};
@@ -18,7 +20,7 @@ pub struct Structure<'a, const NC: usize> {
     pub groups: [usize; NC],
     /// Indices of the constraints that determine coordinates without inertia.
     pub determining: &'a [usize],
-    /// Number of independent constraints in regular (nonsingular) configurations.
+    /// Number of linearly independent constraints in regular (nonsingular) configurations.
     pub rank: usize,
 }
 
@@ -51,30 +53,30 @@ pub fn careful_dynamics<
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
-    let system = System::at_state(mechanism, t, (q, v), tau);
+    let system = DynamicsEquations::at_state(mechanism, t, (q, v), tau);
     let (least, regular) =
-        system.solve_above_magnitude(structure, well_conditioned_threshold(), Weak::Dropped);
+        system.solve_above_magnitude(structure, well_conditioned_threshold(), DependentRows::Dropped);
     if regular {
         return least;
     }
-    if let Some(clear) = System::<T, NV, NC>::clear_row_magnitude(v, &least.0) {
-        let (taken, regular) = system.solve_above_magnitude(structure, clear, Weak::Dropped);
+    if let Some(clear) = DynamicsEquations::<T, NV, NC>::clear_row_magnitude(v, &least.0) {
+        let (taken, regular) = system.solve_above_magnitude(structure, clear, DependentRows::Dropped);
         // The threshold depends on the accelerations that the constraints permit, not on those that they
         // prevent.
         let ratio = epsilon::<T>().sqrt() * largest_magnitude(&least.0) / largest_magnitude(&taken.0);
-        let enough = System::<T, NV, NC>::clear_row_magnitude(v, &taken.0)
+        let enough = DynamicsEquations::<T, NV, NC>::clear_row_magnitude(v, &taken.0)
             .map(|clear| clear.max(ratio))
             .filter(|clear| *clear < well_conditioned_threshold());
         if regular
             && enough.is_some_and(|enough| {
-                enough <= clear || system.solve_above_magnitude(structure, enough, Weak::Dropped).1
+                enough <= clear || system.solve_above_magnitude(structure, enough, DependentRows::Dropped).1
             })
         {
             return taken;
         }
     }
     let start = system
-        .solve_above_magnitude(structure, constant::<T>(4.0) * epsilon::<T>().sqrt(), Weak::Dropped)
+        .solve_above_magnitude(structure, constant::<T>(4.0) * epsilon::<T>().sqrt(), DependentRows::Dropped)
         .0
         .0;
     let passing = passing::acceleration_past_singularity(mechanism, structure, t, (q, v), &system, &start);
@@ -82,7 +84,7 @@ where
         .solve_above_magnitude(
             structure,
             well_conditioned_threshold(),
-            passing.map_or(Weak::Taken, Weak::Known),
+            passing.map_or(DependentRows::Taken, DependentRows::Known),
         )
         .0
 }
@@ -120,8 +122,9 @@ where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
-    let both = System { mass, jacobian, force: *force, bias: *bias };
-    let (found, regular) = both.solve_above_magnitude(structure, well_conditioned_threshold(), Weak::Dropped);
+    let both = DynamicsEquations { mass, jacobian, force: *force, bias: *bias };
+    let (found, regular) =
+        both.solve_above_magnitude(structure, well_conditioned_threshold(), DependentRows::Dropped);
     if regular {
         return found;
     }
@@ -139,24 +142,33 @@ where
     let turned = if is_place && gap > root { T::zero() } else { minimum_magnitude(&left) };
     let rounded = if is_place || gap > root { T::zero() } else { known / gap };
     let least = root.max(rounded).max(turned);
-    let weak = if least < well_conditioned_threshold() { Weak::Down(least) } else { Weak::Dropped };
-    let correction = System { force: [T::zero(); NV], ..both }
+    let weak = if least < well_conditioned_threshold() {
+        DependentRows::Down(least)
+    } else {
+        DependentRows::Dropped
+    };
+    let correction = DynamicsEquations { force: [T::zero(); NV], ..both }
         .solve_above_magnitude(structure, well_conditioned_threshold(), weak)
         .0;
     if force.iter().all(|f| *f == T::zero()) {
         return correction;
     }
     // All rows with a known direction contribute to the response to forces.
-    let answer = System { bias: [T::zero(); NC], ..both };
+    let answer = DynamicsEquations { bias: [T::zero(); NC], ..both };
     let answer = answer
-        .solve_above_magnitude(structure, well_conditioned_threshold(), Weak::Down(known.sqrt().max(turned)))
+        .solve_above_magnitude(
+            structure,
+            well_conditioned_threshold(),
+            DependentRows::Down(known.sqrt().max(turned)),
+        )
         .0;
     (answer.0 + correction.0, answer.1 + correction.1)
 }
 
-/// Returns the minimum relative magnitude of constraint rows with known directions near a singular
-/// configuration, for the residuals `left`. With a residual `r`, the configuration is off its branch by `r` /
-/// σ. Directions rotate by one radian over the distance σ to the other branch, so their error is `r` / σ².
+/// Returns the minimum relative magnitude of constraint rows whose directions are reliable near a singular
+/// configuration, for the constraint residuals `left`. With a residual `r`, the configuration is off its
+/// branch by `r` / σ. Directions rotate by one radian over the distance σ to the other branch, so their error
+/// is `r` / σ².
 pub(super) fn minimum_magnitude<T: Real, const NH: usize>(left: &SVector<T, NH>) -> T {
     (constant::<T>(64.0) * largest_magnitude(left).max(epsilon())).sqrt()
 }
@@ -184,11 +196,11 @@ where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
 {
     let (mass, jacobian) = (mechanism.mass_matrix(t, q), mechanism.constraint_jacobian(t, q));
-    let still = System { mass, jacobian, force: [T::zero(); NV], bias: [T::zero(); NC] };
-    let metric = Metric::new(&still.loaded_mass_and_forces(structure).0);
+    let still = DynamicsEquations { mass, jacobian, force: [T::zero(); NV], bias: [T::zero(); NC] };
+    let metric = MassFactorisation::new(&still.loaded_mass_and_forces(structure).0);
     let later = mechanism.constraint_jacobian(t, &mechanism.integrate(q, dv));
     let weighted_column_length = |j: &SMatrix<T, NC, NV>, k: usize| {
-        norm(&metric.half(core::array::from_fn(|i| entry_or_zero(&j.data.0[i], k))))
+        norm(&metric.solve_half(core::array::from_fn(|i| entry_or_zero(&j.data.0[i], k))))
     };
     // A configuration is nearly singular if a few such steps would rotate the constraints more than they
     // differ from dependent ones. The rotation is bounded, because a step that rotates all constraints is
@@ -202,8 +214,8 @@ where
     // In single precision, rows of this magnitude are dropped anyway.
     let least = safe_distance::<T>().min(constant(0.07));
     let clear = (turn * steps).min(most).max(least);
-    let mut span = Span::new(&metric, &jacobian, &structure.groups);
-    span.extend(clear, structure.rank);
+    let mut span = ColumnSpan::new(&metric, &jacobian, &structure.groups);
+    span.extend_basis(clear, structure.rank);
     span.rank < structure.rank
 }
 
@@ -222,12 +234,12 @@ fn redundant_row_threshold<T: Real>() -> T {
 
 /// Treatment of nearly dependent constraint rows in the rank-revealing solution.
 #[derive(Clone, Copy)]
-enum Weak<T, const NV: usize> {
-    /// Accelerations that well-conditioned rows do not determine are these.
+enum DependentRows<T, const NV: usize> {
+    /// Takes these accelerations along directions that the well-conditioned rows do not determine.
     Known(SVector<T, NV>),
     /// Uses all constraint rows above rounding errors.
     Taken,
-    /// Uses the constraint rows above this relative magnitude.
+    /// Uses the constraint rows above this relative magnitude only.
     Down(T),
     /// Drops nearly dependent constraint rows.
     Dropped,
@@ -235,14 +247,14 @@ enum Weak<T, const NV: usize> {
 
 /// Linear equations for the accelerations and multipliers of constrained motion.
 #[derive(Clone, Copy)]
-struct System<T, const NV: usize, const NC: usize> {
+struct DynamicsEquations<T, const NV: usize, const NC: usize> {
     mass: SMatrix<T, NV, NV>,
     jacobian: SMatrix<T, NC, NV>,
     force: [T; NV],
     bias: [T; NC],
 }
 
-impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
+impl<T: Real, const NV: usize, const NC: usize> DynamicsEquations<T, NV, NC> {
     /// Returns the equations of a mechanism at a state.
     fn at_state<M, const NQ: usize, const NU: usize, const NH: usize>(
         mechanism: &M,
@@ -285,49 +297,49 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
         (clear < well_conditioned_threshold()).then_some(clear)
     }
 
-    /// Returns the solution, and whether the rows above the relative magnitude `clear` have the rank of
-    /// regular configurations.
+    /// Returns accelerations and multipliers, and whether the constraint rows above the relative magnitude
+    /// `clear` have the rank of regular configurations.
     fn solve_above_magnitude(
         &self,
         structure: &Structure<'_, NC>,
         clear: T,
-        weak: Weak<T, NV>,
+        weak: DependentRows<T, NV>,
     ) -> (Solution<T, NV, NC>, bool) {
         let (mass, force) = self.loaded_mass_and_forces(structure);
-        let metric = Metric::new(&mass);
-        let mut span = Span::new(&metric, &self.jacobian, &structure.groups);
-        span.extend(clear, structure.rank);
+        let metric = MassFactorisation::new(&mass);
+        let mut span = ColumnSpan::new(&metric, &self.jacobian, &structure.groups);
+        span.extend_basis(clear, structure.rank);
         let regular = span.rank >= structure.rank;
         match weak {
-            _ if regular => span.extend(redundant_row_threshold(), NC),
-            Weak::Taken => span.extend(rounding_threshold(), structure.rank),
-            Weak::Down(size) => span.extend(size, structure.rank),
-            Weak::Known(_) | Weak::Dropped => {}
+            _ if regular => span.extend_basis(redundant_row_threshold(), NC),
+            DependentRows::Taken => span.extend_basis(rounding_threshold(), structure.rank),
+            DependentRows::Down(size) => span.extend_basis(size, structure.rank),
+            DependentRows::Known(_) | DependentRows::Dropped => {}
         }
-        let free = span.forward(&metric.half(force));
+        let free = span.apply_reflections(&metric.solve_half(force));
         // Known accelerations satisfy nearly dependent rows as well; only their deviation from the
         // well-conditioned rows is solved for. (The biases include the nearly dependent component of each
         // row.)
         let (mut x, bias) = match weak {
-            Weak::Known(a) if !regular => (
-                span.forward(&metric.upper(&a.data.0[0])),
+            DependentRows::Known(a) if !regular => (
+                span.apply_reflections(&metric.multiply_upper(&a.data.0[0])),
                 (self.jacobian * a + SVector::from(self.bias)).data.0[0],
             ),
             _ => (free, self.bias),
         };
-        let triangle = Triangle::new(&span);
+        let triangle = TriangularFactor::new(&span);
         let known = triangle.particular_solution(&span, &bias);
         let mut lacking = [T::zero(); NC];
         for (k, ((x, free), known)) in x.iter_mut().zip(&free).zip(&known).enumerate().take(span.rank) {
             *x = match weak {
-                Weak::Known(_) if !regular => *x + *known,
+                DependentRows::Known(_) if !regular => *x + *known,
                 _ => *known,
             };
             if let Some(slot) = lacking.get_mut(k) {
                 *slot = *x - *free;
             }
         }
-        let a = metric.back(span.backward(x));
+        let a = metric.solve_transposed(span.undo_reflections(x));
         ((SVector::from(a), SVector::from(triangle.minimum_norm_multipliers(&span, &lacking))), regular)
     }
 
@@ -352,15 +364,15 @@ impl<T: Real, const NV: usize, const NC: usize> System<T, NV, NC> {
 
 /// Triangular factor `R` of the columns, relative to their lengths; `Rᵀ = U S` if not all columns are in the
 /// basis.
-struct Triangle<T, const NC: usize> {
+struct TriangularFactor<T, const NC: usize> {
     /// Whether all nonzero rows are in the basis.
     full: bool,
     base: [[T; NC]; NC],
     upper: [[T; NC]; NC],
 }
 
-impl<T: Real, const NC: usize> Triangle<T, NC> {
-    fn new<const NV: usize>(span: &Span<T, NV, NC>) -> Self {
+impl<T: Real, const NC: usize> TriangularFactor<T, NC> {
+    fn new<const NV: usize>(span: &ColumnSpan<T, NV, NC>) -> Self {
         let rank = span.rank;
         let full = span.columns.iter().all(|column| column.length == T::zero() || column.step.is_some());
         if full {
@@ -372,7 +384,7 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
     }
 
     /// Solves `Rᵀ z = −b`, in the least-squares sense for a rank-deficient `R`.
-    fn particular_solution<const NV: usize>(&self, span: &Span<T, NV, NC>, bias: &[T; NC]) -> [T; NC] {
+    fn particular_solution<const NV: usize>(&self, span: &ColumnSpan<T, NV, NC>, bias: &[T; NC]) -> [T; NC] {
         let rank = span.rank;
         let mut z = [T::zero(); NC];
         if !self.full {
@@ -389,7 +401,7 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
             return z;
         }
         for step in 0..NC {
-            let Some((k, pivot)) = span.pivot(step) else { continue };
+            let Some((k, pivot)) = span.pivot_column(step) else { continue };
             let sum = pivot.x.iter().zip(&z).take(step);
             let rest = sum.fold(-entry_or_zero(bias, k) / pivot.length, |rest, (x, z)| rest - *x * *z);
             if let Some(slot) = z.get_mut(step) {
@@ -402,7 +414,7 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
     /// Returns the `λ` of minimum norm with `R λ = d`.
     fn minimum_norm_multipliers<const NV: usize>(
         &self,
-        span: &Span<T, NV, NC>,
+        span: &ColumnSpan<T, NV, NC>,
         lacking: &[T; NC],
     ) -> [T; NC] {
         let rank = span.rank;
@@ -426,7 +438,7 @@ impl<T: Real, const NC: usize> Triangle<T, NC> {
             return lambda;
         }
         for step in (0..NC).rev() {
-            let Some((k, pivot)) = span.pivot(step) else { continue };
+            let Some((k, pivot)) = span.pivot_column(step) else { continue };
             let share = entry_or_zero(&rest, step) / entry_or_zero(&pivot.x, step);
             rest.iter_mut().zip(&pivot.x).take(step).for_each(|(rest, x)| *rest -= share * *x);
             if let Some(slot) = lambda.get_mut(k) {

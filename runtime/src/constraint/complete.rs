@@ -19,9 +19,9 @@ pub(super) fn check_held_indices<const NV: usize>(held: &[usize]) -> Result<(), 
     outside.map_or(Ok(()), |index| Err(ConstraintError::Held { index, velocities: NV }))
 }
 
-/// Corrects the entries of `x` that are not `held` until the `gap` of the constraints is exact, with the
-/// least change in the metric of the mass matrix. Returns `x`, and the index and magnitude of its largest
-/// gap.
+/// Corrects the entries of `x` that are not `held` until the residual `gap` of the constraints is zero to
+/// rounding, with the least change in the metric of the mass matrix. Returns `x`, and the index and magnitude
+/// of the largest remaining residual.
 fn correct_free_entries<T: Real, const NV: usize, const NC: usize>(
     mass: &SMatrix<T, NV, NV>,
     jacobian: &SMatrix<T, NC, NV>,
@@ -43,7 +43,7 @@ fn correct_free_entries<T: Real, const NV: usize, const NC: usize>(
     Ok((x, worst))
 }
 
-/// Returns the velocity with the entries `held` of `v` that fulfils the constraints.
+/// Returns the velocity that satisfies the constraints and has the entries `held` of `v`.
 pub(super) fn completed_velocity<
     M,
     const NQ: usize,
@@ -77,7 +77,7 @@ where
     })
 }
 
-/// Returns the acceleration with the entries `held` of `a` that fulfils the constraints.
+/// Returns the acceleration that satisfies the constraints and has the entries `held` of `a`.
 pub(super) fn complete_acceleration<
     M,
     T: Real,
@@ -124,8 +124,8 @@ where
     M::CONSTRAINTS.get(index).copied().unwrap_or_default()
 }
 
-/// Returns the generalized forces at the velocities `driven` and the multipliers `λ` with
-/// `M a + h = τ + Jᵀ λ`; the equations of the other velocities determine the multipliers.
+/// Returns the generalized drive forces at the velocities `driven` and the multipliers `λ` with
+/// `M a + h = τ + Jᵀ λ`. The equations of the other velocities determine the multipliers.
 pub(super) fn driving_forces<
     M,
     T: Real,
@@ -161,7 +161,7 @@ where
     }
     let forces = mechanism.inverse_dynamics(t, q, v, a);
     let is_driven = |i: usize| driven.contains(&i);
-    let rows: [Row<T, NC>; NV] = jacobian.data.0;
+    let rows: [VectorRow<T, NC>; NV] = jacobian.data.0;
     let size = rows.map(|row| dot(&row, &row));
     let open = core::array::from_fn(|i| if is_driven(i) { [nalgebra::zero(); NC] } else { rows[i] });
     let mut lambda = [nalgebra::zero(); NC];
@@ -169,7 +169,7 @@ where
     // The second pass removes rounding errors of the first one.
     for _ in 0..2 {
         let (change, _) = minimum_norm_solution(&open, &size, &left.data.0[0]);
-        add(&mut lambda, nalgebra::one(), &change);
+        add_row_multiple(&mut lambda, nalgebra::one(), &change);
         left = forces - jacobian.transpose() * SVector::from(lambda);
     }
     let (mut tau, mut worst) = (SVector::zeros(), None);
@@ -196,32 +196,32 @@ where
     }
 }
 
-type Row<T, const N: usize> = [T; N];
+type VectorRow<T, const N: usize> = [T; N];
 
-fn dot<T: Real, const N: usize>(a: &Row<T, N>, b: &Row<T, N>) -> T {
+fn dot<T: Real, const N: usize>(a: &VectorRow<T, N>, b: &VectorRow<T, N>) -> T {
     a.iter().zip(b).fold(T::zero(), |sum, (a, b)| sum + *a * *b)
 }
 
 /// Adds a multiple of a row to another row, `a += factor · b`.
-fn add<T: Real, const N: usize>(a: &mut Row<T, N>, factor: T, b: &Row<T, N>) {
+fn add_row_multiple<T: Real, const N: usize>(a: &mut VectorRow<T, N>, factor: T, b: &VectorRow<T, N>) {
     a.iter_mut().zip(b).for_each(|(a, b)| *a += factor * *b);
 }
 
 /// Removes the component along a unit direction from rows. Two passes are sufficient for orthogonality
 /// (Björck, *Numerical Methods for Least Squares Problems*, 1996, § 2.4.5).
 fn remove_component<T: Real, const N: usize, const K: usize>(
-    rows: &mut [Row<T, N>; K],
-    direction: &Row<T, N>,
+    rows: &mut [VectorRow<T, N>; K],
+    direction: &VectorRow<T, N>,
 ) {
     for row in rows {
         for _ in 0..2 {
             let along = dot(row, direction);
-            add(row, -along, direction);
+            add_row_multiple(row, -along, direction);
         }
     }
 }
 
-/// Returns the row with the largest `size` among the rows that are not yet taken, and this size.
+/// Returns the index of the row with the largest `size` among the rows that are not yet taken, and this size.
 fn largest_row<T: Real, const K: usize>(taken: &[bool; K], size: impl Fn(usize) -> T) -> Option<(usize, T)> {
     let mut best = None;
     for k in (0..K).filter(|k| !taken[*k]) {
@@ -233,7 +233,7 @@ fn largest_row<T: Real, const K: usize>(taken: &[bool; K], size: impl Fn(usize) 
     best
 }
 
-/// Returns the `x` with `J x = −gap` and zeros for held velocities that minimises `xᵀ M x`.
+/// Returns the minimum of `xᵀ M x` over all `x` with `J x = −gap` that are zero for held velocities.
 ///
 /// First finds a solution with [`minimum_norm_solution`], then minimises the energy over the space of all
 /// remaining motions. Coordinates are scaled by their inertia.
@@ -244,16 +244,16 @@ fn least_energy_correction<T: Real, const NV: usize, const NC: usize>(
     gap: &SVector<T, NC>,
 ) -> SVector<T, NV> {
     let mass = mass.data.0;
-    let scale: Row<T, NV> = core::array::from_fn(|i| {
+    let scale: VectorRow<T, NV> = core::array::from_fn(|i| {
         let own = mass[i][i];
         if own > T::zero() { T::one() / own.sqrt() } else { T::one() }
     });
-    let rows: [Row<T, NV>; NC] =
+    let rows: [VectorRow<T, NV>; NC] =
         core::array::from_fn(|k| core::array::from_fn(|i| jacobian.data.0[i][k] * scale[i]));
     // Squared lengths of the rows without held velocities.
-    let reach: Row<T, NC> = core::array::from_fn(|k| dot(&rows[k], &rows[k]));
+    let reach: VectorRow<T, NC> = core::array::from_fn(|k| dot(&rows[k], &rows[k]));
     let rows = rows.map(|row| core::array::from_fn(|i| if held.contains(&i) { T::zero() } else { row[i] }));
-    let mut axes: [Row<T, NV>; NV] = core::array::from_fn(|i| {
+    let mut axes: [VectorRow<T, NV>; NV] = core::array::from_fn(|i| {
         core::array::from_fn(|j| if i == j && !held.contains(&i) { T::one() } else { T::zero() })
     });
     let (mut y, directions) =
@@ -262,8 +262,8 @@ fn least_energy_correction<T: Real, const NV: usize, const NC: usize>(
         remove_component(&mut axes, direction);
     }
     let scaled_mass_row =
-        |i: usize| -> Row<T, NV> { core::array::from_fn(|j| mass[i][j] * scale[i] * scale[j]) };
-    least_energy(&core::array::from_fn(scaled_mass_row), axes, &mut y);
+        |i: usize| -> VectorRow<T, NV> { core::array::from_fn(|j| mass[i][j] * scale[i] * scale[j]) };
+    move_to_least_energy(&core::array::from_fn(scaled_mass_row), axes, &mut y);
     SVector::from_fn(|i, _| y[i] * scale[i])
 }
 
@@ -273,10 +273,10 @@ fn least_energy_correction<T: Real, const NV: usize, const NC: usize>(
 /// to its length is selected. Dependent rows are dropped; their targets are satisfied automatically or not at
 /// all.
 fn minimum_norm_solution<T: Real, const N: usize, const K: usize>(
-    rows: &[Row<T, N>; K],
+    rows: &[VectorRow<T, N>; K],
     sizes: &[T; K],
     targets: &[T; K],
-) -> (Row<T, N>, [Option<Row<T, N>>; K]) {
+) -> (VectorRow<T, N>, [Option<VectorRow<T, N>>; K]) {
     let (mut rest, mut taken, mut y) = (*rows, [false; K], [T::zero(); N]);
     let mut directions = [None; K];
     // Rows with a smaller independent component would require excessive velocities.
@@ -289,7 +289,7 @@ fn minimum_norm_solution<T: Real, const N: usize, const K: usize>(
         let size = dot(&rest[k], &rest[k]).sqrt();
         let direction = rest[k].map(|x| x / size);
         let missing = (targets[k] - dot(&rows[k], &y)) / size;
-        add(&mut y, missing, &direction);
+        add_row_multiple(&mut y, missing, &direction);
         remove_component(&mut rest, &direction);
         *slot = Some(direction);
     }
@@ -297,13 +297,18 @@ fn minimum_norm_solution<T: Real, const N: usize, const K: usize>(
 }
 
 /// Moves `y` within the space spanned by `axes` to the minimum of `yᵀ M y`.
-fn least_energy<T: Real, const N: usize>(mass: &[Row<T, N>; N], mut axes: [Row<T, N>; N], y: &mut Row<T, N>) {
+fn move_to_least_energy<T: Real, const N: usize>(
+    mass: &[VectorRow<T, N>; N],
+    mut axes: [VectorRow<T, N>; N],
+    y: &mut VectorRow<T, N>,
+) {
     // The longest remainder of an axis is at least as long as the mean.
     let some = constant::<T>(0.5 / N.max(1) as f64);
     let (mut basis, mut taken) = ([[T::zero(); N]; N], [false; N]);
     for slot in &mut basis {
-        let square = |k: usize| dot(&axes[k], &axes[k]);
-        let Some((k, square)) = largest_row(&taken, square).filter(|(_, square)| *square > some) else {
+        let squared_length = |k: usize| dot(&axes[k], &axes[k]);
+        let Some((k, square)) = largest_row(&taken, squared_length).filter(|(_, square)| *square > some)
+        else {
             break;
         };
         taken[k] = true;
@@ -311,7 +316,7 @@ fn least_energy<T: Real, const N: usize>(mass: &[Row<T, N>; N], mut axes: [Row<T
         remove_component(&mut axes, slot);
     }
     let heavy = basis.map(|b| core::array::from_fn(|i| dot(&mass[i], &b)));
-    let mut rest: Row<T, N> = core::array::from_fn(|i| -dot(&heavy[i], y));
+    let mut rest: VectorRow<T, N> = core::array::from_fn(|i| -dot(&heavy[i], y));
     // A = L D Lᵀ. Motions without inertia keep their value.
     let (mut lower, mut pivots) = ([[T::zero(); N]; N], [T::zero(); N]);
     let quotient_or_zero = |x: T, pivot: T| if pivot > epsilon() { x / pivot } else { T::zero() };
@@ -329,6 +334,6 @@ fn least_energy<T: Real, const N: usize>(mass: &[Row<T, N>; N], mut axes: [Row<T
     }
     for i in (0..N).rev() {
         rest[i] = (i + 1..N).fold(quotient_or_zero(rest[i], pivots[i]), |sum, k| sum - lower[k][i] * rest[k]);
-        add(y, rest[i], &basis[i]);
+        add_row_multiple(y, rest[i], &basis[i]);
     }
 }

@@ -31,8 +31,8 @@ pub trait ConstrainedDerivatives<
     const NC: usize,
 >: Constrained<NQ, NV, NU, NH, NC> + Derivatives<NQ, NV, NU>
 {
-    /// Returns the derivatives of `M a + h − Jᵀ λ`, of `J a + b` and of the constraint rates, for any `a` and
-    /// `λ`.
+    /// Returns the derivatives of `M a + h − Jᵀ λ` (equations of motion), of `J a + b` (constraint
+    /// accelerations) and of the constraint rates, for any accelerations `a` and multipliers `λ`.
     fn equation_derivatives(
         &self,
         t: Self::Scalar,
@@ -62,9 +62,9 @@ pub trait ConstrainedDerivatives<
 /// v + …`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EquationDerivatives<T, const NV: usize, const NC: usize> {
-    /// Derivative `∂(M a + h − Jᵀ λ)/∂q`.
+    /// Derivative `∂(M a + h − Jᵀ λ)/∂q` of the equations of motion with respect to the configuration.
     pub forces_by_q: SMatrix<T, NV, NV>,
-    /// Derivative `∂(M a + h − Jᵀ λ)/∂v`.
+    /// Derivative `∂(M a + h − Jᵀ λ)/∂v` of the equations of motion with respect to the velocity.
     pub forces_by_v: SMatrix<T, NV, NV>,
     /// Derivative `∂(J a + b)/∂q` of the constraint accelerations.
     pub accelerations_by_q: SMatrix<T, NC, NV>,
@@ -89,14 +89,15 @@ impl<T, const NV: usize, const NC: usize> From<MotionDerivatives<T, NV, NC>>
 }
 
 /// Derivatives of accelerations, and derivatives of constraint multipliers.
-type Changes<T, const NV: usize, const NC: usize> = (SMatrix<T, NV, NV>, SMatrix<T, NC, NV>);
+type MotionSensitivity<T, const NV: usize, const NC: usize> = (SMatrix<T, NV, NV>, SMatrix<T, NC, NV>);
 
 /// Accelerations and multipliers of constrained motion, with their derivatives.
-pub(crate) struct Solved<T, const NV: usize, const NC: usize> {
+pub(crate) struct SolvedDerivatives<T, const NV: usize, const NC: usize> {
     pub(crate) a: SVector<T, NV>,
     pub(crate) lambda: SVector<T, NC>,
-    /// Derivatives with respect to configuration, velocity and force.
-    pub(crate) by: [Changes<T, NV, NC>; 3],
+    /// Derivatives of accelerations and multipliers with respect to configuration, velocity and generalized
+    /// force.
+    pub(crate) by: [MotionSensitivity<T, NV, NC>; 3],
 }
 
 /// Returns the accelerations and multipliers of [`constrained_dynamics`](Constrained::constrained_dynamics)
@@ -115,7 +116,7 @@ pub(crate) fn solved_derivatives<
     q: &SVector<T, NQ>,
     v: &SVector<T, NV>,
     tau: &SVector<T, NV>,
-) -> Solved<T, NV, NC>
+) -> SolvedDerivatives<T, NV, NC>
 where
     T: Real,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
@@ -140,7 +141,7 @@ where
         solve_derivative_columns(&parts.forces_by_v, &parts.accelerations_by_v),
         solve_derivative_columns(&-SMatrix::identity(), &SMatrix::zeros()),
     ];
-    Solved { a, lambda, by }
+    SolvedDerivatives { a, lambda, by }
 }
 
 /// Returns the multipliers `μ` of constraint forces `p = Jᵀ μ`.
@@ -167,9 +168,9 @@ where
     m.constrained_dynamics(t, q, &still, &(rest - p)).1 - m.constrained_dynamics(t, q, &still, &rest).1
 }
 
-/// Operation on a mechanism with any number of constraints.
-/// [`visit_constraints`](crate::Derivatives::visit_constraints) calls it, so that generic code without the
-/// number of constraints in its types can use the constraints.
+/// Operation on a mechanism with any number of constraints, called by
+/// [`visit_constraints`](crate::Derivatives::visit_constraints), so that generic code can use the constraints
+/// without their number as a const parameter.
 pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
     /// Type of the result of the operation.
     type Output;
@@ -180,13 +181,14 @@ pub trait Visitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>;
 }
 
-/// Visitor of a mechanism at a fixed time.
-pub(crate) struct Frozen<V, T> {
+/// Visitor that receives the mechanism at a fixed time.
+pub(crate) struct FrozenTimeVisitor<V, T> {
     pub(crate) visitor: V,
     pub(crate) t: T,
 }
 
-impl<V, T, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, NV, NU> for Frozen<V, T>
+impl<V, T, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, NV, NU>
+    for FrozenTimeVisitor<V, T>
 where
     T: Real,
     V: Visitor<T, NQ, NV, NU>,
@@ -201,7 +203,7 @@ where
     }
 }
 
-/// Implements the trait for a mechanism at a fixed time; the argument `t` is ignored.
+/// Implements the trait for a mechanism at a fixed time. The argument `t` of the functions is ignored.
 #[diagnostic::do_not_recommend]
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
     Constrained<NQ, NV, NU, NH, NC> for At<'_, M, T>
@@ -301,7 +303,7 @@ pub(crate) fn column_or_zeros<T: Real, const R: usize, const C: usize>(
     m.data.0.get(j).map_or_else(SVector::zeros, |column| SVector::from(*column))
 }
 
-/// Sets a column of a matrix.
+/// Sets column `j` of a matrix; does nothing if the index is out of range.
 pub(crate) fn set_column<T: Real, const R: usize, const C: usize>(
     m: &mut SMatrix<T, R, C>,
     j: usize,
@@ -313,7 +315,7 @@ pub(crate) fn set_column<T: Real, const R: usize, const C: usize>(
 }
 
 /// Returns the matrix whose columns are given by a function of the column index.
-pub(crate) fn each_column<T: Real, const R: usize, const C: usize>(
+pub(crate) fn matrix_of_columns<T: Real, const R: usize, const C: usize>(
     column: impl Fn(usize) -> SVector<T, R>,
 ) -> SMatrix<T, R, C> {
     let mut m = zeros();

@@ -13,29 +13,29 @@ pub enum ConstraintError {
         /// Residual of the constraint with the largest residual, m or rad.
         residual: f64,
     },
-    /// No velocity satisfies the constraints: prescribed motions contradict them, or the configuration is
-    /// singular.
+    /// Error: no velocity satisfies the constraints. Prescribed motions contradict them, or the configuration
+    /// is singular.
     Velocity {
         /// Name of the constraint with the largest violation.
         constraint: &'static str,
         /// Violation of the rate of this constraint, m/s or rad/s.
         rate: f64,
     },
-    /// No acceleration satisfies the constraints: prescribed entries contradict them, or the configuration is
-    /// singular.
+    /// Error: no acceleration satisfies the constraints. Prescribed entries contradict them, or the
+    /// configuration is singular.
     Acceleration {
         /// Name of the constraint with the largest violation.
         constraint: &'static str,
         /// Violation of the second rate of this constraint, m/s² or rad/s².
         acceleration: f64,
     },
-    /// No configuration of the requested assembly mode was found near the guess
+    /// Error: no configuration of the requested assembly mode was found near the guess
     /// ([`assemble_in_mode`](crate::Constrained::assemble_in_mode)).
     Mode {
         /// Assembly mode that was requested but not found.
         mode: i8,
     },
-    /// Forces at the driven velocities cannot cause the motion; further velocities must be driven
+    /// Error: forces at the driven velocities cannot cause the motion. Further velocities must be driven
     /// ([`constrained_inverse_dynamics`](crate::Constrained::constrained_inverse_dynamics)).
     Undriven {
         /// Name of the velocity whose equation has the largest residual.
@@ -43,29 +43,29 @@ pub enum ConstraintError {
         /// Missing force at this velocity, N or N·m.
         force: f64,
     },
-    /// Constraints that are usually independent are dependent in this configuration, and the motion is not
-    /// determined to first order.
+    /// Error: constraints that are usually independent are dependent in this configuration, and the motion is
+    /// not determined to first order.
     Singular,
-    /// Friction jams: a normal force on which friction depends does not follow from the motion (Painlevé's
-    /// paradox), or contacts can share it in several ways.
+    /// Error: friction jams. A normal force on which friction depends does not follow from the motion
+    /// (Painlevé's paradox), or contacts can share it in several ways.
     Jammed {
         /// Name of the contact whose friction jams.
         constraint: &'static str,
     },
-    /// No impulses satisfy the contact conditions: constraints or prescribed motions force surfaces to
-    /// penetrate.
+    /// Error: no impulses satisfy the contact conditions, because constraints or prescribed motions force
+    /// surfaces to penetrate.
     Contact {
         /// Name of the contact with the largest violation.
         constraint: &'static str,
     },
-    /// A step has no exact derivatives: Poisson's restitution acts in it, its impulses violate the contact
-    /// conditions, or the mechanism has no derivatives of its contacts.
+    /// Error: a step has no exact derivatives. Poisson's restitution acts in it, its impulses violate the
+    /// contact conditions, or the mechanism has no derivatives of its contacts.
     NoDerivatives {
-        /// Name of the contact.
+        /// Name of the contact whose step has no derivatives.
         constraint: &'static str,
     },
-    /// A coefficient of friction is negative or not finite, or a coefficient of restitution is not between 0
-    /// and 1.
+    /// Error: a coefficient of friction is negative or not finite, or a coefficient of restitution is not
+    /// between 0 and 1.
     Coefficient {
         /// Name of the contact with the invalid coefficient.
         constraint: &'static str,
@@ -79,7 +79,7 @@ pub enum ConstraintError {
         /// Depth of the largest overlap, m or rad.
         depth: f64,
     },
-    /// An index in `held` is out of range; velocities are counted from zero.
+    /// Error: an index in `held` is out of range. Velocities are counted from zero.
     Held {
         /// Index in `held` that is out of range.
         index: usize,

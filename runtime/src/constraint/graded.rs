@@ -1,7 +1,7 @@
 //! Velocity changes that satisfy enforced constraint rows, for masses that differ by many orders of
 //! magnitude.
 
-use super::span::{Metric, Span, entry_or_zero, rounding_threshold};
+use super::span::{ColumnSpan, MassFactorisation, entry_or_zero, rounding_threshold};
 use crate::Real;
 use nalgebra::{SMatrix, SVector};
 
@@ -20,9 +20,9 @@ pub(crate) fn change_rates<T: Real, const NV: usize, const NC: usize>(
     for column in &mut rows.data.0 {
         column.iter_mut().zip(held).filter(|(_, held)| !**held).for_each(|(entry, _)| *entry = T::zero());
     }
-    let metric = Metric::new(&mass.data.0);
-    let mut span = Span::new(&metric, &rows, groups);
-    span.extend(rounding_threshold(), NC);
+    let metric = MassFactorisation::new(&mass.data.0);
+    let mut span = ColumnSpan::new(&metric, &rows, groups);
+    span.extend_basis(rounding_threshold(), NC);
     if span.rank < held.iter().filter(|held| **held).count() {
         return None;
     }
@@ -30,21 +30,21 @@ pub(crate) fn change_rates<T: Real, const NV: usize, const NC: usize>(
         // `Rᵀ z = changes`, then `R λ = z`, by columns in the order in which they joined the basis.
         let mut z = [T::zero(); NV];
         for step in 0..span.rank {
-            let (k, pivot) = span.pivot(step)?;
+            let (k, pivot) = span.pivot_column(step)?;
             let change = entry_or_zero(&changes.data.0[0], k) / pivot.length;
             let rest = pivot.x.iter().zip(&z).take(step).fold(change, |rest, (x, z)| rest - *x * *z);
             *z.get_mut(step)? = rest / entry_or_zero(&pivot.x, step);
         }
         let mut impulses = SVector::<T, NC>::zeros();
         for step in (0..span.rank).rev() {
-            let later = (step + 1..span.rank).filter_map(|later| span.pivot(later));
+            let later = (step + 1..span.rank).filter_map(|later| span.pivot_column(later));
             let rest = later.fold(entry_or_zero(&z, step), |rest, (k, column)| {
                 rest - entry_or_zero(&column.x, step) * column.length * entry_or_zero(&impulses.data.0[0], k)
             });
-            let (k, pivot) = span.pivot(step)?;
+            let (k, pivot) = span.pivot_column(step)?;
             *impulses.get_mut(k)? = rest / (entry_or_zero(&pivot.x, step) * pivot.length);
         }
-        Some((SVector::from(metric.back(span.backward(z))), impulses))
+        Some((SVector::from(metric.solve_transposed(span.undo_reflections(z))), impulses))
     };
     let (x, impulses) = solve_for_impulses(changes)?;
     // Velocities of light bodies are much larger than their rounding errors, because the rows determine them.

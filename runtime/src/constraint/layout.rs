@@ -11,9 +11,10 @@ pub struct Elimination<T, const NV: usize, const NC: usize> {
     pub accelerations: [T; NV],
     /// Multipliers that the elimination found, one per constraint.
     pub multipliers: [T; NC],
-    /// Pivot of each constraint in the elimination.
+    /// Pivot of each constraint in the elimination, as a measure of its independence.
     pub pivots: [T; NC],
-    /// Value of each pivot before the elimination of other constraints.
+    /// Diagonal entry of each constraint before the elimination of other constraints, to which its pivot is
+    /// compared.
     pub before: [T; NC],
 }
 
@@ -22,15 +23,16 @@ pub struct Elimination<T, const NV: usize, const NC: usize> {
 pub struct Responses<T, const NV: usize, const NC: usize> {
     /// Accelerations that the forces would cause if all constraint multipliers were zero.
     pub free: [T; NV],
-    /// Negative constraint accelerations `−(J a + b)` for these accelerations.
+    /// Negative constraint accelerations `−(J a + b)` at the accelerations without multipliers.
     pub lacking: [T; NC],
     /// Rows of the matrix `J M⁻¹ Jᵀ` (Delassus matrix) of the constraints.
     pub gram: [[T; NC]; NC],
-    /// Accelerations due to a unit of each multiplier.
+    /// Accelerations due to a unit of each multiplier, one list per constraint.
     pub given: [[T; NV]; NC],
 }
 
-/// Derivatives at fixed accelerations and multipliers. Matrices are arrays of columns.
+/// Derivatives of the equations of constrained motion at fixed accelerations and multipliers. Matrices are
+/// arrays of columns.
 #[derive(Clone, Copy, Debug)]
 pub struct MotionDerivatives<T, const NV: usize, const NC: usize> {
     /// Derivatives of `M a + h − Jᵀ λ` with respect to `q`.
@@ -47,18 +49,19 @@ pub struct MotionDerivatives<T, const NV: usize, const NC: usize> {
     pub turning: [[T; NV]; NV],
 }
 
-/// Second derivatives of `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)`. Matrices are arrays of columns.
+/// Second derivatives of the contracted equations `−λᵀ J w + zᵀ (J a + b) + yᵀ (J v + …)` of constrained
+/// motion. Matrices are arrays of columns.
 #[derive(Clone, Copy, Debug)]
 pub struct ConstraintCurvature<T, const NV: usize, const NC: usize> {
     /// Block of the Hessian: second derivatives with respect to `q`.
     pub qq: [[T; NV]; NV],
-    /// Derivatives with respect to `q` (rows) and `v`.
+    /// Block of the Hessian: derivatives with respect to `q` (rows) and `v` (columns).
     pub qv: [[T; NV]; NV],
     /// Block of the Hessian: second derivatives with respect to `v`.
     pub vv: [[T; NV]; NV],
-    /// Derivatives with respect to `q` (rows) and `a`.
+    /// Block of the Hessian: derivatives with respect to `q` (rows) and the accelerations `a` (columns).
     pub qa: [[T; NV]; NV],
-    /// Derivatives with respect to `q` (rows) and `λ`.
+    /// Block of the Hessian: derivatives with respect to `q` (rows) and the multipliers `λ` (columns).
     pub q_lambda: [[T; NV]; NC],
 }
 
@@ -76,7 +79,8 @@ pub struct InputDerivatives<T, const NV: usize, const NU: usize> {
 }
 
 impl<T: Real, const NV: usize, const NC: usize> MotionDerivatives<T, NV, NC> {
-    /// Returns the derivatives with the inputs' forces included; these forces may depend on the state.
+    /// Returns the derivatives of the equations with the forces of the inputs included, which may depend on
+    /// the state.
     pub fn with_inputs<const NU: usize>(mut self, inputs: &InputDerivatives<T, NV, NU>) -> Self {
         let subtract_matrix = |from: &mut [[T; NV]; NV], what: &[[T; NV]; NV]| {
             for (entry, other) in from.iter_mut().flatten().zip(what.iter().flatten()) {

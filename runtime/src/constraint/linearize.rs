@@ -28,16 +28,16 @@ pub struct Linearization<T, const NX: usize, const NU: usize, const NP: usize, c
     pub speeds: [usize; NS],
 }
 
-/// Returns the derivatives of the accelerations with respect to `q`, `v` and `τ`. `solve` returns
-/// accelerations for forces and biases.
+/// Returns the derivatives of the accelerations with respect to `q`, `v` and `τ`. The function `solve`
+/// returns the accelerations for given forces and constraint biases.
 pub fn constrained_derivatives<T: Real, const NV: usize, const NC: usize>(
     parts: &MotionDerivatives<T, NV, NC>,
     solve: impl Fn(&[T; NV], &[T; NC]) -> SVector<T, NV>,
 ) -> (SMatrix<T, NV, NV>, SMatrix<T, NV, NV>, SMatrix<T, NV, NV>) {
     let response_columns = |forces: &[[T; NV]; NV], bias: &[[T; NC]; NV]| {
-        each_column(|j| solve(&forces[j].map(|f| -f), &bias[j]))
+        matrix_of_columns(|j| solve(&forces[j].map(|f| -f), &bias[j]))
     };
-    let by_force = each_column(|j| {
+    let by_force = matrix_of_columns(|j| {
         solve(&core::array::from_fn(|i| if i == j { T::one() } else { T::zero() }), &[T::zero(); NC])
     });
     (
@@ -47,7 +47,7 @@ pub fn constrained_derivatives<T: Real, const NV: usize, const NC: usize>(
     )
 }
 
-fn each_column<T: Real, const R: usize, const C: usize>(
+fn matrix_of_columns<T: Real, const R: usize, const C: usize>(
     column: impl Fn(usize) -> SVector<T, R>,
 ) -> SMatrix<T, R, C> {
     let mut m = SMatrix::zeros();
@@ -86,7 +86,7 @@ pub struct Motion<'a, T, const NV: usize, const NC: usize, const NU: usize> {
     pub turning: SMatrix<T, NV, NV>,
     /// Number of holonomic constraints, which come first among the rows of the constraints.
     pub holonomic: usize,
-    /// Indices of the velocities that should be independent.
+    /// Indices of the velocities that should be chosen as independent.
     pub preferred: &'a [usize],
 }
 
@@ -102,8 +102,8 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
         for k in self.holonomic..NC {
             scale_row(&mut on_configurations, k, T::zero());
         }
-        let positions = Dependence::new(on_configurations, zero, self.preferred);
-        let speeds = Dependence::new(self.jacobian, -self.rates_by_q, self.preferred);
+        let positions = DependentEntries::new(on_configurations, zero, self.preferred);
+        let speeds = DependentEntries::new(self.jacobian, -self.rates_by_q, self.preferred);
         let (coordinates, shape) = positions.independent_entries::<NP>()?;
         let (free, gamma) = speeds.independent_entries::<NS>()?;
         let carried = speeds.particular_solution() * shape;
@@ -135,14 +135,14 @@ impl<T: Real, const NV: usize, const NC: usize, const NU: usize> Motion<'_, T, N
 }
 
 /// Solution of `J x = R y` for dependent entries of `x`, by Gauss–Jordan elimination with complete pivoting.
-struct Dependence<T, const NV: usize, const NC: usize> {
+struct DependentEntries<T, const NV: usize, const NC: usize> {
     left: SMatrix<T, NC, NV>,
     right: SMatrix<T, NC, NV>,
     /// Column of the pivot in each row of the elimination; `None` for a row without a pivot.
     pivots: [Option<usize>; NC],
 }
 
-impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
+impl<T: Real, const NV: usize, const NC: usize> DependentEntries<T, NV, NC> {
     fn new(mut left: SMatrix<T, NC, NV>, mut right: SMatrix<T, NC, NV>, preferred: &[usize]) -> Self {
         let mut pivots = [None; NC];
         let small = constant::<T>(1e6) * epsilon() * left.amax();
@@ -178,7 +178,7 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
         Self { left, right, pivots }
     }
 
-    /// Returns the independent entries, and all entries as linear functions of them.
+    /// Returns the indices of the independent entries, and the matrix that maps them to all entries.
     fn independent_entries<const N: usize>(
         &self,
     ) -> Result<([usize; N], SMatrix<T, NV, N>), ConstraintError> {
@@ -199,7 +199,7 @@ impl<T: Real, const NV: usize, const NC: usize> Dependence<T, NV, NC> {
         Ok((indices, shape))
     }
 
-    /// Returns the dependent entries as functions of `y` for independent entries of zero.
+    /// Returns the matrix that maps `y` to the dependent entries, for independent entries of zero.
     fn particular_solution(&self) -> SMatrix<T, NV, NV> {
         SMatrix::from_fn(|i, j| {
             let row = self.pivots.iter().position(|p| *p == Some(i));

@@ -28,7 +28,7 @@ pub trait ConstrainedSecondDerivatives<
 {
     /// Returns the second derivatives of `wᵀ (M a + h − Jᵀ λ) + zᵀ (J a + b) + yᵀ (J v + …)` for any `a` and
     /// `λ`: the equations of motion, the acceleration constraints and the constraint rates, contracted with
-    /// `w`, `z` and `y`.
+    /// the factors `w`, `z` and `y`.
     #[allow(clippy::too_many_arguments, reason = "three factors stand beside the state")]
     fn equation_second_derivatives(
         &self,
@@ -51,13 +51,16 @@ pub trait ConstrainedSecondDerivatives<
 pub struct EquationSecondDerivatives<T, const NV: usize, const NC: usize> {
     /// Block of the contracted Hessian: second derivatives with respect to the configuration.
     pub qq: SMatrix<T, NV, NV>,
-    /// Derivatives with respect to configuration (rows) and velocity.
+    /// Block of the contracted Hessian: derivatives with respect to configuration (rows) and velocity
+    /// (columns).
     pub qv: SMatrix<T, NV, NV>,
     /// Block of the contracted Hessian: second derivatives with respect to the velocity.
     pub vv: SMatrix<T, NV, NV>,
-    /// Derivatives with respect to configuration (rows) and acceleration.
+    /// Block of the contracted Hessian: derivatives with respect to configuration (rows) and acceleration
+    /// (columns).
     pub qa: SMatrix<T, NV, NV>,
-    /// Derivatives with respect to configuration (rows) and multipliers.
+    /// Block of the contracted Hessian: derivatives with respect to configuration (rows) and constraint
+    /// multipliers (columns).
     pub q_lambda: SMatrix<T, NV, NC>,
 }
 
@@ -145,8 +148,8 @@ pub(crate) fn with_transpose<T: Real, const N: usize>(
     a
 }
 
-/// Operation on a mechanism with any number of constraints and with second derivatives.
-/// [`visit_constraint_curvature`](crate::SecondDerivatives::visit_constraint_curvature) calls it.
+/// Operation on a mechanism with second derivatives and any number of constraints, called by
+/// [`visit_constraint_curvature`](crate::SecondDerivatives::visit_constraint_curvature).
 pub trait CurvatureVisitor<T: Real, const NQ: usize, const NV: usize, const NU: usize> {
     /// Type of the value that the operation returns.
     type Output;
@@ -157,14 +160,14 @@ pub trait CurvatureVisitor<T: Real, const NQ: usize, const NV: usize, const NU: 
         M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>;
 }
 
-/// Visitor of a mechanism at a fixed time.
-pub(crate) struct FrozenCurvature<V, T> {
+/// Visitor that receives the mechanism at a fixed time.
+pub(crate) struct FrozenCurvatureVisitor<V, T> {
     pub(crate) visitor: V,
     pub(crate) t: T,
 }
 
 impl<V, T, const NQ: usize, const NV: usize, const NU: usize> CurvatureVisitor<T, NQ, NV, NU>
-    for FrozenCurvature<V, T>
+    for FrozenCurvatureVisitor<V, T>
 where
     T: Real,
     V: CurvatureVisitor<T, NQ, NV, NU>,

@@ -13,14 +13,14 @@ fn minimum_pivot_ratio<T: Real>() -> T {
     epsilon::<T>().sqrt().sqrt()
 }
 
-/// Returns the minimum pivot relative to the pivots of the constraint's group; smaller pivots are mostly
-/// rounding errors. Also a ratio of squared lengths.
+/// Returns the minimum ratio of a pivot to the pivots of its group of constraints. Smaller pivots are mostly
+/// rounding errors. Pivots are squared lengths.
 fn minimum_group_pivot<T: Real>() -> T {
     epsilon::<T>().cbrt()
 }
 
-/// Returns the sum over the group of a constraint.
-fn of_group<T: Real, const NC: usize>(groups: &[usize; NC], k: usize, each: impl Fn(usize) -> T) -> T {
+/// Returns the sum of `each` over the constraints in the group of constraint `k`.
+fn sum_over_group<T: Real, const NC: usize>(groups: &[usize; NC], k: usize, each: impl Fn(usize) -> T) -> T {
     let is_in_group = |i: &usize| groups.get(*i) == groups.get(k);
     (0..NC).filter(is_in_group).fold(T::zero(), |sum, i| sum + each(i))
 }
@@ -60,7 +60,7 @@ fn has_accurate_pivot<T: Real, const NV: usize, const NC: usize>(
 ) -> bool {
     let (pivot, before) = found.pivot_of_constraint(k);
     pivot > minimum_pivot_ratio::<T>() * before
-        && pivot > minimum_group_pivot::<T>() * of_group(groups, k, |k| found.pivot_of_constraint(k).1)
+        && pivot > minimum_group_pivot::<T>() * sum_over_group(groups, k, |k| found.pivot_of_constraint(k).1)
 }
 
 /// Returns whether the pivot of a sliding contact is accurate enough: it must be positive and clearly above
@@ -74,7 +74,7 @@ pub(super) fn has_determined_pivot<T: Real, const NV: usize, const NC: usize>(
     let (pivot, before) = found.pivot_of_constraint(k);
     let least = epsilon::<T>().sqrt();
     pivot > least * before
-        && pivot > minimum_group_pivot::<T>() * of_group(groups, k, |k| found.pivot_of_constraint(k).1)
+        && pivot > minimum_group_pivot::<T>() * sum_over_group(groups, k, |k| found.pivot_of_constraint(k).1)
 }
 
 /// Splits the result of an elimination whose pivots are entries of the Jacobian in predetermined columns.
@@ -96,15 +96,15 @@ pub fn independent_solution<T: Real, const NV: usize, const NC: usize>(
     (product > minimum_pivot_ratio::<T>() * constant(1e-2)).then(|| found.accelerations_and_multipliers())
 }
 
-/// Returns accelerations and multipliers of constraints some of which are always redundant. The multipliers
-/// have minimum norm. Returns `None` unless exactly `rank` constraints are clearly independent.
+/// Returns accelerations and multipliers of mechanisms with redundant constraints. The multipliers have
+/// minimum norm. Returns `None` unless exactly `rank` constraints are clearly independent.
 #[inline]
 pub fn least_solution<T: Real, const NV: usize, const NC: usize>(
     groups: &[usize; NC],
     rank: usize,
     found: &Responses<T, NV, NC>,
 ) -> Option<Solution<T, NV, NC>> {
-    let lambda = least_norm(groups, rank, found.gram, found.lacking)?;
+    let lambda = least_norm_solution(groups, rank, found.gram, found.lacking)?;
     let mut a = found.free;
     for (lambda, given) in lambda.iter().zip(&found.given) {
         a.iter_mut().zip(given).for_each(|(a, given)| *a += *given * *lambda);
@@ -115,14 +115,15 @@ pub fn least_solution<T: Real, const NV: usize, const NC: usize>(
 /// Returns the minimum-norm solution of `A x = b` for a positive semidefinite `A` of the given rank. With `A
 /// = L Lᵀ` for `rank` columns of `L`, and `L = U S`, the solution is `x = U S⁻ᵀ S⁻¹ Uᵀ b` (Higham, *Accuracy
 /// and Stability of Numerical Algorithms*, 2002, § 10.3).
-fn least_norm<T: Real, const N: usize>(
+fn least_norm_solution<T: Real, const N: usize>(
     groups: &[usize; N],
     rank: usize,
     mut a: [[T; N]; N],
     b: [T; N],
 ) -> Option<[T; N]> {
     let before: [T; N] = core::array::from_fn(|k| a[k][k]);
-    let is_above_noise = |k: usize| before[k] >= of_group(groups, k, |i| before[i]) * minimum_group_pivot();
+    let is_above_noise =
+        |k: usize| before[k] >= sum_over_group(groups, k, |i| before[i]) * minimum_group_pivot();
     let sound = (0..N).all(|k| before[k] == T::zero() || is_above_noise(k));
     if !sound {
         return None;

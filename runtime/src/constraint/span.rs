@@ -34,14 +34,14 @@ pub(super) fn rounding_threshold<T: Real>() -> T {
     constant::<T>(ROUNDINGS) * epsilon()
 }
 
-/// Factorisation `M = L Lᵀ` as `L' D L'ᵀ`: the rows of `L'` below its unit diagonal, and the square roots of
-/// `D⁻¹`.
-pub(super) struct Metric<T, const N: usize> {
+/// Factorisation `M = L Lᵀ` of the mass matrix, stored as `L' D L'ᵀ`: the rows of `L'` below its unit
+/// diagonal, and the square roots of `D⁻¹`.
+pub(super) struct MassFactorisation<T, const N: usize> {
     lower: [[T; N]; N],
     root: [T; N],
 }
 
-impl<T: Real, const N: usize> Metric<T, N> {
+impl<T: Real, const N: usize> MassFactorisation<T, N> {
     /// Factorises a mass matrix. Pivots that are zero or negative due to rounding are replaced by the
     /// magnitude of rounding errors.
     pub fn new(mass: &[[T; N]; N]) -> Self {
@@ -60,7 +60,7 @@ impl<T: Real, const N: usize> Metric<T, N> {
     }
 
     /// Returns `L⁻¹ x` for the factorisation `M = L Lᵀ` of the mass matrix.
-    pub fn half(&self, mut x: [T; N]) -> [T; N] {
+    pub fn solve_half(&self, mut x: [T; N]) -> [T; N] {
         for i in 0..N {
             x[i] = (0..i).fold(x[i], |sum, k| sum - self.lower[i][k] * x[k]);
         }
@@ -78,7 +78,7 @@ impl<T: Real, const N: usize> Metric<T, N> {
     }
 
     /// Returns `Lᵀ x` for the factorisation `M = L Lᵀ` of the mass matrix.
-    pub fn upper(&self, x: &[T; N]) -> [T; N] {
+    pub fn multiply_upper(&self, x: &[T; N]) -> [T; N] {
         let mut out = *x;
         for i in 0..N {
             out[i] = (i + 1..N).fold(x[i], |sum, k| sum + self.lower[k][i] * x[k]) / self.root[i];
@@ -87,7 +87,7 @@ impl<T: Real, const N: usize> Metric<T, N> {
     }
 
     /// Returns `L⁻ᵀ x` for the factorisation `M = L Lᵀ` of the mass matrix.
-    pub fn back(&self, mut x: [T; N]) -> [T; N] {
+    pub fn solve_transposed(&self, mut x: [T; N]) -> [T; N] {
         x.iter_mut().zip(&self.root).for_each(|(x, root)| *x *= *root);
         for i in (0..N).rev() {
             x[i] = (i + 1..N).fold(x[i], |sum, k| sum - self.lower[k][i] * x[k]);
@@ -98,18 +98,18 @@ impl<T: Real, const N: usize> Metric<T, N> {
 
 /// Column of the matrix `W = L⁻¹ Jᵀ` (one constraint, with `M = L Lᵀ`), scaled to unit length.
 #[derive(Clone, Copy)]
-pub(super) struct Column<T, const N: usize> {
+pub(super) struct ScaledColumn<T, const N: usize> {
     /// Entries of the column after the Householder reflections that have been applied so far.
     pub x: [T; N],
     /// Largest number that each entry was computed from.
     size: [T; N],
-    /// Length before scaling; zero for a zero column.
+    /// Length of the column before it is scaled to unit length; zero for a zero column.
     pub length: T,
     /// Step at which the column became part of the basis.
     pub step: Option<usize>,
 }
 
-impl<T: Real, const N: usize> Column<T, N> {
+impl<T: Real, const N: usize> ScaledColumn<T, N> {
     /// Returns the length of a column without its first `first` entries. Also returns the largest ratio of a
     /// remaining entry to the largest number that it was computed from.
     fn length_of_remainder(&self, first: usize) -> (T, T) {
@@ -132,27 +132,32 @@ impl<T: Real, const N: usize> Column<T, N> {
     }
 }
 
-/// Space that columns span, represented by the reflections that make them triangular.
-pub(super) struct Span<T, const NV: usize, const NC: usize> {
+/// Space spanned by columns of constraints, represented by the Householder reflections that make the columns
+/// triangular.
+pub(super) struct ColumnSpan<T, const NV: usize, const NC: usize> {
     /// Columns of `W = L⁻¹ Jᵀ`, one per constraint, to which the reflections are applied.
-    pub columns: [Column<T, NV>; NC],
+    pub columns: [ScaledColumn<T, NV>; NC],
     /// Rank found so far: the number of constraint columns in the basis.
     pub rank: usize,
-    /// Permutation of the entries: original index of each position.
+    /// Permutation of the entries of a column: for each position, the original index.
     order: [usize; NV],
     /// Normals of the Householder reflections, each of length √2.
     normals: [[T; NV]; NV],
 }
 
-impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
+impl<T: Real, const NV: usize, const NC: usize> ColumnSpan<T, NV, NC> {
     /// Prepares the rows of a Jacobian. The magnitude that an entry was computed from is estimated by the
     /// other components of the same vector, in the units of the entry. Entries below the corresponding
     /// rounding error become zero.
-    pub fn new(metric: &Metric<T, NV>, jacobian: &SMatrix<T, NC, NV>, groups: &[usize; NC]) -> Self {
+    pub fn new(
+        metric: &MassFactorisation<T, NV>,
+        jacobian: &SMatrix<T, NC, NV>,
+        groups: &[usize; NC],
+    ) -> Self {
         let rows: [[T; NV]; NC] =
             core::array::from_fn(|k| core::array::from_fn(|i| entry_or_zero(&jacobian.data.0[i], k)));
-        let halves = rows.map(|row| metric.half(row));
-        let of_group = |k: usize, each: &[[T; NV]; NC]| {
+        let halves = rows.map(|row| metric.solve_half(row));
+        let group_magnitude = |k: usize, each: &[[T; NV]; NC]| {
             let group = each.iter().zip(groups).filter(|(_, group)| Some(*group) == groups.get(k));
             group.flat_map(|(row, _)| row).fold(T::zero(), |most, x| most.max(x.abs()))
         };
@@ -160,8 +165,8 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
             let group = rows.iter().zip(groups).filter(|(_, group)| Some(*group) == groups.get(k));
             group.fold(T::zero(), |most, (row, _)| most.max(entry_or_zero(row, i).abs()))
         };
-        let columns: [Column<T, NV>; NC] = core::array::from_fn(|k| {
-            let (entry, half) = (of_group(k, &rows), of_group(k, &halves));
+        let columns: [ScaledColumn<T, NV>; NC] = core::array::from_fn(|k| {
+            let (entry, half) = (group_magnitude(k, &rows), group_magnitude(k, &halves));
             let bound = metric.root.map(|root| entry.min(half / root));
             let mut row = rows.get(k).copied().unwrap_or([T::zero(); NV]);
             let mut sizes = bound;
@@ -174,24 +179,24 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
                     (*x, *size) = (T::zero(), T::zero());
                 }
             }
-            let half = metric.half(row);
+            let half = metric.solve_half(row);
             let length = norm(&half);
             let unit = if length > T::zero() { T::one() / length } else { T::zero() };
             let size = metric.magnitudes_of_operands(sizes).map(|x| x * unit);
-            Column { x: half.map(|x| x * unit), size, length, step: None }
+            ScaledColumn { x: half.map(|x| x * unit), size, length, step: None }
         });
         let order = core::array::from_fn(|k| k);
         Self { columns, rank: 0, order, normals: [[T::zero(); NV]; NV] }
     }
 
-    /// Returns the entries in the order of the columns.
+    /// Returns the entries of `x` in the permuted order that the columns use.
     fn entries_in_column_order(&self, x: &[T; NV]) -> [T; NV] {
         self.order.map(|i| entry_or_zero(x, i))
     }
 
     /// Adds columns to the basis, the longest first. A column must have an entry of at least `least` relative
     /// to the number that it was computed from. The basis has at most `most` columns.
-    pub fn extend(&mut self, least: T, most: usize) {
+    pub fn extend_basis(&mut self, least: T, most: usize) {
         while self.rank < most.min(NV) {
             let mut best = (None, T::zero());
             for (k, column) in self.columns.iter().enumerate().filter(|(_, c)| c.step.is_none()) {
@@ -205,12 +210,12 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
             let Some(column) = best.0.and_then(|k| self.columns.get_mut(k)) else { break };
             column.step = Some(self.rank);
             let x = column.x;
-            self.add(x);
+            self.add_direction(x);
         }
     }
 
     /// Adds a direction to the basis: the component of `x` outside the basis, in transformed coordinates.
-    fn add(&mut self, mut x: [T; NV]) {
+    fn add_direction(&mut self, mut x: [T; NV]) {
         let first = self.rank;
         let mut most = (first, T::zero());
         for (k, x) in x.iter().enumerate().skip(first) {
@@ -245,7 +250,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
     }
 
     /// Returns `Qᵀ x`: permutes the entries of a vector and applies the Householder reflections.
-    pub fn forward(&self, x: &[T; NV]) -> [T; NV] {
+    pub fn apply_reflections(&self, x: &[T; NV]) -> [T; NV] {
         let mut x = self.entries_in_column_order(x);
         for normal in self.normals.iter().take(self.rank) {
             reflect_vector(&mut x, normal);
@@ -255,7 +260,7 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
 
     /// Returns `Q x`: applies the Householder reflections in reverse order and undoes the permutation of the
     /// entries.
-    pub fn backward(&self, mut x: [T; NV]) -> [T; NV] {
+    pub fn undo_reflections(&self, mut x: [T; NV]) -> [T; NV] {
         for normal in self.normals.iter().take(self.rank).rev() {
             reflect_vector(&mut x, normal);
         }
@@ -268,8 +273,8 @@ impl<T: Real, const NV: usize, const NC: usize> Span<T, NV, NC> {
         out
     }
 
-    /// Returns the index and the column that joined the basis at a step.
-    pub fn pivot(&self, step: usize) -> Option<(usize, &Column<T, NV>)> {
+    /// Returns the index of the column that joined the basis at a step, and the column.
+    pub fn pivot_column(&self, step: usize) -> Option<(usize, &ScaledColumn<T, NV>)> {
         self.columns.iter().enumerate().find(|(_, column)| column.step == Some(step))
     }
 }

@@ -1,6 +1,6 @@
 //! Stabilization of constraints by feedback instead of projection.
 
-use super::differentiable::{column_or_zeros, each_column, multipliers_of_forces};
+use super::differentiable::{column_or_zeros, matrix_of_columns, multipliers_of_forces};
 use super::{Constrained, ConstrainedDerivatives, ConstraintError, Projected};
 use crate::contact::{Assumed, Touched};
 use crate::derivatives::{ByMotion, Derivatives, under_inputs};
@@ -70,7 +70,8 @@ impl<M, T: Real, const NH: usize, const NC: usize> Stabilized<'_, M, T, NH, NC> 
     }
 }
 
-/// Returns `2 α φ̇ + α² φ`; the second term exists only for holonomic constraints.
+/// Returns the stabilisation term `2 α φ̇ + α² φ` of each constraint, with decay rate `α` and residual `φ`.
+/// Velocity constraints have only the first term.
 fn stabilized_gap<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
     m: &M,
     rate: M::Scalar,
@@ -90,7 +91,14 @@ where
 /// Returns the accelerations for the forces `tau` and violations that decay at `rate`, with their
 /// derivatives. With these accelerations and multipliers, `M δv̇ − Jᵀ δλ = δτ − ∂(M a + h − Jᵀ λ)` and `J δv̇
 /// = −∂(J a + b + 2 α φ̇ + α² φ)`.
-fn to_first_order<M, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+fn stabilized_first_order<
+    M,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
     m: &M,
     rate: M::Scalar,
     t: M::Scalar,
@@ -112,7 +120,7 @@ where
     }
     let constraint_response_columns =
         |forces: &SMatrix<M::Scalar, NV, NV>, gaps: &SMatrix<M::Scalar, NC, NV>| {
-            each_column(|j| {
+            matrix_of_columns(|j| {
                 m.constraint_response(t, q, &-column_or_zeros(forces, j), &column_or_zeros(gaps, j))
             })
         };
@@ -140,7 +148,7 @@ where
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC>,
 {
     let tau = m.generalized_forces(t, q, v, u);
-    let (_, by_force) = to_first_order(m, rate, t, (q, v), &tau);
+    let (_, by_force) = stabilized_first_order(m, rate, t, (q, v), &tau);
     Some(under_inputs(by_force, &m.generalized_forces_derivatives(t, q, v, u)))
 }
 
@@ -204,8 +212,8 @@ where
         Ok((*q, *v))
     }
 
-    /// Returns the velocity change for an impulse. Only constraint rates are corrected, because violations
-    /// decay.
+    /// Returns the velocity change due to a generalized impulse. Only constraint rates are corrected, because
+    /// violations of the configuration decay by themselves.
     fn impulse(
         &self,
         t: M::Scalar,
@@ -306,7 +314,7 @@ where
         v: &SVector<M::Scalar, NV>,
         tau: &SVector<M::Scalar, NV>,
     ) -> ByMotion<M::Scalar, NV, NV> {
-        to_first_order(self.mechanism, self.rate, t, (q, v), tau).1
+        stabilized_first_order(self.mechanism, self.rate, t, (q, v), tau).1
     }
 
     fn forward_dynamics_derivatives_into(
@@ -319,7 +327,7 @@ where
         by_v: &mut SMatrix<M::Scalar, NV, NV>,
         by_tau: &mut SMatrix<M::Scalar, NV, NV>,
     ) -> SVector<M::Scalar, NV> {
-        let (acceleration, found) = to_first_order(self.mechanism, self.rate, t, (q, v), tau);
+        let (acceleration, found) = stabilized_first_order(self.mechanism, self.rate, t, (q, v), tau);
         (*by_q, *by_v, *by_tau) = found;
         acceleration
     }

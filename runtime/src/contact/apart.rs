@@ -4,7 +4,7 @@ use crate::Mechanism;
 use crate::forward::{constants, each_function};
 use crate::integrate::{Features, Hooks};
 
-/// Mechanism without its contacts, made by [`apart`].
+/// Mechanism without its contacts, returned by [`apart`].
 #[derive(Clone, Copy, Debug)]
 pub struct Apart<'m, M> {
     mechanism: &'m M,

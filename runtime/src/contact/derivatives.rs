@@ -1,8 +1,8 @@
-//! Derivatives of the motion while given contacts stay closed.
+//! Derivatives of the motion with respect to state and forces while given contacts stay closed.
 
-use super::held::held;
-use super::layout::Layout;
-use super::problem::{Problem, entry};
+use super::held::held_with_gains;
+use super::layout::ContactLayout;
+use super::problem::{ContactProblem, entry_or_zero};
 use super::{Contacts, Rows, Touch};
 use crate::blocks::{
     add_multiple, add_product, add_product_of_some, product, transpose_into, transposed, zeros,
@@ -13,8 +13,8 @@ use crate::{Derivatives, Real};
 use core::ops::Range;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
-/// First derivatives of what contacts do. `#[mechanism(…, derivatives)]` implements it for mechanisms with
-/// contacts.
+/// Mechanisms with first derivatives of their contact forces and contact accelerations.
+/// `#[mechanism(…, derivatives)]` implements this trait for mechanisms with contacts.
 ///
 /// A derivative by `q` is along motions of the configuration, whether contacts allow them or not: column `i`
 /// is along `q ⊕ ε eᵢ`, for ball and free joints in body axes. Time `t` as for [`Contacts`].
@@ -30,8 +30,8 @@ pub trait ContactDerivatives<
     const NR: usize,
 >: Contacts<NQ, NV, NU, NK, NR> + Derivatives<NQ, NV, NU>
 {
-    /// Derivatives of `Gᵀ f`, of `G a + b` and of the rates, at any accelerations `a` and forces `f` of the
-    /// contacts, N and N·m.
+    /// Returns the derivatives of the generalized contact forces `Gᵀ f`, of the contact accelerations
+    /// `G a + b` and of the contact velocities, for any accelerations `a` and contact forces `f`, N and N·m.
     fn contact_derivatives(
         &self,
         t: Self::Scalar,
@@ -42,29 +42,32 @@ pub trait ContactDerivatives<
     ) -> FirstOrder<Self::Scalar, NV, NR>;
 }
 
-/// First derivatives of what contacts do, with their Jacobian `G`, their bias `b` and their forces `f`.
+/// First derivatives of generalized contact forces `Gᵀ f`, contact accelerations `G a + b` and contact
+/// velocities, with the contact Jacobian `G`, its bias `b` and the contact forces `f`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstOrder<T, const NV: usize, const NR: usize> {
-    /// `∂(Gᵀ f)/∂q`: how the generalized forces of the contacts change.
+    /// `∂(Gᵀ f)/∂q`: derivatives of the generalized contact forces at constant contact forces `f`.
     pub forces_by_q: SMatrix<T, NV, NV>,
-    /// `∂(G a + b)/∂q`.
+    /// `∂(G a + b)/∂q`: derivatives of the contact accelerations with respect to the configuration.
     pub accelerations_by_q: SMatrix<T, NR, NV>,
-    /// `∂(G a + b)/∂v`.
+    /// `∂(G a + b)/∂v`: derivatives of the contact accelerations with respect to the velocity.
     pub accelerations_by_v: SMatrix<T, NR, NV>,
-    /// Derivatives of [`contact_rates`](Contacts::contact_rates) by `q`; those by `v` are `G`.
+    /// Derivatives of the contact velocities ([`contact_rates`](Contacts::contact_rates)) with respect to
+    /// `q`. Those with respect to `v` are the contact Jacobian `G`.
     pub rates_by_q: SMatrix<T, NR, NV>,
 }
 
-/// [`FirstOrder`] as lists of columns, as generated code makes it.
+/// Derivatives of contacts ([`FirstOrder`]) as lists of columns, the form in which generated code returns
+/// them.
 #[derive(Clone, Copy, Debug)]
 pub struct Columns<T, const NV: usize, const NR: usize> {
-    /// `∂(Gᵀ f)/∂q`.
+    /// Columns of `∂(Gᵀ f)/∂q`, the derivatives of the generalized contact forces.
     pub forces_by_q: [[T; NV]; NV],
-    /// `∂(G a + b)/∂q`.
+    /// Columns of `∂(G a + b)/∂q`, the derivatives of the contact accelerations.
     pub accelerations_by_q: [[T; NR]; NV],
-    /// `∂(G a + b)/∂v`.
+    /// Columns of `∂(G a + b)/∂v`, the derivatives of the contact accelerations.
     pub accelerations_by_v: [[T; NR]; NV],
-    /// Derivatives of the rates by `q`.
+    /// Columns of the derivatives of the contact velocities with respect to `q`.
     pub rates_by_q: [[T; NR]; NV],
 }
 
@@ -79,29 +82,30 @@ impl<T, const NV: usize, const NR: usize> From<Columns<T, NV, NR>> for FirstOrde
     }
 }
 
-/// Accelerations and forces of contacts, with their derivatives.
+/// Accelerations and contact forces while given contacts stay closed, with their first derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeldDerivatives<T, const NV: usize, const NR: usize> {
-    /// The accelerations.
+    /// Generalized accelerations, m/s² and rad/s².
     pub a: SVector<T, NV>,
-    /// The forces of the contacts, as in [`Held`](super::Held).
+    /// Contact forces, N and N·m, in the order of [`Held`](super::Held).
     pub forces: SVector<T, NR>,
-    /// `∂v̇/∂q`.
+    /// `∂v̇/∂q`: derivatives of the accelerations with respect to the configuration.
     pub by_q: SMatrix<T, NV, NV>,
-    /// `∂v̇/∂v`.
+    /// `∂v̇/∂v`: derivatives of the accelerations with respect to the velocity.
     pub by_v: SMatrix<T, NV, NV>,
-    /// `∂v̇/∂τ`.
+    /// `∂v̇/∂τ`: derivatives of the accelerations with respect to the generalized forces.
     pub by_tau: SMatrix<T, NV, NV>,
-    /// `∂f/∂q`.
+    /// `∂f/∂q`: derivatives of the contact forces with respect to the configuration.
     pub forces_by_q: SMatrix<T, NR, NV>,
-    /// `∂f/∂v`.
+    /// `∂f/∂v`: derivatives of the contact forces with respect to the velocity.
     pub forces_by_v: SMatrix<T, NR, NV>,
-    /// `∂f/∂τ`.
+    /// `∂f/∂τ`: derivatives of the contact forces with respect to the generalized forces.
     pub forces_by_tau: SMatrix<T, NR, NV>,
 }
 
 impl<T: Real, const NV: usize, const NR: usize> HeldDerivatives<T, NV, NR> {
-    /// Nothing but zeros, for [`Holding::held_derivatives_into`](super::Holding::held_derivatives_into).
+    /// Returns zero accelerations, forces and derivatives, as workspace for
+    /// [`Holding::held_derivatives_into`](super::Holding::held_derivatives_into).
     pub fn zeros() -> Self {
         Self {
             a: zeros(),
@@ -116,8 +120,9 @@ impl<T: Real, const NV: usize, const NR: usize> HeldDerivatives<T, NV, NR> {
     }
 }
 
-/// The accelerations and contact forces of [`forward_dynamics`](super::forward_dynamics) with given contacts
-/// closed, and their first derivatives by configuration, velocity and generalized forces.
+/// Returns the accelerations and contact forces of [`forward_dynamics`](super::forward_dynamics) with given
+/// contacts closed, and their first derivatives with respect to configuration, velocity and generalized
+/// forces.
 ///
 /// Differentiating the equations of motion, and those that hold the contacts, gives with the free response
 /// `∂v̇/∂x` under the forces `τ + Gᵀ f`
@@ -185,10 +190,10 @@ where
     T: Real,
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    derivatives(mechanism, t, (q, v), tau, touches, [T::zero(); 2])
+    held_derivatives_with_gains(mechanism, t, (q, v), tau, touches, [T::zero(); 2])
 }
 
-/// [`Contacts::held_derivatives`] of mechanisms with derivatives.
+/// Computes [`Contacts::held_derivatives`] for mechanisms that implement [`ContactDerivatives`].
 pub fn held_derivatives<
     M,
     T,
@@ -210,13 +215,14 @@ where
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let tau = mechanism.generalized_forces(t, q, v, u);
-    let found = derivatives(mechanism, t, (q, v), &tau, touches, gains).ok()?;
+    let found = held_derivatives_with_gains(mechanism, t, (q, v), &tau, touches, gains).ok()?;
     let by_force = (found.by_q, found.by_v, found.by_tau);
     Some(under_inputs(by_force, &mechanism.generalized_forces_derivatives(t, q, v, u)))
 }
 
-/// [`forward_dynamics_derivatives`] where gaps and rates of what is held decay.
-pub(super) fn derivatives<
+/// Returns [`forward_dynamics_derivatives`] with gains by which gaps and contact velocities of enforced
+/// contacts decay.
+pub(super) fn held_derivatives_with_gains<
     M,
     T,
     const NQ: usize,
@@ -237,13 +243,13 @@ where
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let mut found = HeldDerivatives::zeros();
-    derivatives_into(mechanism, t, (q, v), tau, touches, gains, &mut found)?;
+    write_held_derivatives(mechanism, t, (q, v), tau, touches, gains, &mut found)?;
     Ok(found)
 }
 
-/// [`derivatives`] into what is there, whatever is in it.
+/// Writes accelerations, contact forces and their derivatives into `result`, overwriting any content.
 #[allow(clippy::too_many_arguments, reason = "a state, what acts, and what is told of contacts")]
-pub(super) fn derivatives_into<
+pub(super) fn write_held_derivatives<
     M,
     T,
     const NQ: usize,
@@ -265,7 +271,7 @@ where
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let along = mechanism.contact_rates(t, q, v);
-    let (held, responses) = held(mechanism, t, (q, v), tau, touches, (&along, gains))?;
+    let (held, responses) = held_with_gains(mechanism, t, (q, v), tau, touches, (&along, gains))?;
     let jacobian = mechanism.contact_jacobian(t, q);
     let acting = tau + jacobian.tr_mul(&held.forces);
     (found.a, found.forces) = (held.a, held.forces);
@@ -277,16 +283,16 @@ where
         return Ok(());
     };
     let laws = mechanism.contact_laws();
-    let layout = Layout::of(mechanism);
+    let layout = ContactLayout::of_mechanism(mechanism);
     let mut parts = mechanism.contact_derivatives(t, q, v, &held.a, &held.forces);
-    damp(&mut parts, &jacobian, layout, gains);
+    add_gain_terms(&mut parts, &jacobian, layout, gains);
     // How friction turns with the slip while the normal forces stay.
     let turned = touches.contains(&Touch::Slips).then(|| {
         let mut turned = [zeros::<T, NR, NV>(); 2];
         for (k, law) in laws.iter().enumerate().filter(|(k, _)| touches.get(*k) == Some(&Touch::Slips)) {
-            let normal = law.friction * entry(&held.forces, layout.pressing(k).1);
+            let normal = law.friction * entry_or_zero(&held.forces, layout.bounding_contact(k).1);
             for (turned, rates) in turned.iter_mut().zip([&parts.rates_by_q, &jacobian]) {
-                turn(turned, layout.tangents(k), normal, &along, rates);
+                write_friction_derivative(turned, layout.tangent_rows(k), normal, &along, rates);
             }
         }
         turned
@@ -298,11 +304,11 @@ where
     }
     add_product(&mut found.by_q, &found.by_tau, &parts.forces_by_q);
     let closed = touches.map(|touch| touch != Touch::Open);
-    let mut problem = Problem::new(layout, &laws, &closed, &SVector::zeros());
-    problem.weigh(&responses.rates);
+    let mut problem = ContactProblem::new(layout, &laws, &closed, &SVector::zeros());
+    problem.copy_weights(&responses.rates);
     // How the forces answer to the rates, which all of the derivatives share; those of contacts that are open
     // do nothing.
-    let answer = problem.answers(touches, &along);
+    let answer = problem.force_derivatives(touches, &along);
     let (places, count) = closed_rows::<NK, NR>(layout, &closed);
     let places = places.get(..count).unwrap_or(&[]);
     // What forces do to the rates is what impulses at the contacts do to the velocities, unless forces depend
@@ -331,9 +337,9 @@ where
     Ok(())
 }
 
-/// The places of the rates of contacts that are closed, and how many there are.
+/// Returns the rows of the contact velocities of closed contacts, and their number.
 fn closed_rows<const NK: usize, const NR: usize>(
-    layout: Layout<NK>,
+    layout: ContactLayout<NK>,
     closed: &[bool; NK],
 ) -> ([usize; NR], usize) {
     let (mut places, mut count) = ([0; NR], 0);
@@ -347,11 +353,12 @@ fn closed_rows<const NK: usize, const NR: usize>(
     (places, count)
 }
 
-/// Adds what the accelerations of contacts that are held are to make of gaps and rates.
-fn damp<T: Real, const NV: usize, const NK: usize, const NR: usize>(
+/// Adds to the contact accelerations and their derivatives the terms of the gains, `kᵥ u + kₚ g`, for gaps
+/// `g` and contact velocities `u` of enforced contacts.
+fn add_gain_terms<T: Real, const NV: usize, const NK: usize, const NR: usize>(
     parts: &mut FirstOrder<T, NV, NR>,
     jacobian: &SMatrix<T, NR, NV>,
-    layout: Layout<NK>,
+    layout: ContactLayout<NK>,
     [position, velocity]: [T; 2],
 ) {
     if velocity != T::zero() {
@@ -359,7 +366,7 @@ fn damp<T: Real, const NV: usize, const NK: usize, const NR: usize>(
         add_multiple(&mut parts.accelerations_by_v, velocity, jacobian);
     }
     if position != T::zero() {
-        for (_, first) in layout.gaps() {
+        for (_, first) in layout.gap_contacts() {
             for (change, by_q) in parts.accelerations_by_q.data.0.iter_mut().zip(&jacobian.data.0) {
                 if let (Some(change), Some(by_q)) = (change.get_mut(first), by_q.get(first)) {
                     *change += *by_q * position;
@@ -369,32 +376,37 @@ fn damp<T: Real, const NV: usize, const NK: usize, const NR: usize>(
     }
 }
 
-/// Puts in the change of friction of a contact that slips along `rates`, under a normal force times its
-/// coefficient: that of `−μ fₙ u / |u|`.
-fn turn<T: Real, const NV: usize, const NR: usize>(
+/// Writes the derivative of the friction force `−μ fₙ u / |u|` of a sliding contact with respect to the slip
+/// velocity, into the rows of its tangents. `friction` is `μ fₙ`.
+fn write_friction_derivative<T: Real, const NV: usize, const NR: usize>(
     turned: &mut SMatrix<T, NR, NV>,
     tangents: Range<usize>,
     friction: T,
     rates: &SVector<T, NR>,
     changes: &SMatrix<T, NR, NV>,
 ) {
-    let speed = tangents.clone().fold(T::zero(), |sum, i| sum + entry(rates, i) * entry(rates, i)).sqrt();
+    let speed = tangents
+        .clone()
+        .fold(T::zero(), |sum, i| sum + entry_or_zero(rates, i) * entry_or_zero(rates, i))
+        .sqrt();
     if speed == T::zero() {
         return;
     }
     for j in 0..NV {
-        let change = |i: usize| changes.get((i, j)).copied().unwrap_or(T::zero());
-        let faster = tangents.clone().fold(T::zero(), |sum, i| sum + entry(rates, i) * change(i)) / speed;
+        let change_entry = |i: usize| changes.get((i, j)).copied().unwrap_or(T::zero());
+        let faster =
+            tangents.clone().fold(T::zero(), |sum, i| sum + entry_or_zero(rates, i) * change_entry(i))
+                / speed;
         for i in tangents.clone() {
             if let Some(turned) = turned.get_mut((i, j)) {
-                *turned = -(change(i) - entry(rates, i) / speed * faster) * (friction / speed);
+                *turned = -(change_entry(i) - entry_or_zero(rates, i) / speed * faster) * (friction / speed);
             }
         }
     }
 }
 
-/// The motion under the inputs `u` to first order while given contacts stay closed: what
-/// [`linear_motion`](crate::Derivatives::linear_motion) is without contacts.
+/// Returns the motion under the inputs `u` to first order while given contacts stay closed, the counterpart
+/// of [`linear_motion`](crate::Derivatives::linear_motion) for mechanisms with contacts.
 ///
 /// # Errors
 ///

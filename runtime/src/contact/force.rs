@@ -1,13 +1,14 @@
 //! Contact forces in a state, and mean contact forces over a time.
 
-use super::layout::Layout;
-use super::problem::{Problem, entry};
-use super::selection::Selection;
-use super::solution::{Acted, act};
-use super::stepping::{Came, closed};
+use super::layout::ContactLayout;
+use super::problem::{ContactProblem, entry_or_zero};
+use super::selection::ContactSelection;
+use super::solution::{ActedContacts, compute_impulses};
+use super::stepping::{StepStart, closed_contacts};
 use super::velocities::ContactVelocities;
 use super::{
-    Contacts, Impulses, Touch, lawful::lawful, light, phase, touching_distance, unsolved_contact_error,
+    Contacts, Impulses, Touch, coefficients::checked_contact_laws, light, phase, touching_distance,
+    unsolved_contact_error,
 };
 use crate::Real;
 use crate::constraint::ConstraintError;
@@ -49,22 +50,28 @@ where
         .map_err(constraint_error)?;
     let (free, given) = rk4_step_with_contacts(&mut system, &start, (&at_start, &rate), h, t + h);
     let free = project_end_of_step(&system, free, t)?;
-    let came = Came::from((q, v), h, given * (h * constant(0.5)));
+    let came = StepStart::from_state((q, v), h, given * (h * constant(0.5)));
     let end = free.v - given;
-    let velocities = ContactVelocities::at(mechanism, t + h, &free.q);
-    let closed =
-        closed(mechanism, t + h, (&free.q, &end), Some((&came, &velocities))).map_err(constraint_error)?;
+    let velocities = ContactVelocities::in_configuration(mechanism, t + h, &free.q);
+    let closed = closed_contacts(mechanism, t + h, (&free.q, &end), Some((&came, &velocities)))
+        .map_err(constraint_error)?;
     let Some(closed) = closed else { return Ok(SVector::zeros()) };
-    let selection = Selection::<NK, NR>::select(Layout::of(mechanism), &closed);
-    let mut acted = Acted::nothing(selection, true);
+    let selection =
+        ContactSelection::<NK, NR>::select_closed(ContactLayout::of_mechanism(mechanism), &closed);
+    let mut acted = ActedContacts::without_impulses(selection, true);
     let carried = came.velocity_at_end(mechanism, t + h, &free.q);
-    let before = || ContactVelocities::<M, T, NQ, NV, NR>::select(&selection, velocities.of(&carried));
-    let solved = act(
+    let velocities_before = || {
+        ContactVelocities::<M, T, NQ, NV, NR>::select_rates(
+            &selection,
+            velocities.rates_of_velocity(&carried),
+        )
+    };
+    let solved = compute_impulses(
         mechanism,
         (t + h, &velocities),
         (&free.q, &end),
         &closed,
-        (before, Some(((&given, &impulses), true))),
+        (velocities_before, Some(((&given, &impulses), true))),
         &mut acted,
     );
     Ok(solved.map_err(constraint_error)?.impulses / h)
@@ -105,8 +112,8 @@ where
     let moved = mechanism.contact_rates(t, q, &a) - mechanism.contact_rates(t, q, &SVector::zeros());
     let h = epsilon::<T>().sqrt();
     let mut free = mechanism.contact_rates(t, q, v);
-    let layout = Layout::of(mechanism);
-    for (_, first) in layout.gaps() {
+    let layout = ContactLayout::of_mechanism(mechanism);
+    for (_, first) in layout.gap_contacts() {
         if let Some(rate) = free.get_mut(first) {
             *rate = positive_part(*rate);
         }
@@ -115,15 +122,17 @@ where
     if free.iter().any(|rate| !rate.is_finite()) {
         return Err(ConstraintError::NotFinite);
     }
-    let laws = lawful(mechanism)?;
+    let laws = checked_contact_laws(mechanism)?;
     let responses = mechanism.contact_responses(t, q, &closed);
     let slip = mechanism.contact_rates(t, q, v);
     let solve_contacts = |free: &SVector<T, NR>| {
-        let mut problem = Problem::new(layout, &laws, &closed, free);
-        problem.stick(&laws, |k| phase::length(&slip, layout.tangents(k)) <= touching_distance());
-        problem.weigh(&responses.rates);
+        let mut problem = ContactProblem::new(layout, &laws, &closed, free);
+        problem.set_static_friction(&laws, |k| {
+            phase::norm_of_range(&slip, layout.tangent_rows(k)) <= touching_distance()
+        });
+        problem.copy_weights(&responses.rates);
         let found = problem.solve_sticking().map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?;
-        Ok((problem.spread(&found), problem.touches(&found).0))
+        Ok((problem.spread_to_mechanism(&found), problem.contact_modes(&found).0))
     };
     // In this short time the contact velocities change by the accelerations of sticking contacts, if the
     // normal forces press and friction can hold the contacts.
@@ -132,9 +141,10 @@ where
         && let Some((_, impulses)) = light::sticking_change(mechanism, t, q, (&sticking, &laws), &-free)
     {
         let presses = (0..NK).filter(|k| closed.get(*k) == Some(&true)).all(|k| {
-            let (_, first) = layout.pressing(k);
-            let largest = laws.get(k).map_or(T::zero(), |law| law.stiction) * entry(&impulses, first);
-            entry(&impulses, first) >= T::zero() && phase::length(&impulses, layout.tangents(k)) <= largest
+            let (_, first) = layout.bounding_contact(k);
+            let largest = laws.get(k).map_or(T::zero(), |law| law.stiction) * entry_or_zero(&impulses, first);
+            entry_or_zero(&impulses, first) >= T::zero()
+                && phase::norm_of_range(&impulses, layout.tangent_rows(k)) <= largest
         });
         if presses {
             return Ok(impulses / h);

@@ -1,26 +1,27 @@
-//! Motion while given contacts stay closed, whatever that takes.
+//! Accelerations and contact forces while given contacts are enforced as bilateral constraints, even if a
+//! normal force would have to pull.
 
-use super::lawful::lawful;
-use super::layout::Layout;
+use super::coefficients::checked_contact_laws;
+use super::layout::ContactLayout;
 use super::light::sticking_change;
-use super::problem::{Problem, entry, put};
+use super::problem::{ContactProblem, entry_or_zero, set_entry};
 use super::{Contacts, Responses, Touch, unsolved_contact_error};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use nalgebra::SVector;
 
-/// Accelerations and forces of contacts.
+/// Accelerations and contact forces while given contacts stay closed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Held<T, const NV: usize, const NR: usize> {
-    /// The accelerations.
+    /// Generalized accelerations, m/s² and rad/s².
     pub a: SVector<T, NV>,
-    /// The forces of the contacts, N, and N·m of stops about an axis: of each contact the normal one, which
-    /// presses where it is positive, then those along its tangents.
+    /// Contact forces, N, or N·m for stops of revolute joints: for each contact the normal force, positive in
+    /// compression, then the tangential forces.
     pub forces: SVector<T, NR>,
 }
 
-/// Forward dynamics with given contacts closed: accelerations under the generalized forces `tau`, and the
-/// forces of the contacts.
+/// Returns the accelerations under the generalized forces `tau` and the contact forces, while the contact
+/// modes `touches` are enforced.
 ///
 /// ```text
 /// M v̇ + h = τ + Gᵀ f + Jᵀ λ,   G v̇ + b = 0 where surfaces stick, and along the normals where they slip with fₜ = −μ fₙ uₜ / |uₜ|
@@ -83,14 +84,14 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let rates = mechanism.contact_rates(t, q, v);
-    held(mechanism, t, (q, v), tau, touches, (&rates, [T::zero(); 2])).map(|(held, _)| held)
+    held_with_gains(mechanism, t, (q, v), tau, touches, (&rates, [T::zero(); 2])).map(|(held, _)| held)
 }
 
-/// [`forward_dynamics`] with the rates `along` which slip is braked; and what impulses do, if any contact is
-/// closed. Gaps and rates of what is held decay by the gains `kₚ`, 1/s², and `kᵥ`, 1/s:
-/// `G v̇ + b = −kᵥ u − kₚ g`.
+/// Computes [`forward_dynamics`] for slip velocities `along`, which friction opposes, and also returns the
+/// responses to impulses if any contact is closed. Gaps `g` and contact velocities `u` of enforced contacts
+/// decay with the gains `kₚ`, 1/s², and `kᵥ`, 1/s: `G v̇ + b = −kᵥ u − kₚ g`.
 #[allow(clippy::type_complexity, reason = "sizes of arrays")]
-pub(super) fn held<
+pub(super) fn held_with_gains<
     M,
     T,
     const NQ: usize,
@@ -115,7 +116,7 @@ where
     if closed.iter().all(|is_closed| !is_closed) {
         return Ok((Held { a, forces: SVector::zeros() }, None));
     }
-    let layout = Layout::of(mechanism);
+    let layout = ContactLayout::of_mechanism(mechanism);
     let moved = mechanism.contact_rates(t, q, &a) - mechanism.contact_rates(t, q, &SVector::zeros());
     let mut free = moved + mechanism.contact_bias(t, q, v);
     if velocity != T::zero() {
@@ -123,24 +124,25 @@ where
     }
     if position != T::zero() {
         let gaps = mechanism.contact_gaps(t, q);
-        for (k, first) in layout.gaps() {
-            let rate = entry(&free, first);
-            put(&mut free, first, rate + entry(&gaps, k) * position);
+        for (k, first) in layout.gap_contacts() {
+            let rate = entry_or_zero(&free, first);
+            set_entry(&mut free, first, rate + entry_or_zero(&gaps, k) * position);
         }
     }
     if free.iter().any(|rate| !rate.is_finite()) {
         return Err(ConstraintError::NotFinite);
     }
     let responses = mechanism.contact_responses(t, q, &closed);
-    let laws = lawful(mechanism)?;
-    let mut problem = Problem::new(layout, &laws, &closed, &free);
-    problem.weigh(&responses.rates);
+    let laws = checked_contact_laws(mechanism)?;
+    let mut problem = ContactProblem::new(layout, &laws, &closed, &free);
+    problem.copy_weights(&responses.rates);
     let mut loses_digits = false;
-    let found = problem.hold(touches, along, &mut loses_digits);
+    let found = problem.forces_in_modes(touches, along, &mut loses_digits);
     if loses_digits && let Some((change, forces)) = sticking_change(mechanism, t, q, (touches, &laws), &-free)
     {
         return Ok((Held { a: a + change, forces }, Some(responses)));
     }
-    let forces = problem.spread(&found.map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?);
+    let forces =
+        problem.spread_to_mechanism(&found.map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?);
     Ok((Held { a: a + responses.velocities * forces, forces }, Some(responses)))
 }

@@ -1,7 +1,9 @@
-//! A mechanism whose contacts do what they are told to.
+//! Mechanism whose contact modes are prescribed.
 
-use super::derivatives::{ContactDerivatives, HeldDerivatives, derivatives, derivatives_into};
-use super::held::{Held, held};
+use super::derivatives::{
+    ContactDerivatives, HeldDerivatives, held_derivatives_with_gains, write_held_derivatives,
+};
+use super::held::{Held, held_with_gains};
 use super::{Assumed, Contacts, Touch, Touched};
 use crate::constraint::{ConstraintError, Projected};
 use crate::derivatives::{ByMotion, Derivatives, unknown_matrix};
@@ -11,7 +13,7 @@ use crate::private::constant;
 use crate::{Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// A mechanism while given contacts stay closed and all others open; made by [`hold`].
+/// Mechanism in which given contacts stay closed and all others open, returned by [`hold`].
 #[derive(Debug)]
 pub struct Holding<'m, M, T, const NK: usize, const NR: usize> {
     mechanism: &'m M,
@@ -28,10 +30,10 @@ impl<M, T: Copy, const NK: usize, const NR: usize> Clone for Holding<'_, M, T, N
     }
 }
 
-/// The mechanism while given contacts stay closed, whatever that takes, as
-/// [`forward_dynamics`](super::forward_dynamics) moves it: for methods of integration, discrete steps with
-/// their Jacobians, and optimisers of motions whose contacts are known. With the option `derivatives` it has
-/// derivatives, too.
+/// Returns the mechanism with prescribed contact modes: closed contacts are enforced even if their normal
+/// force would have to pull, as in [`forward_dynamics`](super::forward_dynamics). It is meant for integration
+/// methods, discrete steps with their Jacobians, and trajectory optimisers with a given contact sequence. It
+/// has derivatives if the mechanism has the option `derivatives`.
 ///
 /// Contacts, and constraints of the mechanism, are kept by accelerations alone: gaps and rates stay what they
 /// are at the start but for errors of the method; [`Holding::stabilized`] lets them decay. Where a held leg
@@ -85,25 +87,25 @@ where
 }
 
 impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
-    /// The mechanism with gaps and rates of what is held decaying at `rate`, 1/s, critically damped
-    /// (Baumgarte, *Stabilization of constraints and integrals of motion in dynamical systems*, 1972): a few
-    /// times the fastest rate of the motion.
+    /// Returns the mechanism with contact errors that decay at `rate`, 1/s, critically damped: gaps and
+    /// contact velocities of enforced contacts (Baumgarte, *Stabilization of constraints and integrals of
+    /// motion in dynamical systems*, 1972). A suitable rate is a few times the fastest rate of the motion.
     #[must_use]
     pub fn stabilized(self, rate: T) -> Self {
         self.with_gains(rate * rate, rate * constant(2.0))
     }
 
-    /// The mechanism with accelerations of what is held that answer to its gaps `g` and its rates `u` by
-    /// gains of their own, 1/s² and 1/s: `G v̇ + b = −position g − velocity u`, with the gaps along normals
-    /// alone. With 0 and 50 a foot that lands comes to rest where it has landed, as those of Crocoddyl's
-    /// examples do (its `ContactModel3D` with gains `[0, 50]`).
+    /// Returns the mechanism with separate gains for gaps `g`, 1/s², and contact velocities `u`, 1/s, of
+    /// enforced contacts: `G v̇ + b = −position g − velocity u`, where gaps act along normals only. With
+    /// gains 0 and 50, a foot comes to rest at its point of touchdown, as in Crocoddyl's examples
+    /// (`ContactModel3D` with gains `[0, 50]`).
     #[must_use]
     pub fn with_gains(self, position: T, velocity: T) -> Self {
         Self { gains: [position, velocity], ..self }
     }
 
-    /// The accelerations and the forces of the contacts under the generalized forces `tau`: those of
-    /// [`forward_dynamics`](super::forward_dynamics), with the gains of what is held.
+    /// Returns the accelerations and contact forces under the generalized forces `tau`, as
+    /// [`forward_dynamics`](super::forward_dynamics) does, with the gains of the enforced contacts.
     ///
     /// # Errors
     ///
@@ -119,11 +121,13 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
         let rates = self.mechanism.contact_rates(t, q, v);
-        held(self.mechanism, t, (q, v), tau, &self.touches, (&rates, self.gains)).map(|(held, _)| held)
+        held_with_gains(self.mechanism, t, (q, v), tau, &self.touches, (&rates, self.gains))
+            .map(|(held, _)| held)
     }
 
-    /// [`held`](Self::held) with first derivatives: what costs and limits of contact forces need beside the
-    /// step, which [`discrete::semi_implicit_into`](crate::discrete::semi_implicit_into) makes of the same
+    /// Returns accelerations and contact forces as [`held`](Self::held), with their first derivatives. Costs
+    /// and limits of contact forces use them, in addition to the step that
+    /// [`discrete::semi_implicit_into`](crate::discrete::semi_implicit_into) computes from the same
     /// accelerations.
     ///
     /// # Errors
@@ -139,11 +143,11 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
     where
         M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains)
+        held_derivatives_with_gains(self.mechanism, t, (q, v), tau, &self.touches, self.gains)
     }
 
-    /// Writes the results of [`held_derivatives`](Self::held_derivatives) into matrices of any content, since
-    /// large matrices take time to copy.
+    /// Writes the results of [`held_derivatives`](Self::held_derivatives) into existing matrices, which
+    /// avoids copies of large matrices.
     ///
     /// # Errors
     ///
@@ -159,7 +163,7 @@ impl<M, T: Real, const NK: usize, const NR: usize> Holding<'_, M, T, NK, NR> {
     where
         M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        derivatives_into(self.mechanism, t, (q, v), tau, &self.touches, self.gains, into)
+        write_held_derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains, into)
     }
 }
 
@@ -194,7 +198,8 @@ where
         tau: &SVector<T, NV>,
     ) -> Result<SVector<T, NV>, ConstraintError> {
         let rates = self.mechanism.contact_rates(t, q, v);
-        held(self.mechanism, t, (q, v), tau, &self.touches, (&rates, self.gains)).map(|(held, _)| held.a)
+        held_with_gains(self.mechanism, t, (q, v), tau, &self.touches, (&rates, self.gains))
+            .map(|(held, _)| held.a)
     }
 }
 
@@ -218,7 +223,7 @@ where
         Features { constrained: false, feedback: true, ..self.mechanism.features() }
     }
 
-    /// Returns the state unchanged: it is projected onto neither contacts nor constraints.
+    /// Returns the state unchanged. It is not projected onto contacts or constraints.
     fn project(
         &self,
         _t: T,
@@ -228,7 +233,8 @@ where
         Ok((*q, *v))
     }
 
-    /// Returns the impulse for which contact velocities keep their values, zero or not.
+    /// Returns the velocity after a generalized impulse, such that the velocities of enforced contacts keep
+    /// their values, zero or not.
     fn impulse(
         &self,
         t: T,
@@ -240,7 +246,8 @@ where
         let still = SVector::zeros();
         let tau = self.mechanism.bias_forces(t, q, &still) + p;
         let along = self.mechanism.contact_rates(t, q, v);
-        let found = held(self.mechanism, t, (q, &still), &tau, &self.touches, (&along, [T::zero(); 2]));
+        let found =
+            held_with_gains(self.mechanism, t, (q, &still), &tau, &self.touches, (&along, [T::zero(); 2]));
         found.map_or_else(|_| SVector::repeat(constant(f64::NAN)), |(held, _)| held.a)
     }
 
@@ -320,7 +327,7 @@ where
         v: &SVector<T, NV>,
         tau: &SVector<T, NV>,
     ) -> ByMotion<T, NV, NV> {
-        match derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains) {
+        match held_derivatives_with_gains(self.mechanism, t, (q, v), tau, &self.touches, self.gains) {
             Ok(found) => (found.by_q, found.by_v, found.by_tau),
             Err(_) => (unknown_matrix(), unknown_matrix(), unknown_matrix()),
         }
@@ -336,7 +343,7 @@ where
         by_v: &mut SMatrix<T, NV, NV>,
         by_tau: &mut SMatrix<T, NV, NV>,
     ) -> SVector<T, NV> {
-        match derivatives(self.mechanism, t, (q, v), tau, &self.touches, self.gains) {
+        match held_derivatives_with_gains(self.mechanism, t, (q, v), tau, &self.touches, self.gains) {
             Ok(found) => {
                 (*by_q, *by_v, *by_tau) = (found.by_q, found.by_v, found.by_tau);
                 found.a
@@ -348,7 +355,7 @@ where
         }
     }
 
-    /// Contacts and constraints are in the accelerations.
+    /// Returns `None`, because the accelerations already include contacts and constraints.
     fn visit_constraints<V>(&self, _visitor: V) -> Option<V::Output>
     where
         V: crate::constraint::Visitor<T, NQ, NV, NU>,

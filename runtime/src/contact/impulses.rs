@@ -1,31 +1,31 @@
-//! Impulses of a step, from which the search of the next step begins.
+//! Contact impulses of a step, as the start of the iteration for the next step.
 
-use super::problem::entry;
-use super::selection::Selection;
+use super::problem::entry_or_zero;
+use super::selection::ContactSelection;
 use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
 
-/// Contacts for each velocity.
+/// Number of stored contacts for each velocity of the mechanism.
 const CONTACTS: usize = 2;
-/// Index of a contact, and its impulses.
+/// Number of stored entries for each contact: its index, and up to three impulses.
 const ENTRIES: usize = 4;
 
-/// Impulses, N·s and N·m·s, of up to two contacts for each velocity of a mechanism, from which the search of
-/// the next step begins; zero for other contacts. They affect the duration of the search, not its result
-/// beyond rounding.
+/// Contact impulses of a step, N·s and N·m·s, from which the iteration of the next step starts. They are
+/// stored for up to two contacts for each velocity of the mechanism, zero for other contacts. They affect the
+/// duration of the iteration, not its result beyond rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impulses<T, const NV: usize>(
-    /// For each contact its index plus one, and its impulses; an index of zero is an empty place.
+    /// For each stored contact its index plus one, and its impulses. An index of zero marks an empty entry.
     [[SVector<T, NV>; ENTRIES]; CONTACTS],
 );
 
-/// Change of the velocity that contacts are assumed to cause in a step, and impulses from which the search of
-/// its impulses begins.
+/// Change of the velocity that contact forces are assumed to cause in a step, and the impulses from which the
+/// iteration for the impulses of the step starts.
 pub type Assumed<'a, T, const NV: usize> = (&'a SVector<T, NV>, &'a Impulses<T, NV>);
 
 impl<T: Real, const NV: usize> Impulses<T, NV> {
-    /// Returns no impulses.
+    /// Returns an empty store of impulses.
     #[must_use]
     pub fn none() -> Self {
         Self([[SVector::zeros(); ENTRIES]; CONTACTS])
@@ -52,19 +52,25 @@ impl<T: Real, const NV: usize> Impulses<T, NV> {
 
     /// Returns the impulses `all` of selected contacts.
     pub(super) fn record<const CK: usize, const CR: usize>(
-        selection: &Selection<CK, CR>,
+        selection: &ContactSelection<CK, CR>,
         all: &SVector<T, CR>,
     ) -> Self {
-        let (layout, mut recorded) = (selection.layout(), Self::none());
-        let impulses = |k: usize, i: usize| {
+        let (layout, mut recorded) = (selection.contact_layout(), Self::none());
+        let stored_impulses = |k: usize, i: usize| {
             let rows = layout.rows(k);
-            if i < rows.count { entry(all, rows.first + i) } else { T::zero() }
+            if i < rows.count { entry_or_zero(all, rows.first + i) } else { T::zero() }
         };
-        let pressed = (0..selection.count()).filter(|k| (0..3).any(|i| impulses(*k, i) != T::zero()));
+        let pressed =
+            (0..selection.contact_count()).filter(|k| (0..3).any(|i| stored_impulses(*k, i) != T::zero()));
         let places = (0..CONTACTS).flat_map(|list| (0..NV).map(move |place| (list, place)));
         for (k, (list, place)) in pressed.zip(places) {
-            let number: u32 = selection.contact(k).try_into().unwrap_or(u32::MAX);
-            let values = [constant(f64::from(number) + 1.0), impulses(k, 0), impulses(k, 1), impulses(k, 2)];
+            let number: u32 = selection.index_of_contact(k).try_into().unwrap_or(u32::MAX);
+            let values = [
+                constant(f64::from(number) + 1.0),
+                stored_impulses(k, 0),
+                stored_impulses(k, 1),
+                stored_impulses(k, 2),
+            ];
             let lists = recorded.0.get_mut(list).into_iter().flatten();
             for (list, value) in lists.zip(values) {
                 if let Some(entry) = list.get_mut(place) {
@@ -75,24 +81,25 @@ impl<T: Real, const NV: usize> Impulses<T, NV> {
         recorded
     }
 
-    /// Returns the impulses at the rows of selected contacts; `None` if there are none.
+    /// Returns the impulses at the rows of selected contacts; `None` if no impulse of these contacts is
+    /// stored.
     pub(super) fn recall<const CK: usize, const CR: usize>(
         &self,
-        selection: &Selection<CK, CR>,
+        selection: &ContactSelection<CK, CR>,
     ) -> Option<SVector<T, CR>> {
-        let (layout, mut all) = (selection.layout(), SVector::<T, CR>::zeros());
+        let (layout, mut all) = (selection.contact_layout(), SVector::<T, CR>::zeros());
         let mut is_any = false;
         for [numbers, impulses @ ..] in &self.0 {
             for (place, number) in numbers.iter().enumerate().take_while(|(_, number)| **number > T::zero()) {
-                let is_same = |k: &usize| {
-                    let own: u32 = selection.contact(*k).try_into().unwrap_or(u32::MAX);
+                let is_same_contact = |k: &usize| {
+                    let own: u32 = selection.index_of_contact(*k).try_into().unwrap_or(u32::MAX);
                     constant::<T>(f64::from(own) + 1.0) == *number
                 };
-                let Some(k) = (0..selection.count()).find(is_same) else { continue };
+                let Some(k) = (0..selection.contact_count()).find(is_same_contact) else { continue };
                 let rows = layout.rows(k);
                 for (i, list) in (rows.first..rows.first + rows.count).zip(impulses) {
                     if let Some(impulse) = all.get_mut(i) {
-                        *impulse = entry(list, place);
+                        *impulse = entry_or_zero(list, place);
                         is_any = true;
                     }
                 }

@@ -1,10 +1,10 @@
-//! Impacts after which given contacts are closed, whatever that takes.
+//! Plastic impacts after which given contacts are closed, even if an impulse would have to pull.
 
+use super::coefficients::checked_contact_laws;
 use super::derivatives::ContactDerivatives;
-use super::lawful::lawful;
-use super::layout::Layout;
+use super::layout::ContactLayout;
 use super::light::sticking_change;
-use super::problem::Problem;
+use super::problem::ContactProblem;
 use super::{Contacts, Solved, Touch, unsolved_contact_error};
 use crate::Real;
 use crate::blocks::{add_product, product};
@@ -12,7 +12,7 @@ use crate::constraint::ConstraintError;
 use crate::discrete::Transition;
 use nalgebra::{SMatrix, SVector};
 
-/// Velocity and impulses after given contacts have closed at once, without restitution.
+/// Returns the velocity and the impulses after a plastic impact in which given contacts close simultaneously.
 ///
 /// ```text
 /// M (v⁺ − v) = Gᵀ Λ + Jᵀ λ,   G v⁺ = 0
@@ -60,17 +60,25 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    landed(mechanism, t, (q, v), touches).map(|(solved, ..)| solved)
+    landed_with_responses(mechanism, t, (q, v), touches).map(|(solved, ..)| solved)
 }
 
-/// [`land`], with the equations and what impulses do.
+/// Computes the impact of [`land`], and also returns the factorised equations and the responses to impulses.
 #[allow(clippy::type_complexity, reason = "sizes of arrays")]
-fn landed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+fn landed_with_responses<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
     mechanism: &M,
     t: T,
     (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
     touches: &[Touch; NK],
-) -> Result<(Solved<T, NV, NR>, Problem<T, NK, NR>, SMatrix<T, NV, NR>), ConstraintError>
+) -> Result<(Solved<T, NV, NR>, ContactProblem<T, NK, NR>, SMatrix<T, NV, NR>), ConstraintError>
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
@@ -80,44 +88,44 @@ where
     if free.iter().any(|rate| !rate.is_finite()) {
         return Err(ConstraintError::NotFinite);
     }
-    let layout = Layout::of(mechanism);
-    let laws = lawful(mechanism)?;
-    let mut problem = Problem::new(layout, &laws, &closed, &free);
+    let layout = ContactLayout::of_mechanism(mechanism);
+    let laws = checked_contact_laws(mechanism)?;
+    let mut problem = ContactProblem::new(layout, &laws, &closed, &free);
     let responses = mechanism.contact_responses(t, q, &closed);
-    problem.weigh(&responses.rates);
+    problem.copy_weights(&responses.rates);
     let mut loses_digits = false;
-    let found = problem.hold(touches, &SVector::zeros(), &mut loses_digits);
+    let found = problem.forces_in_modes(touches, &SVector::zeros(), &mut loses_digits);
     if loses_digits
         && let Some((change, impulses)) = sticking_change(mechanism, t, q, (touches, &laws), &-free)
     {
         return Ok((Solved { v: v + change, impulses }, problem, responses.velocities));
     }
-    let impulses = problem.spread(&found.map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?);
+    let impulses =
+        problem.spread_to_mechanism(&found.map_err(unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>)?);
     let v = v + responses.velocities * impulses;
     Ok((Solved { v, impulses }, problem, responses.velocities))
 }
 
-/// Velocity and impulses of [`land`] with their first derivatives.
+/// Velocity and impulses of a plastic impact ([`land`]) with their first derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LandedDerivatives<T, const NV: usize, const NR: usize> {
-    /// The velocity.
+    /// Generalized velocity after the impact, m/s and rad/s.
     pub v: SVector<T, NV>,
-    /// The impulses of the contacts, as in [`Solved`].
+    /// Contact impulses, N·s and N·m·s, in the order of [`Solved`].
     pub impulses: SVector<T, NR>,
-    /// `∂v⁺/∂q`.
+    /// `∂v⁺/∂q`: derivatives of the velocity after the impact with respect to the configuration.
     pub by_q: SMatrix<T, NV, NV>,
-    /// `∂v⁺/∂v`.
+    /// `∂v⁺/∂v`: derivatives of the velocity after the impact with respect to the velocity before it.
     pub by_v: SMatrix<T, NV, NV>,
-    /// `∂Λ/∂q`.
+    /// `∂Λ/∂q`: derivatives of the contact impulses with respect to the configuration.
     pub impulses_by_q: SMatrix<T, NR, NV>,
-    /// `∂Λ/∂v`.
+    /// `∂Λ/∂v`: derivatives of the contact impulses with respect to the velocity before the impact.
     pub impulses_by_v: SMatrix<T, NR, NV>,
 }
 
 impl<T: Real, const NV: usize, const NR: usize> LandedDerivatives<T, NV, NR> {
-    /// The touchdown at a configuration as a step of no duration, for
-    /// [`optimal::backward`](crate::optimal::backward): nothing but the velocity changes, and inputs do
-    /// nothing.
+    /// Returns the touchdown at a configuration as a step of zero duration, for
+    /// [`optimal::backward`](crate::optimal::backward): only the velocity changes, and inputs have no effect.
     pub fn transition<const NQ: usize, const NU: usize>(
         &self,
         q: &SVector<T, NQ>,
@@ -127,8 +135,9 @@ impl<T: Real, const NV: usize, const NR: usize> LandedDerivatives<T, NV, NR> {
     }
 }
 
-/// [`land`] with its first derivatives by configuration and velocity, through the constraints of the
-/// mechanism. A derivative by `q` is along motions that the contacts need not allow.
+/// Returns the velocity and impulses of [`land`] with their first derivatives with respect to configuration
+/// and velocity, including the constraints of the mechanism. A derivative with respect to `q` may be along a
+/// displacement that violates the contacts.
 ///
 /// # Errors
 ///
@@ -152,7 +161,8 @@ where
     T: Real,
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    let (Solved { v: after, impulses }, problem, velocities) = landed(mechanism, t, (q, v), touches)?;
+    let (Solved { v: after, impulses }, problem, velocities) =
+        landed_with_responses(mechanism, t, (q, v), touches)?;
     let still = SVector::zeros();
     let jacobian = mechanism.contact_jacobian(t, q);
     let parts = mechanism.contact_derivatives(t, q, &after, &still, &impulses);
@@ -162,7 +172,7 @@ where
     let (mut by_q, _, response) = mechanism.forward_dynamics_derivatives(t, q, &still, &struck);
     by_q -= mechanism.forward_dynamics_derivatives(t, q, &still, &bias).0;
     add_product(&mut by_q, &response, &parts.forces_by_q);
-    let answer = problem.answers(touches, &SVector::zeros());
+    let answer = problem.force_derivatives(touches, &SVector::zeros());
     let mut gaps = parts.rates_by_q;
     add_product(&mut gaps, &jacobian, &by_q);
     let (impulses_by_q, impulses_by_v) = (product(&answer, &gaps), product(&answer, &jacobian));

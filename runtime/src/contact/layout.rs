@@ -1,20 +1,21 @@
-//! Where the rates of contacts are, and whose normal force their friction answers to.
+//! Layout of contact velocities: the rows of each contact, and the contact whose normal force bounds the
+//! friction of each.
 
 use super::{Contacts, Rows};
 use crate::Real;
 use core::ops::Range;
 
-/// The tables of a mechanism's contacts.
+/// Tables of a mechanism's contacts: the rows of each, and the contact that bounds the friction of each.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Layout<const NK: usize> {
+pub(super) struct ContactLayout<const NK: usize> {
     rows: [Rows; NK],
     pressed_by: [usize; NK],
 }
 
-impl<const NK: usize> Layout<NK> {
+impl<const NK: usize> ContactLayout<NK> {
     /// Returns the tables of a mechanism.
     #[inline(always)]
-    pub(super) fn of<M, T, const NQ: usize, const NV: usize, const NU: usize, const NR: usize>(
+    pub(super) fn of_mechanism<M, T, const NQ: usize, const NV: usize, const NU: usize, const NR: usize>(
         mechanism: &M,
     ) -> Self
     where
@@ -25,42 +26,45 @@ impl<const NK: usize> Layout<NK> {
         Self { rows, pressed_by }
     }
 
-    /// Returns tables from the rows of each contact and the contact that presses it.
+    /// Returns the tables for given rows of each contact, and the index of the contact whose normal force
+    /// bounds its friction.
     pub(super) const fn new(rows: [Rows; NK], pressed_by: [usize; NK]) -> Self {
         Self { rows, pressed_by }
     }
 
-    /// The contact that presses, and the place of its gap's rate.
-    pub(super) fn pressing(&self, k: usize) -> (usize, usize) {
+    /// Returns the index of the contact whose normal force bounds the friction of contact `k`, and the row of
+    /// its gap velocity.
+    pub(super) fn bounding_contact(&self, k: usize) -> (usize, usize) {
         let by = self.pressed_by.get(k).copied().unwrap_or(k);
         (by, self.rows(by).first)
     }
 
-    /// Whether there is a gap of its own: moments of friction have none.
+    /// Whether contact `k` has a gap function; friction moments have none.
     pub(super) fn is_gap(&self, k: usize) -> bool {
-        self.pressing(k).0 == k
+        self.bounding_contact(k).0 == k
     }
 
-    /// The places of all rates of one.
+    /// Returns the rows of all contact velocities of contact `k`.
     pub(super) fn rows(&self, k: usize) -> Rows {
         self.rows.get(k).copied().unwrap_or(Rows { first: 0, count: 0 })
     }
 
-    /// The places of its rates of slip, or of turning.
-    pub(super) fn tangents(&self, k: usize) -> Range<usize> {
+    /// Returns the rows of the slip velocities of contact `k`, or of the angular velocities of a friction
+    /// moment.
+    pub(super) fn tangent_rows(&self, k: usize) -> Range<usize> {
         let Rows { first, count } = self.rows(k);
         first + usize::from(self.is_gap(k))..first + count
     }
 
-    /// All with a gap of their own, and the places of its rate.
-    pub(super) fn gaps(&self) -> impl Iterator<Item = (usize, usize)> {
+    /// Returns all contacts that have a gap function, with the rows of their gap velocities.
+    pub(super) fn gap_contacts(&self) -> impl Iterator<Item = (usize, usize)> {
         let own = self.pressed_by.into_iter().zip(self.rows).enumerate();
         own.filter(|(k, (by, _))| k == by).map(|(k, (_, rows))| (k, rows.first))
     }
 }
 
-/// Of each contact itself.
-pub(super) const fn own<const NK: usize>() -> [usize; NK] {
+/// Returns the table in which each contact bounds its own friction.
+pub(super) const fn contacts_pressed_by_themselves<const NK: usize>() -> [usize; NK] {
     let mut all = [0; NK];
     let mut k = 0;
     while k < NK {

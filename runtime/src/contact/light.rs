@@ -1,6 +1,6 @@
 //! Sticking contacts of mechanisms with bodies that are much lighter than others.
 
-use super::layout::Layout;
+use super::layout::ContactLayout;
 use super::{Contacts, Law, Touch};
 use crate::Real;
 use crate::constraint::change_rates;
@@ -11,9 +11,9 @@ use nalgebra::SVector;
 /// light.
 const GRADED: f64 = 1e4;
 
-/// Returns the change of the velocity that changes the rates of contacts that stick by `changes`, and the
-/// impulses that cause it. `None` for mechanisms without light bodies, with constraints, and with contacts
-/// that slip or share impulses.
+/// Returns the change of the velocity that changes the velocities of sticking contacts by `changes`, and the
+/// impulses that cause it. Returns `None` for mechanisms without light bodies, with constraints, or with
+/// sliding or redundant contacts.
 ///
 /// Rows of contacts with light bodies have an inverse inertia `G M⁻¹ Gᵀ` in which the heavy ones are lost to
 /// rounding. They are factorised in the metric of the kinetic energy instead, as rows of constraints are.
@@ -52,10 +52,10 @@ where
     if !is_graded {
         return None;
     }
-    let layout = Layout::of(mechanism);
+    let layout = ContactLayout::of_mechanism(mechanism);
     let (mut held, mut groups) = ([false; NR], [NK; NR]);
     for (k, (touch, law)) in touches.iter().zip(laws).enumerate() {
-        let tangents = layout.tangents(k);
+        let tangents = layout.tangent_rows(k);
         let rows = layout.rows(k);
         for i in rows.first..rows.first + rows.count {
             *groups.get_mut(i)? = k;

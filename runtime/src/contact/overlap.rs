@@ -1,18 +1,27 @@
-//! Surfaces that overlap where a motion is to begin: refused, or taken apart.
+//! Overlapping surfaces at the start of a motion: rejection with an error, or projection onto a configuration
+//! without overlaps.
 
-use super::layout::Layout;
-use super::problem::{Problem, entry, put};
+use super::layout::ContactLayout;
+use super::problem::{ContactProblem, entry_or_zero, set_entry};
 use super::{Contacts, Law, Restitution, touching_distance};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::private::{constant, to_f64};
 use nalgebra::SVector;
 
-/// Most displacements of a projection; two or three bring the surfaces of boxes apart.
+/// Maximum number of displacements in a projection. Boxes need two or three.
 const MOST_STEPS: usize = 30;
 
-/// The deepest overlap: its contact, and the gap.
-fn deepest<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+/// Returns the name of the contact with the deepest overlap, and its gap.
+fn deepest_overlap<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
     gaps: &SVector<T, NK>,
 ) -> Result<(&'static str, T), ConstraintError>
 where
@@ -31,8 +40,8 @@ where
     Ok(found)
 }
 
-/// Refuses a configuration in which surfaces overlap, as simulations do where they start
-/// ([`Simulation::overlaps`](crate::simulate::Simulation::overlaps)).
+/// Returns an error for a configuration in which surfaces overlap. Simulations check their initial
+/// configuration likewise ([`Simulation::overlaps`](crate::simulate::Simulation::overlaps)).
 ///
 /// # Errors
 ///
@@ -47,17 +56,17 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    let (constraint, gap) = deepest::<M, T, NQ, NV, NU, NK, NR>(&mechanism.contact_gaps(t, q))?;
+    let (constraint, gap) = deepest_overlap::<M, T, NQ, NV, NU, NK, NR>(&mechanism.contact_gaps(t, q))?;
     match gap >= -touching_distance::<T>() {
         true => Ok(()),
         false => Err(ConstraintError::Overlap { constraint, depth: to_f64(-gap) }),
     }
 }
 
-/// A configuration near `q` in which no surfaces overlap, through the constraints of the mechanism. Bodies
-/// move in proportion to how easily they do: the displacement is `M⁻¹ Gᵀ Λ` with `Λ ≥ 0` where gaps are zero
-/// and none elsewhere, found by linear steps for the gaps that overlap, that are pushed open and that might
-/// close on the way. Without overlaps nothing moves.
+/// Returns a configuration near `q` in which no surfaces overlap and the constraints hold. The displacement
+/// is `M⁻¹ Gᵀ Λ` with impulses `Λ ≥ 0` that are nonzero only where gaps become zero, so that light bodies
+/// move more than heavy ones. Each iteration linearises the gaps of contacts that overlap or might close. If
+/// nothing overlaps, the result is `q`.
 ///
 /// ```
 /// use linkwork::contact;
@@ -98,18 +107,18 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    let layout = Layout::of(mechanism);
+    let layout = ContactLayout::of_mechanism(mechanism);
     let hypothesis = Restitution::Newton;
     let smooth = [Law { friction: T::zero(), stiction: T::zero(), restitution: T::zero(), hypothesis }; NK];
     let enough = touching_distance::<T>() * constant(1e-2);
     let (mut q, mut pushes) = (*q, SVector::<T, NR>::zeros());
     for step in 0.. {
         let gaps = mechanism.contact_gaps(t, &q);
-        let (constraint, gap) = deepest::<M, T, NQ, NV, NU, NK, NR>(&gaps)?;
+        let (constraint, gap) = deepest_overlap::<M, T, NQ, NV, NU, NK, NR>(&gaps)?;
         let overlaps = gap < -enough;
         let left = ConstraintError::Overlap { constraint, depth: to_f64(-gap) };
         // What was pushed too far goes back.
-        let is_pushed = |k: usize| entry(&pushes, layout.pressing(k).1) > T::zero();
+        let is_pushed = |k: usize| entry_or_zero(&pushes, layout.bounding_contact(k).1) > T::zero();
         let parted = gaps.iter().enumerate().any(|(k, gap)| *gap > enough && is_pushed(k));
         match step == MOST_STEPS {
             _ if !overlaps && !parted => break,
@@ -123,11 +132,13 @@ where
         let responses = mechanism.contact_responses(t, &q, &closed);
         let moved = responses.rates * pushes;
         let mut free = SVector::<T, NR>::zeros();
-        layout.gaps().for_each(|(k, first)| put(&mut free, first, entry(&gaps, k) - entry(&moved, first)));
-        let mut problem = Problem::new(layout, &smooth, &closed, &free);
-        problem.weigh(&responses.rates);
-        let found = problem.solve().map_err(|_| left)?;
-        let all = problem.spread(&found);
+        layout.gap_contacts().for_each(|(k, first)| {
+            set_entry(&mut free, first, entry_or_zero(&gaps, k) - entry_or_zero(&moved, first))
+        });
+        let mut problem = ContactProblem::new(layout, &smooth, &closed, &free);
+        problem.copy_weights(&responses.rates);
+        let found = problem.solve_impulses().map_err(|_| left)?;
+        let all = problem.spread_to_mechanism(&found);
         q = mechanism.integrate(&q, &(responses.velocities * (all - pushes)));
         pushes = all;
         if mechanism.features().constrained {
@@ -137,8 +148,8 @@ where
     Ok(q)
 }
 
-/// The configuration that a simulation starts from: [`project`]'s where surfaces are to be taken apart, else
-/// this one if [`check`] does not refuse it. As generated code calls it.
+/// Returns the initial configuration of a simulation: that of [`project`] if overlaps are to be removed
+/// (`parts`), otherwise `q`, or the error of [`check`]. Generated code calls this function.
 ///
 /// # Errors
 ///

@@ -1,11 +1,10 @@
-//! What contacts do between events: which of them hold, how the mechanism moves meanwhile, and how far the
-//! next event is.
+//! Contact modes between two events, the motion in these modes, and the distance to the next event.
 
-use super::held::held;
-use super::lawful::lawful;
-use super::layout::Layout;
-use super::problem::{Problem, entry, put};
-use super::total::Total;
+use super::coefficients::checked_contact_laws;
+use super::held::held_with_gains;
+use super::layout::ContactLayout;
+use super::problem::{ContactProblem, entry_or_zero, set_entry};
+use super::total::TotalArray;
 use super::{Contacts, Law, Touch, impact, touching_distance};
 use crate::constraint::ConstraintError;
 use crate::forward::{constants, each_function};
@@ -15,19 +14,21 @@ use crate::{Mechanism, Real};
 use core::ops::Range;
 use nalgebra::SVector;
 
-/// Of a mechanism with `NK` contacts and `NR` rates, what each does until the next event.
+/// Contact modes of a mechanism with `NK` contacts and `NR` contact velocities, constant until the next
+/// event.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Phase<T, const NK: usize, const NR: usize> {
+pub(crate) struct ContactPhase<T, const NK: usize, const NR: usize> {
     touches: [Touch; NK],
-    /// Of contacts that slip the way, as a unit vector at the places of their rates.
+    /// Unit slip direction of each sliding contact, stored at that contact's rows.
     along: SVector<T, NR>,
-    /// The motion cannot tell the forces of contacts apart, so that those that hold are not the only ones.
+    /// Whether the contact forces are not unique, because the accelerations do not determine them.
     redundant: bool,
-    /// Of contacts that are open the flight, where it is so low that gaps cannot show its end.
+    /// Flight of each separated contact that is so close that the sign of its gap cannot show the end of the
+    /// flight.
     flights: [Option<Flight<T>>; NK],
 }
 
-/// A flight which begins with a gap `gap`, its rate and the rate of that.
+/// Motion of a separated contact, with the gap, its velocity and its acceleration at the start.
 #[derive(Clone, Copy, Debug)]
 struct Flight<T> {
     gap: T,
@@ -36,8 +37,8 @@ struct Flight<T> {
 }
 
 impl<T: Real> Flight<T> {
-    /// When it ends, if it goes on as it has begun.
-    fn duration(&self) -> Option<T> {
+    /// Returns the time until the gap is zero if the acceleration stays constant.
+    fn time_until_touchdown(&self) -> Option<T> {
         let two = constant::<T>(2.0);
         let square = self.rate * self.rate - self.acceleration * self.gap * two;
         let time = if self.acceleration < T::zero() {
@@ -48,71 +49,77 @@ impl<T: Real> Flight<T> {
         (time.is_finite() && time > T::zero()).then_some(time)
     }
 
-    /// The gap after `s` seconds, by its rates at both ends and theirs.
-    fn gap(&self, s: T, rate: T, acceleration: T) -> T {
+    /// Returns the gap after `s` seconds by the trapezoidal rule with end correction, from velocities and
+    /// accelerations at the start and the end.
+    fn gap_after(&self, s: T, rate: T, acceleration: T) -> T {
         let mean = (self.rate + rate) * constant(0.5);
         self.gap + s * (mean + s * (self.acceleration - acceleration) * constant(1.0 / 12.0))
     }
 }
 
-/// Rates that rounding leaves of none, m/s: those of surfaces that rest on each other.
-fn still<T: Real, const NR: usize>(rates: &SVector<T, NR>) -> T {
+/// Returns the contact velocity, m/s, below which resting surfaces are considered at rest: the rounding error
+/// of the given contact velocities.
+fn rest_velocity<T: Real, const NR: usize>(rates: &SVector<T, NR>) -> T {
     let most = rates.iter().fold(T::one(), |most, rate| most.max(rate.abs()));
     most * epsilon::<T>() * constant(512.0)
 }
 
-/// Adds the slip of contacts, divided by a time so short that friction does not stop it, to their
-/// accelerations `free`.
+/// Adds a large acceleration in the slip direction to the contact accelerations `free` of sliding contacts,
+/// as if the slip velocity were reached in a very short time. Therefore the solution does not stop their
+/// slip.
 pub(super) fn sustain_slip<T: Real, const NK: usize, const NR: usize>(
     free: &mut SVector<T, NR>,
     rates: &SVector<T, NR>,
-    layout: Layout<NK>,
+    layout: ContactLayout<NK>,
 ) {
-    let still = still(rates) * constant(2.0);
+    let still = rest_velocity(rates) * constant(2.0);
     let most = free.iter().fold(T::zero(), |most, a| most.max(a.abs()));
-    for tangents in (0..NK).map(|k| layout.tangents(k)) {
-        let slip = length(rates, tangents.clone());
+    for tangents in (0..NK).map(|k| layout.tangent_rows(k)) {
+        let slip = norm_of_range(rates, tangents.clone());
         if slip > still {
             let size = (slip / epsilon::<T>().powf(constant(0.75))).min(most * constant(1e6));
             for i in tangents {
-                put(free, i, entry(free, i) + entry(rates, i) / slip * size);
+                set_entry(free, i, entry_or_zero(free, i) + entry_or_zero(rates, i) / slip * size);
             }
         }
     }
 }
 
-/// Returns the first contact that sticks by friction although its surfaces slip with these rates.
+/// Returns the first contact that sticks by friction in the modes `touches`, although the contact velocities
+/// `rates` contain slip.
 pub(super) fn stopped_contact<T: Real, const NK: usize, const NR: usize>(
     rates: &SVector<T, NR>,
     touches: &[Touch; NK],
     laws: &[Law<T>; NK],
-    layout: Layout<NK>,
+    layout: ContactLayout<NK>,
 ) -> Option<usize> {
-    let slips = |k: usize| length(rates, layout.tangents(k)) > touching_distance();
+    let has_slip = |k: usize| norm_of_range(rates, layout.tangent_rows(k)) > touching_distance();
     let mut sticks =
         touches.iter().zip(laws).map(|(touch, law)| *touch == Touch::Sticks && law.friction > T::zero());
-    (0..NK).find(|k| sticks.next() == Some(true) && slips(*k))
+    (0..NK).find(|k| sticks.next() == Some(true) && has_slip(*k))
 }
 
-/// The length of a part of a vector.
-pub(super) fn length<T: Real, const N: usize>(vector: &SVector<T, N>, part: Range<usize>) -> T {
-    part.fold(T::zero(), |sum, i| sum + entry(vector, i) * entry(vector, i)).sqrt()
+/// Returns the Euclidean norm of a range of entries of a vector.
+pub(super) fn norm_of_range<T: Real, const N: usize>(vector: &SVector<T, N>, part: Range<usize>) -> T {
+    part.fold(T::zero(), |sum, i| sum + entry_or_zero(vector, i) * entry_or_zero(vector, i)).sqrt()
 }
 
-/// Gaps of surfaces that rest on each other, m: what rounding and a step may leave of none.
-fn resting<T: Real, const NQ: usize>(q: &SVector<T, NQ>) -> T {
+/// Returns the gap, m, up to which surfaces count as resting on each other: rounding and integration errors
+/// of one step.
+fn resting_gap<T: Real, const NQ: usize>(q: &SVector<T, NQ>) -> T {
     let size = q.iter().fold(T::one(), |size, q| size.max(q.abs()));
     size * epsilon::<T>().powf(constant(0.75))
 }
 
-/// Gaps that rounding leaves of none, m.
-fn touching<T: Real, const NQ: usize>(q: &SVector<T, NQ>) -> T {
+/// Returns the rounding error of gaps, m.
+fn gap_rounding<T: Real, const NQ: usize>(q: &SVector<T, NQ>) -> T {
     let size = q.iter().fold(T::one(), |size, q| size.max(q.abs()));
     size * epsilon::<T>() * constant(16.0)
 }
 
-/// The velocity after what strikes has struck.
-pub(crate) fn separated<
+/// Returns the velocity after an impact if closed contacts approach each other, otherwise the velocity
+/// unchanged.
+pub(crate) fn velocity_after_impact<
     M,
     T,
     const NQ: usize,
@@ -131,20 +138,21 @@ where
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let (gaps, rates) = (mechanism.contact_gaps(t, q), mechanism.contact_rates(t, q, v));
-    let (touching, still) = (touching(q), still(&rates));
-    let strikes = Layout::of(mechanism)
-        .gaps()
-        .any(|(k, first)| entry(&gaps, k) <= touching && entry(&rates, first) < -still);
+    let (touching, still) = (gap_rounding(q), rest_velocity(&rates));
+    let strikes = ContactLayout::of_mechanism(mechanism)
+        .gap_contacts()
+        .any(|(k, first)| entry_or_zero(&gaps, k) <= touching && entry_or_zero(&rates, first) < -still);
     if strikes { impact(mechanism, t, q, v).map(|solved| solved.v) } else { Ok(*v) }
 }
 
-impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
-    /// What contacts do in a state under the generalized forces `tau`, and the accelerations. None strikes.
+impl<T: Real, const NK: usize, const NR: usize> ContactPhase<T, NK, NR> {
+    /// Returns the contact modes in a state under the generalized forces `tau`, and the accelerations. No
+    /// contact may have an impact in this state.
     ///
     /// # Errors
     ///
     /// [`ConstraintError::Contact`] where no forces fulfil the laws of contacts.
-    pub(crate) fn of<M, const NQ: usize, const NV: usize, const NU: usize>(
+    pub(crate) fn of_state<M, const NQ: usize, const NV: usize, const NU: usize>(
         mechanism: &M,
         t: T,
         q: &SVector<T, NQ>,
@@ -155,11 +163,11 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
         let (gaps, rates) = (mechanism.contact_gaps(t, q), mechanism.contact_rates(t, q, v));
-        let (still, resting) = (still(&rates), resting(q));
-        let layout = Layout::of(mechanism);
+        let (still, resting) = (rest_velocity(&rates), resting_gap(q));
+        let layout = ContactLayout::of_mechanism(mechanism);
         let mut closed = [false; NK];
         for (k, (closed, gap)) in closed.iter_mut().zip(&gaps).enumerate() {
-            *closed = *gap <= resting && entry(&rates, layout.pressing(k).1).abs() <= still;
+            *closed = *gap <= resting && entry_or_zero(&rates, layout.bounding_contact(k).1).abs() <= still;
         }
         let mut a = mechanism.try_forward_dynamics(t, q, v, tau)?;
         let driven = mechanism.contact_rates(t, q, &SVector::zeros());
@@ -178,14 +186,16 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
                 return Err(ConstraintError::NotFinite);
             }
             let responses = mechanism.contact_responses(t, q, &closed);
-            let laws = lawful(mechanism)?;
-            let mut problem = Problem::new(layout, &laws, &closed, &free);
-            problem.stick(&laws, |k| length(&rates, layout.tangents(k)) <= still * constant(2.0));
-            problem.weigh(&responses.rates);
+            let laws = checked_contact_laws(mechanism)?;
+            let mut problem = ContactProblem::new(layout, &laws, &closed, &free);
+            problem.set_static_friction(&laws, |k| {
+                norm_of_range(&rates, layout.tangent_rows(k)) <= still * constant(2.0)
+            });
+            problem.copy_weights(&responses.rates);
             let forces = problem.solve_sticking().map_err(|k| ConstraintError::Contact {
                 constraint: M::CONTACTS.get(k).copied().unwrap_or_default(),
             })?;
-            let (touches, along) = problem.touches(&forces);
+            let (touches, along) = problem.contact_modes(&forces);
             if let Some(k) = stopped_contact(&rates, &touches, &mechanism.contact_laws(), layout) {
                 // No forces let it slip on (Painlevé's paradox): it stops at once.
                 return Err(ConstraintError::Contact {
@@ -193,14 +203,14 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
                 });
             }
             phase = Self { touches, along, redundant: problem.is_redundant(&touches), ..open };
-            a += responses.velocities * problem.spread(&forces);
+            a += responses.velocities * problem.spread_to_mechanism(&forces);
         }
         let bent = mechanism.contact_rates(t, q, &a) - driven + bias;
-        let touching = touching(q);
+        let touching = gap_rounding(q);
         let states = gaps.iter().zip(closed).zip(phase.flights.iter_mut()).enumerate();
         for (k, ((gap, closed), flight)) in states.filter(|(k, _)| layout.is_gap(*k)) {
-            let (_, first) = layout.pressing(k);
-            let (gap, rate, acceleration) = (*gap, entry(&rates, first), entry(&bent, first));
+            let (_, first) = layout.bounding_contact(k);
+            let (gap, rate, acceleration) = (*gap, entry_or_zero(&rates, first), entry_or_zero(&bent, first));
             if closed || gap > touching_distance() {
                 continue;
             }
@@ -215,47 +225,47 @@ impl<T: Real, const NK: usize, const NR: usize> Phase<T, NK, NR> {
         Ok((phase, a))
     }
 
-    /// The rates along which slip is braked: those that there are, or where a contact is only about to slip
-    /// or has slipped too far the way it slips.
-    fn braked(&self, rates: &SVector<T, NR>, layout: Layout<NK>) -> SVector<T, NR> {
+    /// Returns the slip velocities that friction opposes: the actual ones, or the stored slip direction for
+    /// contacts that begin to slip or whose slip has reversed within a step.
+    fn opposed_slip(&self, rates: &SVector<T, NR>, layout: ContactLayout<NK>) -> SVector<T, NR> {
         let mut braked = *rates;
         let slips = self.touches.iter().enumerate().filter(|(_, touch)| **touch == Touch::Slips);
-        for tangents in slips.map(|(k, _)| layout.tangents(k)) {
-            if self.slip(rates, tangents.clone()) <= T::zero() {
-                tangents.for_each(|i| put(&mut braked, i, entry(&self.along, i)));
+        for tangents in slips.map(|(k, _)| layout.tangent_rows(k)) {
+            if self.slip_along_direction(rates, tangents.clone()) <= T::zero() {
+                tangents.for_each(|i| set_entry(&mut braked, i, entry_or_zero(&self.along, i)));
             }
         }
         braked
     }
 
-    /// The slip of a contact the way it slips.
-    fn slip(&self, rates: &SVector<T, NR>, tangents: Range<usize>) -> T {
-        tangents.fold(T::zero(), |sum, i| sum + entry(&self.along, i) * entry(rates, i))
+    /// Returns the slip velocity of a contact along its stored slip direction.
+    fn slip_along_direction(&self, rates: &SVector<T, NR>, tangents: Range<usize>) -> T {
+        tangents.fold(T::zero(), |sum, i| sum + entry_or_zero(&self.along, i) * entry_or_zero(rates, i))
     }
 
-    /// Whether contacts slip whose forces the motion does not tell apart.
-    pub(crate) fn is_shared(&self) -> bool {
+    /// Whether contacts slide and the contact forces are not unique.
+    pub(crate) fn has_ambiguous_slip(&self) -> bool {
         self.redundant && self.touches.contains(&Touch::Slips)
     }
 
-    /// When the first of the low flights ends, if it goes on as it has begun.
-    pub(crate) fn landing(&self) -> Option<T> {
-        let landings = self.flights.iter().flatten().filter_map(Flight::duration);
+    /// Returns the time until the first of the low flights ends, if accelerations stay constant.
+    pub(crate) fn time_to_landing(&self) -> Option<T> {
+        let landings = self.flights.iter().flatten().filter_map(Flight::time_until_touchdown);
         landings.fold(None, |first, time| Some(first.map_or(time, |first: T| first.min(time))))
     }
 }
 
-/// A mechanism that moves as its contacts do in a phase.
-pub(crate) struct Phased<'m, M, T, const NK: usize, const NR: usize> {
+/// Mechanism that moves in the contact modes of a phase.
+pub(crate) struct PhasedMechanism<'m, M, T, const NK: usize, const NR: usize> {
     /// The mechanism.
     pub(crate) mechanism: &'m M,
-    /// What its contacts do.
-    pub(crate) phase: Phase<T, NK, NR>,
+    /// Contact modes between two events.
+    pub(crate) phase: ContactPhase<T, NK, NR>,
 }
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>
-    Mechanism<NQ, NV, NU> for Phased<'_, M, T, NK, NR>
+    Mechanism<NQ, NV, NU> for PhasedMechanism<'_, M, T, NK, NR>
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
@@ -284,15 +294,16 @@ where
         tau: &SVector<T, NV>,
     ) -> Result<SVector<T, NV>, ConstraintError> {
         let Self { mechanism, phase } = self;
-        let layout = Layout::of(*mechanism);
-        let along = phase.braked(&mechanism.contact_rates(t, q, v), layout);
-        held(*mechanism, t, (q, v), tau, &phase.touches, (&along, [T::zero(); 2])).map(|(held, _)| held.a)
+        let layout = ContactLayout::of_mechanism(*mechanism);
+        let along = phase.opposed_slip(&mechanism.contact_rates(t, q, v), layout);
+        held_with_gains(*mechanism, t, (q, v), tau, &phase.touches, (&along, [T::zero(); 2]))
+            .map(|(held, _)| held.a)
     }
 }
 
 #[warn(clippy::missing_trait_methods, reason = "a function that is not passed on would become its default")]
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>
-    Hooks<T, NQ, NV, NU> for Phased<'_, M, T, NK, NR>
+    Hooks<T, NQ, NV, NU> for PhasedMechanism<'_, M, T, NK, NR>
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
@@ -320,8 +331,8 @@ where
     }
 }
 
-/// Where a step of a phase has led, `s` seconds after its start.
-pub(crate) struct Watch<'a, T, const NQ: usize, const NV: usize> {
+/// State after `s` seconds in a phase.
+pub(crate) struct PhaseState<'a, T, const NQ: usize, const NV: usize> {
     pub(crate) s: T,
     pub(crate) t: T,
     pub(crate) q: &'a SVector<T, NQ>,
@@ -329,30 +340,37 @@ pub(crate) struct Watch<'a, T, const NQ: usize, const NV: usize> {
     pub(crate) tau: &'a SVector<T, NV>,
 }
 
-impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
-    /// What is left until the first event of the phase: of gaps that close, forces that press, friction that
-    /// holds, and slip; negative where one is past.
-    pub(crate) fn left<M, const NU: usize, const NK: usize, const NR: usize>(
+impl<T: Real, const NQ: usize, const NV: usize> PhaseState<'_, T, NQ, NV> {
+    /// Returns the margin to the first event of the phase: the minimum of gaps of separated contacts, normal
+    /// forces, remaining friction of sticking contacts, and slip velocities of sliding contacts. It is
+    /// negative past an event.
+    pub(crate) fn margin_to_event<M, const NU: usize, const NK: usize, const NR: usize>(
         &self,
-        phased: &Phased<'_, M, T, NK, NR>,
+        phased: &PhasedMechanism<'_, M, T, NK, NR>,
     ) -> T
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
         let Self { s, t, q, v, tau } = *self;
-        let Phased { mechanism, phase } = phased;
+        let PhasedMechanism { mechanism, phase } = phased;
         let rates = mechanism.contact_rates(t, q, v);
-        let layout = Layout::of(*mechanism);
-        let along = phase.braked(&rates, layout);
+        let layout = ContactLayout::of_mechanism(*mechanism);
+        let along = phase.opposed_slip(&rates, layout);
         let past = -T::one();
         let along = (&along, [T::zero(); 2]);
-        let Ok((held, _)) = held(*mechanism, t, (q, v), tau, &phase.touches, along) else { return past };
-        let bent = || {
+        let Ok((held, _)) = held_with_gains(*mechanism, t, (q, v), tau, &phase.touches, along) else {
+            return past;
+        };
+        let contact_accelerations = || {
             let driven = mechanism.contact_rates(t, q, &SVector::zeros());
             mechanism.contact_rates(t, q, &held.a) - driven + mechanism.contact_bias(t, q, v)
         };
-        let bent = if phase.flights.iter().any(Option::is_some) { bent() } else { SVector::zeros() };
-        let (gaps, still) = (mechanism.contact_gaps(t, q), still(&rates));
+        let bent = if phase.flights.iter().any(Option::is_some) {
+            contact_accelerations()
+        } else {
+            SVector::zeros()
+        };
+        let (gaps, still) = (mechanism.contact_gaps(t, q), rest_velocity(&rates));
         let rounding = held.forces.iter().fold(T::zero(), |most, f| most.max(f.abs()));
         let rounding = rounding * epsilon::<T>() * constant(64.0);
         let stiction = mechanism.contact_laws().map(|Law { stiction, .. }| stiction);
@@ -360,16 +378,19 @@ impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
         let mut forces = moving;
         let contacts = phase.touches.into_iter().zip(phase.flights).zip(gaps.iter().zip(stiction));
         for (k, ((touch, flight), (gap, stiction))) in contacts.enumerate() {
-            let ((_, first), tangents) = (layout.pressing(k), layout.tangents(k));
-            let (rate, normal) = (entry(&rates, first), entry(&held.forces, first));
+            let ((_, first), tangents) = (layout.bounding_contact(k), layout.tangent_rows(k));
+            let (rate, normal) = (entry_or_zero(&rates, first), entry_or_zero(&held.forces, first));
             let least = match touch {
                 // Moments of friction close and open with their contact.
                 Touch::Open if !layout.is_gap(k) => T::one(),
                 Touch::Open => {
-                    let gap = flight.map_or(*gap, |flight| flight.gap(s, rate, entry(&bent, first)));
+                    let gap =
+                        flight.map_or(*gap, |flight| flight.gap_after(s, rate, entry_or_zero(&bent, first)));
                     if gap < T::zero() && rate >= -still { T::one() } else { gap }
                 }
-                Touch::Slips => self::still(&rates) + phase.slip(&rates, tangents.clone()),
+                Touch::Slips => {
+                    self::rest_velocity(&rates) + phase.slip_along_direction(&rates, tangents.clone())
+                }
                 Touch::Sticks => T::one(),
             };
             moving = moving.min(least);
@@ -377,7 +398,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
                 forces = forces.min(normal + rounding);
             }
             if touch == Touch::Sticks && !tangents.is_empty() && stiction > T::zero() {
-                let size = length(&held.forces, tangents);
+                let size = norm_of_range(&held.forces, tangents);
                 forces = forces.min(stiction * normal - size + rounding);
             }
         }
@@ -385,14 +406,14 @@ impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
         if !numbers {
             return past;
         }
-        if forces < T::zero() && phase.redundant && self.is_shared(*mechanism, &held.a) {
+        if forces < T::zero() && phase.redundant && self.is_force_ambiguous(*mechanism, &held.a) {
             forces = T::one();
         }
         moving.min(forces)
     }
 
-    /// Whether contacts give these accelerations by other forces that fulfil their laws.
-    fn is_shared<M, const NU: usize, const NK: usize, const NR: usize>(
+    /// Whether other contact forces that satisfy the contact conditions produce these accelerations.
+    fn is_force_ambiguous<M, const NU: usize, const NK: usize, const NR: usize>(
         &self,
         mechanism: &M,
         a: &SVector<T, NV>,
@@ -400,14 +421,17 @@ impl<T: Real, const NQ: usize, const NV: usize> Watch<'_, T, NQ, NV> {
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        let Ok((_, found)) = Phase::of(mechanism, self.t, self.q, self.v, self.tau) else { return false };
-        let size = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
-        size(&(found - a)) <= (size(a) + T::one()) * epsilon::<T>().powf(constant(0.625))
+        let Ok((_, found)) = ContactPhase::of_state(mechanism, self.t, self.q, self.v, self.tau) else {
+            return false;
+        };
+        let largest_magnitude = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
+        largest_magnitude(&(found - a))
+            <= (largest_magnitude(a) + T::one()) * epsilon::<T>().powf(constant(0.625))
     }
 }
 
-/// A configuration and velocity brought back to where the contacts of a phase hold them.
-pub(crate) fn settled<
+/// Returns the configuration and velocity projected onto the closed contacts of a phase.
+pub(crate) fn projected_onto_contacts<
     M,
     T,
     const NQ: usize,
@@ -416,7 +440,7 @@ pub(crate) fn settled<
     const NK: usize,
     const NR: usize,
 >(
-    phased: &Phased<'_, M, T, NK, NR>,
+    phased: &PhasedMechanism<'_, M, T, NK, NR>,
     t: T,
     q: &SVector<T, NQ>,
     v: &SVector<T, NV>,
@@ -425,32 +449,33 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    let Phased { mechanism, phase } = phased;
+    let PhasedMechanism { mechanism, phase } = phased;
     let closed = phase.touches.map(|touch| touch != Touch::Open);
     if !closed.contains(&true) {
         return (*q, *v);
     }
     let rates = mechanism.contact_rates(t, q, v);
-    let layout = Layout::of(*mechanism);
-    let stops = still(&rates) * constant(2.0);
+    let layout = ContactLayout::of_mechanism(*mechanism);
+    let stops = rest_velocity(&rates) * constant(2.0);
     let mut laws = mechanism.contact_laws();
     for (k, (law, touch)) in laws.iter_mut().zip(phase.touches).enumerate() {
-        if touch == Touch::Slips && phase.slip(&rates, layout.tangents(k)) > stops {
+        if touch == Touch::Slips && phase.slip_along_direction(&rates, layout.tangent_rows(k)) > stops {
             law.friction = T::zero();
         }
     }
     let responses = mechanism.contact_responses(t, q, &closed);
-    let undone = |left: &SVector<T, NR>, laws: &[Law<T>; NK]| -> SVector<T, NV> {
-        let mut problem = Problem::new(layout, laws, &closed, left);
-        problem.weigh(&responses.rates);
-        responses.velocities * problem.spread(&problem.together(&Total::repeat(true)))
+    let correcting_change = |left: &SVector<T, NR>, laws: &[Law<T>; NK]| -> SVector<T, NV> {
+        let mut problem = ContactProblem::new(layout, laws, &closed, left);
+        problem.copy_weights(&responses.rates);
+        responses.velocities
+            * problem.spread_to_mechanism(&problem.impulses_closing(&TotalArray::repeat_entry(true)))
     };
     let (gaps, mut left) = (mechanism.contact_gaps(t, q), SVector::<T, NR>::zeros());
-    for (k, first) in layout.gaps() {
-        put(&mut left, first, entry(&gaps, k));
+    for (k, first) in layout.gap_contacts() {
+        set_entry(&mut left, first, entry_or_zero(&gaps, k));
     }
-    let push = undone(&left, &laws.map(|law| Law { friction: T::zero(), ..law }));
+    let push = correcting_change(&left, &laws.map(|law| Law { friction: T::zero(), ..law }));
     let (q, v) = (mechanism.integrate(q, &push), mechanism.carry(t, q, &push, v));
-    let v = v + undone(&mechanism.contact_rates(t, &q, &v), &laws);
+    let v = v + correcting_change(&mechanism.contact_rates(t, &q, &v), &laws);
     (q, v)
 }

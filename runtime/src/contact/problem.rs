@@ -1,8 +1,8 @@
 //! Impulses of all closed contacts: a complementarity problem with friction cones.
 
-use super::layout::Layout;
+use super::layout::ContactLayout;
 use super::selection::FEW;
-use super::total::Total;
+use super::total::TotalArray;
 use super::{Law, Rows, Touch};
 use crate::Real;
 use crate::private::{constant, epsilon, positive_part};
@@ -22,15 +22,15 @@ mod sensitivity;
 mod transport;
 mod trial;
 
-pub(super) use basis::{Basis, Columns, dot};
-pub(super) use linear::Equations;
-pub(super) use sensitivity::Linearised;
-use trial::Mode;
+pub(super) use basis::{BasisRows, UsedColumns, dot};
+pub(super) use linear::ImpulseEquations;
+pub(super) use sensitivity::LinearisedImpulses;
+use trial::ContactMode;
 
-/// A number for each rate.
-type List<T, const NR: usize> = Total<T, NR>;
-/// A row of numbers for each rate.
-type Square<T, const NR: usize> = Total<Total<T, NR>, NR>;
+/// List with an entry for each contact velocity.
+type RowList<T, const NR: usize> = TotalArray<T, NR>;
+/// Square matrix with a row for each contact velocity.
+type RowMatrix<T, const NR: usize> = TotalArray<TotalArray<T, NR>, NR>;
 
 /// Maximum length of a displacement that closes gaps, relative to the largest gap or penetration.
 const FARTHEST: f64 = 8.0;
@@ -47,42 +47,42 @@ const ROUNDINGS: f64 = 64.0;
 /// Closed contacts and their rows have their own numbers: the first `count` and `size` entries of lists are
 /// used.
 #[derive(Debug)]
-pub(super) struct Problem<T, const NK: usize, const NR: usize> {
+pub(super) struct ContactProblem<T, const NK: usize, const NR: usize> {
     /// Index of each contact in the mechanism, and its rows there.
-    contacts: Total<(usize, Rows), NK>,
+    contacts: TotalArray<(usize, Rows), NK>,
     count: usize,
     /// First row of each contact, and its number of rows.
-    rows: Total<Rows, NK>,
+    rows: TotalArray<Rows, NK>,
     /// Contact whose normal impulse bounds the friction of each contact: the contact itself, except for
     /// friction moments.
-    pressed_by: Total<usize, NK>,
+    pressed_by: TotalArray<usize, NK>,
     size: usize,
     /// Row of the mechanism for each row.
-    places: List<usize, NR>,
+    places: RowList<usize, NR>,
     /// Contact velocities without any impulses.
-    given: List<T, NR>,
+    given: RowList<T, NR>,
     /// Impulses of compression for Poisson's restitution, and whether there are any.
-    compression: List<T, NR>,
+    compression: RowList<T, NR>,
     is_compressed: bool,
     /// Impulses of compression, and the smallest impulses of restitution. They act in addition to those that
     /// are searched.
-    base: List<T, NR>,
-    /// `u₀`: contact velocities with the impulses `base`.
-    free: List<T, NR>,
-    /// `W`; `None` if it is the product of an exact `B`.
-    weights: Option<Square<T, NR>>,
-    /// `B` of `W = B Bᵀ`, where it is known.
-    pub(super) basis: Basis<T, NR>,
-    /// Smallest normal velocity.
-    least: Total<T, NK>,
+    base: RowList<T, NR>,
+    /// Contact velocities `u₀` after the impulses of the field `base`.
+    free: RowList<T, NR>,
+    /// Matrix `W` of the velocity changes by unit impulses; `None` if it equals `B Bᵀ` with an exact `B`.
+    weights: Option<RowMatrix<T, NR>>,
+    /// Factor `B` of `W = B Bᵀ`, if it is known.
+    pub(super) basis: BasisRows<T, NR>,
+    /// Smallest permitted normal velocity after the impulses, of each contact.
+    least: TotalArray<T, NK>,
     /// Part of `base` that is an impulse of restitution; it bounds friction as well.
-    floor: Total<T, NK>,
-    friction: Total<T, NK>,
+    floor: TotalArray<T, NK>,
+    friction: TotalArray<T, NK>,
     /// Coefficients of friction while surfaces slide.
-    kinetic: Total<T, NK>,
+    kinetic: TotalArray<T, NK>,
     /// Step for the contact velocities of a contact, shorter than the inverse of its block of `W`; zero if
     /// impulses move nothing.
-    step: Total<T, NK>,
+    step: TotalArray<T, NK>,
     /// Number of velocities that determine the contact velocities.
     velocities: usize,
     /// Factor of all steps, which affects the convergence of Newton's method.
@@ -94,59 +94,59 @@ pub(super) struct Problem<T, const NK: usize, const NR: usize> {
     /// Largest violation of the contact conditions by the impulses found last, as a contact velocity.
     violation: T,
     /// Impulses that violate the conditions least, after a search that has found none that satisfy them.
-    closest: List<T, NR>,
+    closest: RowList<T, NR>,
 }
 
-impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
+impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns a problem without contacts. The problem of a relaxed step accepts impulses that violate the
     /// contact conditions if it finds no others.
-    pub(super) fn empty(is_relaxed: bool) -> Self {
+    pub(super) fn without_contacts(is_relaxed: bool) -> Self {
         let none = Rows { first: 0, count: 0 };
         Self {
-            contacts: Total::repeat((0, none)),
+            contacts: TotalArray::repeat_entry((0, none)),
             count: 0,
-            rows: Total::repeat(none),
-            pressed_by: Total::repeat(0),
+            rows: TotalArray::repeat_entry(none),
+            pressed_by: TotalArray::repeat_entry(0),
             size: 0,
-            places: Total::repeat(0),
-            given: Total::repeat(T::zero()),
-            compression: Total::repeat(T::zero()),
+            places: TotalArray::repeat_entry(0),
+            given: TotalArray::repeat_entry(T::zero()),
+            compression: TotalArray::repeat_entry(T::zero()),
             is_compressed: false,
-            base: Total::repeat(T::zero()),
-            free: Total::repeat(T::zero()),
+            base: TotalArray::repeat_entry(T::zero()),
+            free: TotalArray::repeat_entry(T::zero()),
             weights: None,
-            basis: Basis::none(),
-            least: Total::repeat(T::zero()),
-            floor: Total::repeat(T::zero()),
-            friction: Total::repeat(T::zero()),
-            kinetic: Total::repeat(T::zero()),
-            step: Total::repeat(T::zero()),
+            basis: BasisRows::without_columns(),
+            least: TotalArray::repeat_entry(T::zero()),
+            floor: TotalArray::repeat_entry(T::zero()),
+            friction: TotalArray::repeat_entry(T::zero()),
+            kinetic: TotalArray::repeat_entry(T::zero()),
+            step: TotalArray::repeat_entry(T::zero()),
             velocities: usize::MAX,
             scale: T::one(),
             iterations: Cell::new(0),
             is_relaxed,
             violation: T::zero(),
-            closest: Total::repeat(T::zero()),
+            closest: TotalArray::repeat_entry(T::zero()),
         }
     }
 
     /// Returns the problem of closed contacts with contact velocities `free` without impulses.
     pub(super) fn new(
-        layout: Layout<NK>,
+        layout: ContactLayout<NK>,
         laws: &[Law<T>; NK],
         closed: &[bool; NK],
         free: &SVector<T, NR>,
     ) -> Self {
-        let mut problem = Self::empty(false);
-        problem.select(layout, laws, closed, free);
+        let mut problem = Self::without_contacts(false);
+        problem.select_contacts(layout, laws, closed, free);
         problem
     }
 
     /// Adds the closed contacts to an empty problem. A friction moment is added only if its contact is
     /// closed.
-    pub(super) fn select(
+    pub(super) fn select_contacts(
         &mut self,
-        layout: Layout<NK>,
+        layout: ContactLayout<NK>,
         laws: &[Law<T>; NK],
         closed: &[bool; NK],
         free: &SVector<T, NR>,
@@ -157,9 +157,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 continue;
             }
             let (c, first) = (problem.count, problem.size);
-            let (by, _) = layout.pressing(k);
-            let known = || (0..c).find(|known| problem.contacts[*known].0 == by);
-            let Some(by) = (if by == k { Some(c) } else { known() }) else { continue };
+            let (by, _) = layout.bounding_contact(k);
+            let bounding_index = || (0..c).find(|known| problem.contacts[*known].0 == by);
+            let Some(by) = (if by == k { Some(c) } else { bounding_index() }) else { continue };
             let of = layout.rows(k);
             problem.contacts[c] = (k, of);
             problem.rows[c] = Rows { first, count: of.count };
@@ -168,7 +168,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             problem.kinetic[c] = law.friction;
             for i in 0..of.count {
                 problem.places[first + i] = of.first + i;
-                problem.free[first + i] = entry(free, of.first + i);
+                problem.free[first + i] = entry_or_zero(free, of.first + i);
                 problem.given[first + i] = problem.free[first + i];
             }
             problem.count += 1;
@@ -182,34 +182,37 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Returns the row of the normal impulse that bounds friction, and the rows of friction.
-    fn of(&self, k: usize) -> (usize, Range<usize>) {
+    fn rows_of_contact(&self, k: usize) -> (usize, Range<usize>) {
         let Rows { first, count } = self.rows[k];
         (self.rows[self.pressed_by[k]].first, first + usize::from(self.is_gap(k))..first + count)
     }
 
     /// Returns all rows of a contact.
-    fn all_of(&self, k: usize) -> Range<usize> {
+    fn all_rows_of(&self, k: usize) -> Range<usize> {
         let Rows { first, count } = self.rows[k];
         first..first + count
     }
 
-    /// Returns impulses at the rows of the mechanism, with the impulses `base`.
-    pub(super) fn spread(&self, impulses: &List<T, NR>) -> SVector<T, NR> {
-        self.scatter(&self.total(impulses))
+    /// Returns the sums of given impulses and the impulses of the field `base`, at the rows of the mechanism.
+    pub(super) fn spread_to_mechanism(&self, impulses: &RowList<T, NR>) -> SVector<T, NR> {
+        self.spread_to_mechanism_rows(&self.total_impulses(impulses))
     }
 
     /// Returns values of the rows of closed contacts at the rows of the mechanism; zeros elsewhere.
-    fn scatter(&self, values: &List<T, NR>) -> SVector<T, NR> {
+    fn spread_to_mechanism_rows(&self, values: &RowList<T, NR>) -> SVector<T, NR> {
         let mut all = SVector::<T, NR>::zeros();
         for (place, value) in self.places.iter().zip(values.iter()).take(self.size) {
-            put(&mut all, *place, *value);
+            set_entry(&mut all, *place, *value);
         }
         all
     }
 
     /// Returns impulses that satisfy the contact conditions, or in a relaxed step those that violate them
     /// least.
-    pub(super) fn relaxed(&self, found: Result<List<T, NR>, usize>) -> Result<List<T, NR>, usize> {
+    pub(super) fn accept_if_relaxed(
+        &self,
+        found: Result<RowList<T, NR>, usize>,
+    ) -> Result<RowList<T, NR>, usize> {
         found.or_else(|contact| if self.is_relaxed { Ok(self.closest) } else { Err(contact) })
     }
 
@@ -224,7 +227,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Returns impulses with those that act in addition.
-    pub(super) fn total(&self, impulses: &List<T, NR>) -> List<T, NR> {
+    pub(super) fn total_impulses(&self, impulses: &RowList<T, NR>) -> RowList<T, NR> {
         let mut all = *impulses;
         all.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse += *base);
         all
@@ -232,13 +235,13 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Returns the largest violation of the contact conditions by the impulses found last, as a contact
     /// velocity.
-    pub(super) fn violation(&self) -> T {
+    pub(super) fn largest_violation(&self) -> T {
         self.violation
     }
 
     /// Returns the number of bisections for the restitution that the energy allows: fewer in large problems,
     /// which bounds the duration of a step.
-    pub(super) fn halvings(&self) -> usize {
+    pub(super) fn max_halvings(&self) -> usize {
         if self.size > LARGE { 5 } else { 12 }
     }
 
@@ -251,7 +254,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     pub(super) fn was_loaded(&self, before: &SVector<T, NR>) -> bool {
         (0..self.count)
             .filter(|k| self.is_gap(*k))
-            .any(|k| entry(before, self.contacts[k].1.first) < T::zero())
+            .any(|k| entry_or_zero(before, self.contacts[k].1.first) < T::zero())
     }
 
     /// Sets the violation of the contact conditions to that of impulses found earlier.
@@ -260,14 +263,14 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Sets the number of velocities that determine the contact velocities.
-    pub(super) fn depends_on(&mut self, velocities: usize) {
+    pub(super) fn set_velocity_count(&mut self, velocities: usize) {
         self.velocities = velocities;
     }
 
     /// Copies the rows of closed contacts from `W = G M⁻¹ Gᵀ` of all contacts.
-    pub(super) fn weigh(&mut self, weights: &SMatrix<T, NR, NR>) {
+    pub(super) fn copy_weights(&mut self, weights: &SMatrix<T, NR, NR>) {
         let (places, none) = (self.places, T::zero());
-        let own = self.weights.insert(linear::square());
+        let own = self.weights.insert(linear::zero_matrix());
         for (j, place) in places.iter().enumerate().take(self.size) {
             let Some(column) = weights.data.0.get(*place) else { continue };
             for (row, i) in own.iter_mut().zip(places.iter()).take(self.size) {
@@ -279,11 +282,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Sets the steps of the contact velocities, after `B` or `W`.
     pub(super) fn set_steps(&mut self) {
-        let mut diagonal = List::<T, NR>::repeat(T::zero());
-        (0..self.size).for_each(|i| diagonal[i] = self.weight(i, i));
+        let mut diagonal = RowList::<T, NR>::repeat_entry(T::zero());
+        (0..self.size).for_each(|i| diagonal[i] = self.weight_entry(i, i));
         let reach = diagonal.iter().take(self.size).fold(T::zero(), |reach, weight| reach.max(*weight));
         for k in 0..self.count {
-            let trace = self.all_of(k).fold(T::zero(), |sum, i| sum + diagonal[i]);
+            let trace = self.all_rows_of(k).fold(T::zero(), |sum, i| sum + diagonal[i]);
             // Bodies that constraints hold move by rounding errors alone.
             let moves = trace > reach * epsilon::<T>() * constant(ROUNDINGS);
             self.step[k] = if moves { T::one() / trace } else { T::zero() };
@@ -291,27 +294,27 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Returns an entry of `W`.
-    fn weight(&self, i: usize, j: usize) -> T {
+    fn weight_entry(&self, i: usize, j: usize) -> T {
         match &self.weights {
             Some(weights) => weights[i][j],
-            None => self.basis.product(i, j),
+            None => self.basis.row_product(i, j),
         }
     }
 
     /// Returns changes of the contact velocities by impulses.
-    fn changes(&self, impulses: &List<T, NR>) -> List<T, NR> {
-        self.added(List::repeat(T::zero()), impulses)
+    fn velocity_changes(&self, impulses: &RowList<T, NR>) -> RowList<T, NR> {
+        self.add_velocity_changes(RowList::repeat_entry(T::zero()), impulses)
     }
 
     /// Returns the contact velocities after impulses.
-    fn rates(&self, impulses: &List<T, NR>) -> List<T, NR> {
-        self.added(self.free, impulses)
+    fn rates_after(&self, impulses: &RowList<T, NR>) -> RowList<T, NR> {
+        self.add_velocity_changes(self.free, impulses)
     }
 
     /// Adds changes by impulses to contact velocities.
-    fn added(&self, mut rates: List<T, NR>, impulses: &List<T, NR>) -> List<T, NR> {
+    fn add_velocity_changes(&self, mut rates: RowList<T, NR>, impulses: &RowList<T, NR>) -> RowList<T, NR> {
         if self.basis.is_exact() {
-            let changes = self.basis.rates(&self.basis.velocity(impulses));
+            let changes = self.basis.rates_of_velocity(&self.basis.velocity_of_impulses(impulses));
             rates.iter_mut().zip(changes.iter()).for_each(|(rate, change)| *rate += *change);
             return rates;
         }
@@ -325,12 +328,12 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Returns the step of the normal impulse that bounds friction.
-    fn press(&self, k: usize) -> T {
+    fn normal_step(&self, k: usize) -> T {
         self.step[self.pressed_by[k]] * self.scale
     }
 
     /// Sets the static coefficient of friction at contacts `at_rest`.
-    pub(super) fn stick(&mut self, laws: &[Law<T>; NK], at_rest: impl Fn(usize) -> bool) {
+    pub(super) fn set_static_friction(&mut self, laws: &[Law<T>; NK], at_rest: impl Fn(usize) -> bool) {
         for c in 0..self.count {
             let (k, _) = self.contacts[c];
             if let Some(law) = laws.get(k).filter(|law| law.stiction > law.friction && at_rest(k)) {
@@ -341,11 +344,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Sets the kinetic coefficient of friction at contacts that leave their static cone with these impulses,
     /// and returns true if there are any.
-    pub(super) fn slide(&mut self, impulses: &List<T, NR>) -> bool {
+    pub(super) fn release_sliding_contacts(&mut self, impulses: &RowList<T, NR>) -> bool {
         if (0..self.count).all(|c| self.friction[c] == self.kinetic[c]) {
             return false;
         }
-        let (touches, _) = self.touches(impulses);
+        let (touches, _) = self.contact_modes(impulses);
         let mut slides = false;
         for c in 0..self.count {
             let is_sliding = touches.get(self.contacts[c].0) == Some(&Touch::Slips);
@@ -357,16 +360,17 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         slides
     }
 
-    /// Returns the impulses with the static coefficient of friction where [`stick`](Self::stick) has set it
-    /// and surfaces do not slip, and with the kinetic one elsewhere.
+    /// Returns the impulses with the static coefficient of friction where
+    /// [`set_static_friction`](Self::set_static_friction) has set it and surfaces do not slip, and with the
+    /// kinetic one elsewhere.
     ///
     /// # Errors
     ///
     /// As [`solve`](Self::solve).
-    pub(super) fn solve_sticking(&mut self) -> Result<List<T, NR>, usize> {
+    pub(super) fn solve_sticking(&mut self) -> Result<RowList<T, NR>, usize> {
         loop {
-            let impulses = self.solve()?;
-            if !self.slide(&impulses) {
+            let impulses = self.solve_impulses()?;
+            if !self.release_sliding_contacts(&impulses) {
                 return Ok(impulses);
             }
         }
@@ -374,119 +378,125 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Returns the mode of each contact under impulses that satisfy the contact conditions, and the unit slip
     /// direction of each sliding contact at its rows.
-    pub(super) fn touches(&self, impulses: &List<T, NR>) -> ([Touch; NK], SVector<T, NR>) {
-        let (mut touches, mut along) = (Total::<_, NK>::repeat(Touch::Open), SVector::<T, NR>::zeros());
-        let rates = self.rates(impulses);
-        let modes = self.modes(&self.friction, impulses, &rates);
+    pub(super) fn contact_modes(&self, impulses: &RowList<T, NR>) -> ([Touch; NK], SVector<T, NR>) {
+        let (mut touches, mut along) =
+            (TotalArray::<_, NK>::repeat_entry(Touch::Open), SVector::<T, NR>::zeros());
+        let rates = self.rates_after(impulses);
+        let modes = self.natural_map_modes(&self.friction, impulses, &rates);
         // At the edge of the static cone surfaces stick until they move.
-        let still = self.rounding(impulses);
-        let sticks = |k: usize| {
-            let square = self.of(k).1.fold(T::zero(), |sum, i| sum + rates[i] * rates[i]);
+        let still = self.rate_rounding(impulses);
+        let is_sticking = |k: usize| {
+            let square = self.rows_of_contact(k).1.fold(T::zero(), |sum, i| sum + rates[i] * rates[i]);
             self.friction[k] != self.kinetic[k] && square <= still * still
         };
         for k in 0..self.count {
             let (contact, rows) = self.contacts[k];
             touches[contact] = match modes[k].1 {
-                Mode::Open => Touch::Open,
-                Mode::Slip { .. } if sticks(k) => Touch::Sticks,
-                Mode::Slip { direction, .. } if self.friction[k] > T::zero() => {
+                ContactMode::Open => Touch::Open,
+                ContactMode::Slip { .. } if is_sticking(k) => Touch::Sticks,
+                ContactMode::Slip { direction, .. } if self.friction[k] > T::zero() => {
                     let start = usize::from(self.is_gap(k));
                     for (place, component) in (rows.first + start..rows.first + rows.count).zip(direction) {
-                        put(&mut along, place, -component);
+                        set_entry(&mut along, place, -component);
                     }
                     Touch::Slips
                 }
                 _ => Touch::Sticks,
             };
         }
-        (touches.entries(), along)
+        (touches.into_entries(), along)
     }
 
     /// Returns the rounding error of contact velocities after impulses.
-    fn rounding(&self, impulses: &List<T, NR>) -> T {
+    fn rate_rounding(&self, impulses: &RowList<T, NR>) -> T {
         let most = match &self.weights {
             Some(weights) => {
                 self.free.iter().zip(weights.iter()).take(self.size).fold(T::zero(), |most, (free, row)| {
                     let terms = row.iter().zip(impulses.iter()).take(self.size);
-                    let sum = |sum, (weight, impulse): (&T, &T)| sum + (*weight * *impulse).abs();
-                    most.max(terms.fold(free.abs(), sum))
+                    let add_magnitude = |sum, (weight, impulse): (&T, &T)| sum + (*weight * *impulse).abs();
+                    most.max(terms.fold(free.abs(), add_magnitude))
                 })
             }
-            None => self.basis.magnitude(&self.free, impulses),
+            None => self.basis.largest_magnitude(&self.free, impulses),
         };
         (0..self.count).fold(most, |most, k| most.max(self.least[k])) * epsilon() * constant(ROUNDINGS)
     }
 
     /// Returns the largest contact velocity, without impulses or demanded by restitution.
-    pub(super) fn speed(&self) -> T {
+    pub(super) fn largest_rate(&self) -> T {
         let most = self.free.iter().take(self.size).fold(T::zero(), |most, rate| most.max(rate.abs()));
         (0..self.count).fold(most, |most, k| most.max(self.least[k]))
     }
 
     /// Returns the distance up to which gaps are not closed.
-    fn enough(near: T) -> T {
+    fn ignored_distance(near: T) -> T {
         (near * constant(1e-2)).max(epsilon::<T>() * constant(16.0))
     }
 
-    /// Whether all distances are so small that [`close`](Self::close) has nothing to do.
-    pub(super) fn is_shut(&self, gaps: &SVector<T, NK>, near: T) -> bool {
-        let enough = Self::enough(near);
-        (0..self.count).filter(|k| self.is_gap(*k)).all(|k| entry(gaps, self.contacts[k].0).abs() <= enough)
+    /// Whether all distances are so small that [`gap_closing_impulses`](Self::gap_closing_impulses) has
+    /// nothing to do.
+    pub(super) fn are_gaps_closed(&self, gaps: &SVector<T, NK>, near: T) -> bool {
+        let enough = Self::ignored_distance(near);
+        (0..self.count)
+            .filter(|k| self.is_gap(*k))
+            .all(|k| entry_or_zero(gaps, self.contacts[k].0).abs() <= enough)
     }
 
     /// Sets `B`, and `W` if `B` is not exact, to those of selected rows of another problem.
-    fn weigh_selected<const OK: usize, const OR: usize>(
+    fn copy_selected_weights<const OK: usize, const OR: usize>(
         &mut self,
-        other: &Problem<T, OK, OR>,
+        other: &ContactProblem<T, OK, OR>,
         rows: &[usize],
     ) {
-        self.basis.select(&other.basis, rows);
+        self.basis.select_rows(&other.basis, rows);
         if self.basis.is_exact() {
             return;
         }
-        let own = self.weights.insert(linear::square());
+        let own = self.weights.insert(linear::zero_matrix());
         for (row, i) in own.iter_mut().zip(rows) {
-            row.iter_mut().zip(rows).for_each(|(to, j)| *to = other.weight(*i, *j));
+            row.iter_mut().zip(rows).for_each(|(to, j)| *to = other.weight_entry(*i, *j));
         }
     }
 
     /// Returns impulses without friction that close gaps and penetrations as displacements, or `None` if all
     /// are small compared with `near`. Contacts that stay closed and have a gap of at most `reach` are
     /// closed; separating ones penetrate no deeper than before.
-    pub(super) fn close(
+    pub(super) fn gap_closing_impulses(
         &self,
-        impulses: &List<T, NR>,
+        impulses: &RowList<T, NR>,
         gaps: &SVector<T, NK>,
         distances: (T, T),
     ) -> Option<SVector<T, NR>> {
         let normals = (0..self.count).filter(|k| self.is_gap(*k)).count();
         // Matrices of normal impulses are smaller.
         match const { NR > FEW && NK > FEW } && normals <= FEW {
-            true => self.close_in::<FEW, FEW>(impulses, gaps, distances),
-            false => self.close_in::<NK, NR>(impulses, gaps, distances),
+            true => self.gap_closing_impulses_in::<FEW, FEW>(impulses, gaps, distances),
+            false => self.gap_closing_impulses_in::<NK, NR>(impulses, gaps, distances),
         }
     }
 
-    /// [`close`](Self::close) in arrays for up to `GK` contacts and `GR` normal impulses.
-    fn close_in<const GK: usize, const GR: usize>(
+    /// [`gap_closing_impulses`](Self::gap_closing_impulses) in arrays for up to `GK` contacts and `GR` normal
+    /// impulses.
+    fn gap_closing_impulses_in<const GK: usize, const GR: usize>(
         &self,
-        impulses: &List<T, NR>,
+        impulses: &RowList<T, NR>,
         gaps: &SVector<T, NK>,
         (near, reach): (T, T),
     ) -> Option<SVector<T, NR>> {
-        let rates = self.rates(impulses);
+        let rates = self.rates_after(impulses);
         let worst = self.tried_with(*impulses, rates).worst.0;
         // Contacts stay closed if their normal velocity is zero to rounding, whether or not they have an
         // impulse.
-        let rest = self.rounding(impulses).max(worst) * constant(ROUNDINGS);
-        let (mut kept, mut stay) = (Problem::<T, GK, GR>::empty(true), Total::<_, GK>::repeat(false));
+        let rest = self.rate_rounding(impulses).max(worst) * constant(ROUNDINGS);
+        let (mut kept, mut stay) =
+            (ContactProblem::<T, GK, GR>::without_contacts(true), TotalArray::<_, GK>::repeat_entry(false));
         let (mut overlap, mut distance) = (T::zero(), T::zero());
-        let enough = Self::enough(near);
-        let mut normals = Total::<_, GR>::repeat(0);
+        let enough = Self::ignored_distance(near);
+        let mut normals = TotalArray::<_, GR>::repeat_entry(0);
         for k in (0..self.count).filter(|k| self.is_gap(*k)) {
             let n = self.rows[k].first;
             let (contact, _) = self.contacts[k];
-            let gap = entry(gaps, contact);
+            let gap = entry_or_zero(gaps, contact);
             // A contact with a larger gap has moved to another place of its surfaces.
             if gap <= reach {
                 let c = kept.count;
@@ -510,52 +520,53 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             return None;
         }
         kept.size = kept.count;
-        kept.weigh_selected(self, normals.get(..kept.count).unwrap_or_default());
-        let spread = |pushes: &List<T, GR>| {
-            let mut all = List::<T, NR>::repeat(T::zero());
+        kept.copy_selected_weights(self, normals.get(..kept.count).unwrap_or_default());
+        let spread_pushes = |pushes: &RowList<T, GR>| {
+            let mut all = RowList::<T, NR>::repeat_entry(T::zero());
             normals.iter().zip(pushes.iter()).take(kept.count).for_each(|(n, push)| all[*n] = *push);
             all
         };
         // Longest displacement at a contact.
-        let farthest = |pushes: &List<T, GR>| {
-            let displacements = self.changes(&spread(pushes));
+        let largest_displacement = |pushes: &RowList<T, GR>| {
+            let displacements = self.velocity_changes(&spread_pushes(pushes));
             displacements.iter().take(self.size).fold(T::zero(), |most, x| most.max(x.abs()))
         };
         let most = overlap.max(distance) * constant(FARTHEST);
         // Equations can contradict each other: gaps of parallel faces differ if a contact has moved to
         // another edge, and one displacement cannot close them all. Open contacts then stay open. If overlaps
         // still differ, the conditions without friction alone decide.
-        let is_consistent = |shut: &Total<bool, GK>, pushes: &List<T, GR>| {
-            let left = kept.rates(pushes);
-            (0..kept.count).all(|c| !shut[c] || left[c].abs() <= enough) && farthest(pushes) <= most
+        let is_consistent = |shut: &TotalArray<bool, GK>, pushes: &RowList<T, GR>| {
+            let left = kept.rates_after(pushes);
+            (0..kept.count).all(|c| !shut[c] || left[c].abs() <= enough)
+                && largest_displacement(pushes) <= most
         };
         let mut overlapping = stay;
         (0..kept.count).for_each(|c| overlapping[c] &= kept.free[c] <= enough);
-        let mut tried = [stay, overlapping].into_iter().map(|shut| (shut, kept.together(&shut)));
+        let mut tried = [stay, overlapping].into_iter().map(|shut| (shut, kept.impulses_closing(&shut)));
         let found = tried.find(|(shut, pushes)| is_consistent(shut, pushes));
-        let mut pushes = found.map_or(List::repeat(T::zero()), |(_, pushes)| pushes);
-        let left = kept.rates(&pushes);
+        let mut pushes = found.map_or(RowList::repeat_entry(T::zero()), |(_, pushes)| pushes);
+        let left = kept.rates_after(&pushes);
         if left.iter().zip(kept.least.iter()).take(kept.size).any(|(gap, least)| *gap < *least - enough) {
-            let mut rest = Problem { free: left, ..kept };
-            let found = rest.solve();
-            let more = rest.relaxed(found).ok()?;
+            let mut rest = ContactProblem { free: left, ..kept };
+            let found = rest.solve_impulses();
+            let more = rest.accept_if_relaxed(found).ok()?;
             pushes.iter_mut().zip(more.iter()).for_each(|(push, more)| *push += *more);
-            let way = farthest(&pushes);
+            let way = largest_displacement(&pushes);
             if way > most {
                 pushes.iter_mut().for_each(|push| *push *= most / way);
             }
         }
-        Some(self.scatter(&spread(&pushes)))
+        Some(self.spread_to_mechanism_rows(&spread_pushes(&pushes)))
     }
 }
 
 /// Returns an entry of a vector; past the end zero.
-pub(super) fn entry<T: Real, const N: usize>(vector: &SVector<T, N>, k: usize) -> T {
+pub(super) fn entry_or_zero<T: Real, const N: usize>(vector: &SVector<T, N>, k: usize) -> T {
     vector.get(k).copied().unwrap_or(T::zero())
 }
 
 /// Sets an entry of a vector; past the end it does nothing.
-pub(super) fn put<T: Real, const N: usize>(vector: &mut SVector<T, N>, k: usize, value: T) {
+pub(super) fn set_entry<T: Real, const N: usize>(vector: &mut SVector<T, N>, k: usize, value: T) {
     if let Some(entry) = vector.get_mut(k) {
         *entry = value;
     }

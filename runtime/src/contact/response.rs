@@ -1,12 +1,12 @@
-//! How velocities answer to impulses at contacts.
+//! Responses of velocities to contact impulses.
 
-use super::problem::Basis;
+use super::problem::BasisRows;
 use super::{Contacts, Responses, Rows};
 use crate::Real;
 use crate::blocks::transposed;
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
-/// What impulses at contacts that are closed do; zeros of others.
+/// Returns the responses of velocities to unit impulses at closed contacts, and zeros for other contacts.
 #[doc(hidden)]
 pub fn responses<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
@@ -22,7 +22,7 @@ where
     let mut velocities = SMatrix::<T, NV, NR>::zeros();
     let features = mechanism.features();
     let is_plain = !features.constrained && !features.feedback;
-    let factor = if is_plain { Factor::factorise(&mechanism.mass_matrix(t, q)) } else { None };
+    let factor = if is_plain { CholeskyFactor::from_mass_matrix(&mechanism.mass_matrix(t, q)) } else { None };
     let still = SVector::zeros();
     let none =
         if factor.is_none() { mechanism.impulse(t, q, &still, T::zero(), &SVector::zeros()) } else { still };
@@ -31,7 +31,7 @@ where
         let p = jacobian.data.0.map(|column| column.get(row).copied().unwrap_or(T::zero()));
         let Some(answer) = velocities.data.0.get_mut(row) else { continue };
         *answer = match &factor {
-            Some(factor) => factor.solve(p),
+            Some(factor) => factor.solve_with_factor(p),
             None => (mechanism.impulse(t, q, &still, T::zero(), &SVector::from(p)) - none).data.0[0],
         };
     }
@@ -49,18 +49,22 @@ where
 
 /// Effects of impulses at selected contacts on the velocities of a mechanism. The matrices are large and
 /// filled in place.
-pub(super) enum Effects<T, const NV: usize, const CR: usize> {
+pub(super) enum ImpulseEffects<T, const NV: usize, const CR: usize> {
     /// Not computed yet.
     Unknown,
     /// `L` of `M = L Lᵀ`. The effect of impulses is `L⁻ᵀ Bᵀ Λ`.
-    Factor(Factor<T, NV>),
+    Factor(CholeskyFactor<T, NV>),
     /// `M⁻¹ Gᵀ`, with the effects of constraints.
     Matrix(SMatrix<T, NV, CR>),
 }
 
-impl<T: Real, const NV: usize, const CR: usize> Effects<T, NV, CR> {
+impl<T: Real, const NV: usize, const CR: usize> ImpulseEffects<T, NV, CR> {
     /// Returns the change of the velocity by impulses at the selected contacts.
-    pub(super) fn velocity(&self, basis: &Basis<T, CR>, impulses: &SVector<T, CR>) -> SVector<T, NV> {
+    pub(super) fn velocity_change(
+        &self,
+        basis: &BasisRows<T, CR>,
+        impulses: &SVector<T, CR>,
+    ) -> SVector<T, NV> {
         match self {
             Self::Unknown => SVector::zeros(),
             Self::Factor(factor) => {
@@ -73,9 +77,9 @@ impl<T: Real, const NV: usize, const CR: usize> Effects<T, NV, CR> {
     }
 }
 
-/// The factor `L` of `M = L Lᵀ` (Cholesky), whose rows begin at their first entry that is not zero: bodies
-/// that no joint connects have blocks of their own.
-pub(super) struct Factor<T, const N: usize> {
+/// Cholesky factor `L` of the mass matrix `M = L Lᵀ`. Each row is stored from its first nonzero entry: bodies
+/// that no joint connects have separate blocks.
+pub(super) struct CholeskyFactor<T, const N: usize> {
     /// Rows, with the reciprocals of the diagonal.
     rows: [[T; N]; N],
     /// Index of the first entry of each row.
@@ -84,25 +88,25 @@ pub(super) struct Factor<T, const N: usize> {
     ends: [usize; N],
 }
 
-impl<T: Real, const N: usize> Factor<T, N> {
-    /// Factorises a matrix; `None` where it is not positive definite.
-    pub(super) fn factorise(m: &SMatrix<T, N, N>) -> Option<Self> {
-        let mut factor = Self::none();
-        factor.fill(m).then_some(factor)
+impl<T: Real, const N: usize> CholeskyFactor<T, N> {
+    /// Returns the Cholesky factor of a matrix; `None` if the matrix is not positive definite.
+    pub(super) fn from_mass_matrix(m: &SMatrix<T, N, N>) -> Option<Self> {
+        let mut factor = Self::zero_factor();
+        factor.fill_from_matrix(m).then_some(factor)
     }
 
-    /// Returns zeros, to be [filled](Self::fill).
-    pub(super) fn none() -> Self {
+    /// Returns zeros, to be [filled](Self::fill_from_matrix).
+    pub(super) fn zero_factor() -> Self {
         Self { rows: [[T::zero(); N]; N], starts: [0; N], ends: [N; N] }
     }
 
     /// Factorises a matrix in place; false if it is not positive definite.
-    pub(super) fn fill(&mut self, matrix: &SMatrix<T, N, N>) -> bool {
+    pub(super) fn fill_from_matrix(&mut self, matrix: &SMatrix<T, N, N>) -> bool {
         let Self { rows: m, starts, ends } = self;
         // Symmetric: columns are rows.
         *m = matrix.data.0;
         for (i, (start, row)) in starts.iter_mut().zip(&*m).enumerate() {
-            *start = first(row).min(i);
+            *start = first_nonzero(row).min(i);
         }
         let (mut least, mut end) = (N, N);
         for i in (0..N).rev() {
@@ -138,16 +142,16 @@ impl<T: Real, const N: usize> Factor<T, N> {
     }
 
     /// Returns the solution `x` of `L Lᵀ x = p`.
-    pub(super) fn solve(&self, p: [T; N]) -> [T; N] {
+    pub(super) fn solve_with_factor(&self, p: [T; N]) -> [T; N] {
         let mut x = p;
-        self.solve_lower(&mut x, first(&p), N);
+        self.solve_lower(&mut x, first_nonzero(&p), N);
         self.solve_upper(x)
     }
 
     /// Returns the solutions `X` of `L Lᵀ X = P`, with operations on rows of all columns at once.
     pub(super) fn solve_all(&self, p: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         let Self { rows, starts, .. } = self;
-        let subtract = |from: &mut [T; N], factor: T, row: &[T; N]| {
+        let subtract_multiple = |from: &mut [T; N], factor: T, row: &[T; N]| {
             from.iter_mut().zip(row).for_each(|(from, entry)| *from -= factor * *entry);
         };
         let mut x = transposed(p).data.0;
@@ -155,7 +159,7 @@ impl<T: Real, const N: usize> Factor<T, N> {
             let (above, below) = x.split_at_mut(i);
             let Some(row) = below.first_mut() else { break };
             for (factor, other) in rows[i].iter().zip(above.iter()).skip(starts[i]) {
-                subtract(row, *factor, other);
+                subtract_multiple(row, *factor, other);
             }
             row.iter_mut().for_each(|entry| *entry *= rows[i][i]);
         }
@@ -164,7 +168,7 @@ impl<T: Real, const N: usize> Factor<T, N> {
             let Some(row) = below.first_mut() else { break };
             row.iter_mut().for_each(|entry| *entry *= rows[i][i]);
             for (factor, other) in rows[i].iter().zip(above).skip(starts[i]) {
-                subtract(other, *factor, row);
+                subtract_multiple(other, *factor, row);
             }
         }
         transposed(&SMatrix::from_array_storage(ArrayStorage(x)))
@@ -204,7 +208,7 @@ impl<T: Real, const N: usize> Factor<T, N> {
     }
 }
 
-/// Index of the first entry that is not zero.
-fn first<T: Real, const N: usize>(row: &[T; N]) -> usize {
+/// Returns the index of the first nonzero entry.
+fn first_nonzero<T: Real, const N: usize>(row: &[T; N]) -> usize {
     row.iter().position(|entry| *entry != T::zero()).unwrap_or(N)
 }

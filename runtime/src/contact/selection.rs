@@ -1,9 +1,9 @@
 //! Contacts that take part in a step, numbered among themselves.
 
-use super::layout::Layout;
-use super::problem::{Basis, Columns, Problem, dot, entry, put};
-use super::response::{Effects, Factor};
-use super::total::Total;
+use super::layout::ContactLayout;
+use super::problem::{BasisRows, ContactProblem, UsedColumns, dot, entry_or_zero, set_entry};
+use super::response::{CholeskyFactor, ImpulseEffects};
+use super::total::TotalArray;
 use super::velocities::ContactVelocities;
 use super::{Contacts, Law, Responses, Restitution, Rows};
 use crate::Real;
@@ -14,26 +14,26 @@ pub(super) const FEW: usize = 36;
 
 /// Up to `CK` closed contacts of a mechanism, with up to `CR` contact velocities.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Selection<const CK: usize, const CR: usize> {
+pub(super) struct ContactSelection<const CK: usize, const CR: usize> {
     /// Contacts of the mechanism, and their number.
-    contacts: Total<usize, CK>,
+    contacts: TotalArray<usize, CK>,
     count: usize,
     /// Rows of the mechanism, and their number.
-    rows: Total<usize, CR>,
+    rows: TotalArray<usize, CR>,
     size: usize,
     /// Rows among the selected ones.
-    layout: Layout<CK>,
+    layout: ContactLayout<CK>,
 }
 
-impl<const CK: usize, const CR: usize> Selection<CK, CR> {
-    /// Selects the contacts that are closed; a moment of friction if its contact is.
-    pub(super) fn select<const NK: usize>(layout: Layout<NK>, closed: &[bool; NK]) -> Self {
-        let (mut contacts, mut rows) = (Total::repeat(0), Total::repeat(0));
+impl<const CK: usize, const CR: usize> ContactSelection<CK, CR> {
+    /// Selects the closed contacts. A friction moment is selected if its contact is closed.
+    pub(super) fn select_closed<const NK: usize>(layout: ContactLayout<NK>, closed: &[bool; NK]) -> Self {
+        let (mut contacts, mut rows) = (TotalArray::repeat_entry(0), TotalArray::repeat_entry(0));
         let (mut own, mut pressed_by) = ([Rows { first: 0, count: 0 }; CK], [0; CK]);
         let (mut count, mut size) = (0, 0);
         for (k, _) in closed.iter().enumerate().filter(|(_, is_closed)| **is_closed) {
             let Rows { first, count: width } = layout.rows(k);
-            let (by, _) = layout.pressing(k);
+            let (by, _) = layout.bounding_contact(k);
             let pressing = if by == k { Some(count) } else { (0..count).find(|c| contacts[*c] == by) };
             let (Some(pressing), true) = (pressing, count < CK && size + width <= CR) else { continue };
             contacts[count] = k;
@@ -44,52 +44,52 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
             count += 1;
             size += width;
         }
-        Self { contacts, count, rows, size, layout: Layout::new(own, pressed_by) }
+        Self { contacts, count, rows, size, layout: ContactLayout::new(own, pressed_by) }
     }
 
     /// Returns the rows of the selected contacts.
-    pub(super) fn layout(&self) -> Layout<CK> {
+    pub(super) fn contact_layout(&self) -> ContactLayout<CK> {
         self.layout
     }
 
     /// Returns the number of selected contacts.
-    pub(super) fn count(&self) -> usize {
+    pub(super) fn contact_count(&self) -> usize {
         self.count
     }
 
     /// Returns a selected contact's index in the mechanism.
-    pub(super) fn contact(&self, k: usize) -> usize {
+    pub(super) fn index_of_contact(&self, k: usize) -> usize {
         self.contacts[k]
     }
 
     /// Returns a selected row's index in the mechanism.
-    pub(super) fn row(&self, i: usize) -> usize {
+    pub(super) fn index_of_row(&self, i: usize) -> usize {
         self.rows[i]
     }
 
     /// Returns true for entries that are selected contacts.
-    pub(super) fn closed(&self) -> [bool; CK] {
+    pub(super) fn closed_contacts(&self) -> [bool; CK] {
         let mut closed = [false; CK];
         closed.iter_mut().take(self.count).for_each(|closed| *closed = true);
         closed
     }
 
-    /// Returns values of the selected rows.
-    pub(super) fn rates<T: Real, const NR: usize>(&self, all: &SVector<T, NR>) -> SVector<T, CR> {
+    /// Returns the contact velocities of the selected rows from those of all rows.
+    pub(super) fn selected_rates<T: Real, const NR: usize>(&self, all: &SVector<T, NR>) -> SVector<T, CR> {
         let mut rates = SVector::zeros();
-        (0..self.size).for_each(|i| put(&mut rates, i, entry(all, self.rows[i])));
+        (0..self.size).for_each(|i| set_entry(&mut rates, i, entry_or_zero(all, self.rows[i])));
         rates
     }
 
-    /// Returns values of the selected contacts.
-    pub(super) fn gaps<T: Real, const NK: usize>(&self, all: &SVector<T, NK>) -> SVector<T, CK> {
+    /// Returns the gaps of the selected contacts from those of all contacts.
+    pub(super) fn selected_gaps<T: Real, const NK: usize>(&self, all: &SVector<T, NK>) -> SVector<T, CK> {
         let mut gaps = SVector::zeros();
-        (0..self.count).for_each(|k| put(&mut gaps, k, entry(all, self.contacts[k])));
+        (0..self.count).for_each(|k| set_entry(&mut gaps, k, entry_or_zero(all, self.contacts[k])));
         gaps
     }
 
     /// Returns the coefficients of the selected contacts.
-    pub(super) fn laws<T: Real, const NK: usize>(&self, all: &[Law<T>; NK]) -> [Law<T>; CK] {
+    pub(super) fn selected_laws<T: Real, const NK: usize>(&self, all: &[Law<T>; NK]) -> [Law<T>; CK] {
         let hypothesis = Restitution::Newton;
         let none = Law { friction: T::zero(), stiction: T::zero(), restitution: T::zero(), hypothesis };
         let mut laws = [none; CK];
@@ -100,9 +100,12 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
     }
 
     /// Returns values of the selected rows at the rows of the mechanism; zeros elsewhere.
-    pub(super) fn spread<T: Real, const NR: usize>(&self, rates: &SVector<T, CR>) -> SVector<T, NR> {
+    pub(super) fn spread_to_mechanism<T: Real, const NR: usize>(
+        &self,
+        rates: &SVector<T, CR>,
+    ) -> SVector<T, NR> {
         let mut all = SVector::zeros();
-        (0..self.size).for_each(|i| put(&mut all, self.rows[i], entry(rates, i)));
+        (0..self.size).for_each(|i| set_entry(&mut all, self.rows[i], entry_or_zero(rates, i)));
         all
     }
 
@@ -120,8 +123,8 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
         mechanism: &M,
         (t, q, velocities): (T, &SVector<T, NQ>, &ContactVelocities<'_, M, T, NQ, NV, NR>),
         closed: &[bool; NK],
-        effects: &mut Effects<T, NV, CR>,
-        problem: &mut Problem<T, CK, CR>,
+        effects: &mut ImpulseEffects<T, NV, CR>,
+        problem: &mut ContactProblem<T, CK, CR>,
     ) where
         T: Real,
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
@@ -129,32 +132,32 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
         if NR <= FEW {
             let all = mechanism.contact_responses(t, q, closed);
             let Responses { velocities, rates } = self.chosen_responses(&all);
-            problem.weigh(&rates);
-            *effects = Effects::Matrix(velocities);
+            problem.copy_weights(&rates);
+            *effects = ImpulseEffects::Matrix(velocities);
             return;
         }
-        let Some(jacobian) = velocities.jacobian() else { return };
+        let Some(jacobian) = velocities.contact_jacobian() else { return };
         let features = mechanism.features();
         let is_plain = !features.constrained && !features.feedback;
         if is_plain {
-            *effects = Effects::Factor(Factor::none());
+            *effects = ImpulseEffects::Factor(CholeskyFactor::zero_factor());
         }
-        if let Effects::Factor(factor) = effects
-            && factor.fill(&mechanism.mass_matrix(t, q))
+        if let ImpulseEffects::Factor(factor) = effects
+            && factor.fill_from_matrix(&mechanism.mass_matrix(t, q))
         {
             if self.fill_basis(jacobian, mechanism.contact_columns(), factor, &mut problem.basis) {
                 problem.set_steps();
                 return;
             }
-            let matrix = self.fill_matrix(jacobian, |row| factor.solve(row), problem);
-            *effects = Effects::Matrix(matrix);
+            let matrix = self.fill_matrix(jacobian, |row| factor.solve_with_factor(row), problem);
+            *effects = ImpulseEffects::Matrix(matrix);
             return;
         }
         let still = SVector::zeros();
         let none = mechanism.impulse(t, q, &still, T::zero(), &still);
         let solve =
             |row: [T; NV]| (mechanism.impulse(t, q, &still, T::zero(), &SVector::from(row)) - none).data.0[0];
-        *effects = Effects::Matrix(self.fill_matrix(jacobian, solve, problem));
+        *effects = ImpulseEffects::Matrix(self.fill_matrix(jacobian, solve, problem));
     }
 
     /// Returns the effects of impulses at the selected contacts from those at all contacts.
@@ -178,25 +181,25 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
         chosen
     }
 
-    /// Computes `B = G L⁻ᵀ` for the selected rows of the Jacobian; false if it has more columns than the
-    /// arrays.
+    /// Computes `B = G L⁻ᵀ` for the selected rows of the contact Jacobian `G`, with the Cholesky factor `L`
+    /// of the mass matrix. Returns false if `B` has more columns than the arrays.
     fn fill_basis<T: Real, const NV: usize, const NK: usize, const NR: usize>(
         &self,
         jacobian: &SMatrix<T, NR, NV>,
         reach: [(usize, usize); NK],
-        factor: &Factor<T, NV>,
-        basis: &mut Basis<T, CR>,
+        factor: &CholeskyFactor<T, NV>,
+        basis: &mut BasisRows<T, CR>,
     ) -> bool {
         // Columns of each contact that are not zero, with the whole blocks of the bodies that move.
-        let (mut is_used, mut own) = ([false; NV], Total::<_, CK>::repeat((NV, 0)));
+        let (mut is_used, mut own) = ([false; NV], TotalArray::<_, CK>::repeat_entry((NV, 0)));
         for k in 0..self.count {
             let Rows { first: top, count } = self.layout.rows(k);
             let (first, last) = reach.get(self.contacts[k]).copied().unwrap_or((0, NV));
             let mut column = first;
             while column < last {
                 let entries = jacobian.data.0.get(column);
-                let entry = |i: usize| entries.and_then(|entries| entries.get(self.rows[i]));
-                if (top..top + count).all(|i| entry(i).is_none_or(|entry| *entry == T::zero())) {
+                let row_entry = |i: usize| entries.and_then(|entries| entries.get(self.rows[i]));
+                if (top..top + count).all(|i| row_entry(i).is_none_or(|entry| *entry == T::zero())) {
                     column += 1;
                     continue;
                 }
@@ -206,8 +209,8 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
                 column = end;
             }
         }
-        let columns = Columns::of(is_used);
-        if !basis.begin(&columns) {
+        let columns = UsedColumns::of_used_entries(is_used);
+        if !basis.begin_columns(&columns) {
             return false;
         }
         for k in 0..self.count {
@@ -219,19 +222,19 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
                     *to = column.get(self.rows[i]).copied().unwrap_or(T::zero());
                 });
                 factor.solve_lower(&mut row, first, last);
-                basis.push(&columns, first, row.get(first..last).unwrap_or_default());
+                basis.push_row(&columns, first, row.get(first..last).unwrap_or_default());
             }
         }
         true
     }
 
-    /// Returns `M⁻¹ Gᵀ`, with a function that returns the effect of a generalized impulse, and sets `W` of a
-    /// problem.
+    /// Returns `M⁻¹ Gᵀ` for selected rows, given a function that returns the velocity change by a generalized
+    /// impulse, and sets the matrix `W` of a problem.
     fn fill_matrix<T: Real, const NV: usize, const NR: usize>(
         &self,
         jacobian: &SMatrix<T, NR, NV>,
         solve: impl Fn([T; NV]) -> [T; NV],
-        problem: &mut Problem<T, CK, CR>,
+        problem: &mut ContactProblem<T, CK, CR>,
     ) -> SMatrix<T, NV, CR> {
         // Rows of the Jacobian.
         let mut own = [[T::zero(); NV]; CR];
@@ -245,7 +248,7 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
             *velocity = solve(*own);
         }
         self.fill_products(&own, &velocities.data.0, &mut rates);
-        problem.weigh(&rates);
+        problem.copy_weights(&rates);
         velocities
     }
 
@@ -260,9 +263,9 @@ impl<const CK: usize, const CR: usize> Selection<CK, CR> {
         // Entries of each row that are not zero.
         let mut reach = [(0, 0); CR];
         for (reach, row) in reach.iter_mut().zip(left).take(self.size) {
-            let is_any = |entry: &T| *entry != T::zero();
-            let from = row.iter().position(is_any).unwrap_or(NV);
-            *reach = (from, row.iter().rposition(is_any).map_or(from, |last| last + 1));
+            let is_nonzero = |entry: &T| *entry != T::zero();
+            let from = row.iter().position(is_nonzero).unwrap_or(NV);
+            *reach = (from, row.iter().rposition(is_nonzero).map_or(from, |last| last + 1));
         }
         for (j, other) in right.iter().enumerate().take(self.size) {
             for (i, (row, (from, to))) in left.iter().zip(&reach).enumerate().take(self.size).skip(j) {

@@ -7,23 +7,26 @@
 
 use super::derivatives::ContactDerivatives;
 use super::impulses::Impulses;
-use super::observer::{Closing, Observer};
-use super::problem::{Equations, Linearised};
-use super::response::Factor;
-use super::selection::Selection;
-use super::solution::Acted;
+use super::observer::{GapClosing, ImpulseObserver};
+use super::problem::{ImpulseEquations, LinearisedImpulses};
+use super::response::CholeskyFactor;
+use super::selection::ContactSelection;
+use super::solution::ActedContacts;
 use super::stepping::observed_step;
 use super::{Touched, touching_distance};
 use crate::blocks::{add_multiple, add_product, zeros};
 use crate::constraint::ConstraintError;
-use crate::discrete::{Manifold, Sensitive, Start, Transition, acceleration_at_start, smooth_motion};
+use crate::discrete::{
+    ConfigurationManifold, DifferentiatedStart, Transition, VectorWithDerivatives, acceleration_at_start,
+    smooth_motion,
+};
 use crate::integrate::{Error, TimeStepping};
 use crate::private::{constant, to_f64};
 use crate::{Derivatives, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// Writes a step of time stepping with its derivatives, for mechanisms with derivatives of their contacts.
-/// Generated code calls this function.
+/// Writes a time-stepping step of a mechanism with contacts, with its first derivatives. The mechanism
+/// implements [`ContactDerivatives`](super::ContactDerivatives). Generated code calls this function.
 ///
 /// # Errors
 ///
@@ -48,73 +51,81 @@ where
     T: Real,
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    let reported = |reason| match reason {
+    let as_step_error = |reason| match reason {
         ConstraintError::NotFinite => Error::NotFinite { t: to_f64(t) },
         reason => Error::Constraint { t: to_f64(t), reason },
     };
-    let h = method.length();
-    let (start, velocity) = (Start { mechanism, t, q, u }, Sensitive::start_velocity(v));
+    let h = method.nominal_step_length();
+    let (start, velocity) =
+        (DifferentiatedStart { mechanism, t, q, u }, VectorWithDerivatives::start_velocity(v));
     let before = acceleration_at_start(method, &start, v);
-    let contacts = Touching { mechanism, manifold: Manifold::new(mechanism), start: (q, v) };
+    let contacts =
+        StepWithContacts { mechanism, manifold: ConfigurationManifold::new(mechanism), start: (q, v) };
     let free = velocity.plus_scaled(h, &before);
-    let at_start = Instant { t, h: T::zero(), q, motion: None, free: &free, given: None };
-    let (after, held) = contacts.act(&at_start, &Impulses::none()).map_err(reported)?;
+    let at_start = ContactInstant { t, h: T::zero(), q, motion: None, free: &free, given: None };
+    let (after, held) =
+        contacts.differentiate_impulses(&at_start, &Impulses::none()).map_err(as_step_error)?;
     let rate = after.map(|(after, _)| after.plus_scaled(-T::one(), &free).scaled_derivatives(T::one() / h));
     let motion = smooth_motion(method, &start, &velocity, &before, rate.as_ref());
     let (given, (q, moved)) = (motion.given.as_ref(), &motion.q);
     let free = given.map_or(motion.v, |given| motion.v.plus_scaled(-T::one(), given));
-    let at_end = Instant { t: t + h, h, q, motion: Some(moved), free: &free, given };
-    let (after, end) = contacts.act(&at_end, &held.impulses).map_err(reported)?;
+    let at_end = ContactInstant { t: t + h, h, q, motion: Some(moved), free: &free, given };
+    let (after, end) = contacts.differentiate_impulses(&at_end, &held.impulses).map_err(as_step_error)?;
     let state = after.and_then(|(_, state)| state);
     let (place, v) = state.unwrap_or_else(|| contacts.state_after(&at_end, &free));
-    *into = Transition::from_sensitive(&(end.q, place.1), &Sensitive { value: end.v, ..v });
+    *into = Transition::from_sensitive(&(end.q, place.1), &VectorWithDerivatives { value: end.v, ..v });
     Ok(())
 }
 
-/// Configuration with the derivatives of its motion.
-type Place<T, const NQ: usize, const NV: usize, const NU: usize> = (SVector<T, NQ>, Sensitive<T, NV, NU>);
+/// Configuration and the derivatives of its displacement.
+type SensitiveConfiguration<T, const NQ: usize, const NV: usize, const NU: usize> =
+    (SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>);
 
 /// State with its derivatives.
-type Sensed<T, const NQ: usize, const NV: usize, const NU: usize> =
-    (Place<T, NQ, NV, NU>, Sensitive<T, NV, NU>);
+type SensitiveState<T, const NQ: usize, const NV: usize, const NU: usize> =
+    (SensitiveConfiguration<T, NQ, NV, NU>, VectorWithDerivatives<T, NV, NU>);
 
-/// Velocity after the impulses of contacts, in the axes of the configuration where they act, and the state at
-/// the end of a step.
-type Acting<T, const NQ: usize, const NV: usize, const NU: usize> =
-    (Sensitive<T, NV, NU>, Option<Sensed<T, NQ, NV, NU>>);
+/// Velocity after the contact impulses, in the axes of the configuration where they act, and the state at the
+/// end of a step.
+type ActingState<T, const NQ: usize, const NV: usize, const NU: usize> =
+    (VectorWithDerivatives<T, NV, NU>, Option<SensitiveState<T, NQ, NV, NU>>);
 
-/// Mechanism whose contacts act in a step from a state.
-struct Touching<'a, M, T, const NQ: usize, const NV: usize> {
+/// Mechanism, with the state at the start of a step in which contacts act.
+struct StepWithContacts<'a, M, T, const NQ: usize, const NV: usize> {
     mechanism: &'a M,
-    manifold: Manifold<'a, M, NV>,
+    manifold: ConfigurationManifold<'a, M, NV>,
     start: (&'a SVector<T, NQ>, &'a SVector<T, NV>),
 }
 
 /// Instant at which contacts act, after a motion of `h` seconds.
-struct Instant<'a, T, const NQ: usize, const NV: usize, const NU: usize> {
+struct ContactInstant<'a, T, const NQ: usize, const NV: usize, const NU: usize> {
     t: T,
     h: T,
     q: &'a SVector<T, NQ>,
-    /// Derivatives of the motion of the configuration; `None` at the start of the step.
-    motion: Option<&'a Sensitive<T, NV, NU>>,
-    /// Velocity without contacts.
-    free: &'a Sensitive<T, NV, NU>,
-    /// Change of the velocity by the contact forces that were assumed.
-    given: Option<&'a Sensitive<T, NV, NU>>,
+    /// Derivatives of the displacement of the configuration since the start of the step; `None` at the start
+    /// of the step.
+    motion: Option<&'a VectorWithDerivatives<T, NV, NU>>,
+    /// Velocity without contact impulses, with its derivatives.
+    free: &'a VectorWithDerivatives<T, NV, NU>,
+    /// Change of the velocity by the assumed contact forces, with its derivatives; `None` if no forces were
+    /// assumed.
+    given: Option<&'a VectorWithDerivatives<T, NV, NU>>,
 }
 
-impl<M, T: Real, const NQ: usize, const NV: usize> Touching<'_, M, T, NQ, NV> {
-    /// Lets the contacts act, and returns the derivatives if any contact is loaded.
+impl<M, T: Real, const NQ: usize, const NV: usize> StepWithContacts<'_, M, T, NQ, NV> {
+    /// Computes the contact impulses at an instant, and returns the velocity and state after them with
+    /// derivatives, if any contact is loaded.
     #[allow(clippy::type_complexity, reason = "sizes of arrays")]
-    fn act<const NU: usize, const NK: usize, const NR: usize>(
+    fn differentiate_impulses<const NU: usize, const NK: usize, const NR: usize>(
         &self,
-        at: &Instant<'_, T, NQ, NV, NU>,
+        at: &ContactInstant<'_, T, NQ, NV, NU>,
         impulses: &Impulses<T, NV>,
-    ) -> Result<(Option<Acting<T, NQ, NV, NU>>, Touched<T, NQ, NV>), ConstraintError>
+    ) -> Result<(Option<ActingState<T, NQ, NV, NU>>, Touched<T, NQ, NV>), ConstraintError>
     where
         M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        let mut observer = Differentiator::<_, _, NQ, NV, NU, NK, NR> { contacts: self, at, found: None };
+        let mut observer =
+            ImpulseDifferentiator::<_, _, NQ, NV, NU, NK, NR> { contacts: self, at, found: None };
         let given = at.given.map_or(SVector::zeros(), |given| given.value);
         let state = (at.q, &at.free.value);
         let touched =
@@ -122,13 +133,13 @@ impl<M, T: Real, const NQ: usize, const NV: usize> Touching<'_, M, T, NQ, NV> {
         Ok((observer.found.transpose()?, touched))
     }
 
-    /// Returns the state at the end of a step with a given velocity after the impulses: they act in the mean
-    /// of the step.
+    /// Returns the state at the end of a step with the velocity `after` the impulses. Position changes as if
+    /// the impulses acted in the middle of the step.
     fn state_after<const NU: usize>(
         &self,
-        at: &Instant<'_, T, NQ, NV, NU>,
-        after: &Sensitive<T, NV, NU>,
-    ) -> Sensed<T, NQ, NV, NU>
+        at: &ContactInstant<'_, T, NQ, NV, NU>,
+        after: &VectorWithDerivatives<T, NV, NU>,
+    ) -> SensitiveState<T, NQ, NV, NU>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
@@ -136,27 +147,30 @@ impl<M, T: Real, const NQ: usize, const NV: usize> Touching<'_, M, T, NQ, NV> {
         if let Some(given) = at.given {
             change = change.plus_scaled(-T::one(), given);
         }
-        let here = Sensitive::zero_displacement();
+        let here = VectorWithDerivatives::zero_displacement();
         let place = (at.q, at.motion.unwrap_or(&here));
-        self.displaced((at.t, place), &change.scaled_derivatives(at.h * constant(0.5)), after)
+        self.displaced_state((at.t, place), &change.scaled_derivatives(at.h * constant(0.5)), after)
     }
 
     /// Returns the state after a displacement, with the velocity in the axes there.
-    fn displaced<const NU: usize>(
+    fn displaced_state<const NU: usize>(
         &self,
-        (t, place): (T, (&SVector<T, NQ>, &Sensitive<T, NV, NU>)),
-        by: &Sensitive<T, NV, NU>,
-        v: &Sensitive<T, NV, NU>,
-    ) -> Sensed<T, NQ, NV, NU>
+        (t, place): (T, (&SVector<T, NQ>, &VectorWithDerivatives<T, NV, NU>)),
+        by: &VectorWithDerivatives<T, NV, NU>,
+        v: &VectorWithDerivatives<T, NV, NU>,
+    ) -> SensitiveState<T, NQ, NV, NU>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        (self.manifold.displaced(place, by), self.manifold.carried(t, place.0, by, v))
+        (
+            self.manifold.displaced_configuration(place, by),
+            self.manifold.transported_velocity(t, place.0, by, v),
+        )
     }
 }
 
 /// Observer that differentiates the impulses of a step.
-struct Differentiator<
+struct ImpulseDifferentiator<
     'a,
     M,
     T,
@@ -166,39 +180,39 @@ struct Differentiator<
     const NK: usize,
     const NR: usize,
 > {
-    contacts: &'a Touching<'a, M, T, NQ, NV>,
-    at: &'a Instant<'a, T, NQ, NV, NU>,
-    found: Option<Result<Acting<T, NQ, NV, NU>, ConstraintError>>,
+    contacts: &'a StepWithContacts<'a, M, T, NQ, NV>,
+    at: &'a ContactInstant<'a, T, NQ, NV, NU>,
+    found: Option<Result<ActingState<T, NQ, NV, NU>, ConstraintError>>,
 }
 
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>
-    Observer<T, NV> for Differentiator<'_, M, T, NQ, NV, NU, NK, NR>
+    ImpulseObserver<T, NV> for ImpulseDifferentiator<'_, M, T, NQ, NV, NU, NK, NR>
 where
     T: Real,
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     fn observe<const CK: usize, const CR: usize>(
         &mut self,
-        acted: &Acted<T, NV, CK, CR>,
-        closing: Option<&Closing<T, CK, CR>>,
+        acted: &ActedContacts<T, NV, CK, CR>,
+        closing: Option<&GapClosing<T, CK, CR>>,
     ) {
         if !acted.is_loaded() {
             return;
         }
-        let responses = acted.responses();
-        let contact = |contact| {
-            let index = acted.selection.contact(contact);
+        let responses = acted.velocity_responses();
+        let underivable_contact_error = |contact| {
+            let index = acted.selection.index_of_contact(contact);
             let constraint = M::CONTACTS.get(index).copied().unwrap_or_default();
             ConstraintError::NoDerivatives { constraint }
         };
-        let regular = acted.problem.check_derivatives(&acted.impulses).map_err(contact);
+        let regular = acted.problem.check_derivatives(&acted.impulses).map_err(underivable_contact_error);
         self.found = Some(regular.map(|()| {
-            let closed = Closed::new(self.contacts, self.at, acted, &responses);
-            let after = closed.after();
+            let closed = ClosedContacts::new(self.contacts, self.at, acted, &responses);
+            let after = closed.velocity_after();
             let Some(closing) = closing else { return (after, None) };
             let (place, v) = self.contacts.state_after(self.at, &after);
-            let end = match closed.closing(closing, &place) {
-                Some(by) => self.contacts.displaced((self.at.t, (&place.0, &place.1)), &by, &v),
+            let end = match closed.closing_displacement(closing, &place) {
+                Some(by) => self.contacts.displaced_state((self.at.t, (&place.0, &place.1)), &by, &v),
                 None => (place, v),
             };
             (after, Some(end))
@@ -208,7 +222,7 @@ where
 
 /// Closed contacts at the configuration where their impulses act. Matrices have the rows of these contacts
 /// alone.
-struct Closed<
+struct ClosedContacts<
     'a,
     M,
     T,
@@ -220,20 +234,20 @@ struct Closed<
     const CK: usize,
     const CR: usize,
 > {
-    contacts: &'a Touching<'a, M, T, NQ, NV>,
-    at: &'a Instant<'a, T, NQ, NV, NU>,
-    acted: &'a Acted<T, NV, CK, CR>,
-    /// Velocity changes by impulses, `M⁻¹ Gᵀ`.
+    contacts: &'a StepWithContacts<'a, M, T, NQ, NV>,
+    at: &'a ContactInstant<'a, T, NQ, NV, NU>,
+    acted: &'a ActedContacts<T, NV, CK, CR>,
+    /// Velocity changes by unit impulses, `M⁻¹ Gᵀ`.
     responses: &'a SMatrix<T, NV, CR>,
-    /// `G`.
+    /// Contact Jacobian `G` of the closed contacts.
     jacobian: SMatrix<T, CR, NV>,
     /// Factor of the mass matrix; `None` if forces depend on accelerations.
-    factor: Option<Factor<T, NV>>,
+    factor: Option<CholeskyFactor<T, NV>>,
 }
 
-/// Derivatives of the effects of constant impulses on velocities, and of contact velocities at a constant
-/// velocity, with respect to the configuration.
-struct ByPlace<T, const NV: usize, const CR: usize> {
+/// Derivatives with respect to the configuration: of the velocity change by constant impulses, and of the
+/// contact velocities at a constant velocity.
+struct ConfigurationDerivatives<T, const NV: usize, const CR: usize> {
     velocities: SMatrix<T, NV, NV>,
     rates: SMatrix<T, CR, NV>,
 }
@@ -253,32 +267,37 @@ impl<T: Real, const CR: usize, const NV: usize, const NU: usize> RowDerivatives<
     }
 
     /// Adds a matrix times the derivatives of a vector.
-    fn add(&mut self, by: &SMatrix<T, CR, NV>, of: &Sensitive<T, NV, NU>) {
+    fn add_product(&mut self, by: &SMatrix<T, CR, NV>, of: &VectorWithDerivatives<T, NV, NU>) {
         add_product(&mut self.by_q, by, &of.by_q);
         add_product(&mut self.by_v, by, &of.by_v);
         add_product(&mut self.by_u, by, &of.by_u);
     }
 
-    /// Adds a matrix times other rows.
+    /// Adds the product of a matrix `by` and the derivatives `of`, whose rows belong to contact velocities.
     fn add_rows(&mut self, by: &SMatrix<T, CR, CR>, of: &Self) {
         add_product(&mut self.by_q, by, &of.by_q);
         add_product(&mut self.by_v, by, &of.by_v);
         add_product(&mut self.by_u, by, &of.by_u);
     }
 
-    /// Returns the rows times a number.
-    fn scaled(&self, s: T) -> Self {
+    /// Returns all derivatives, multiplied by a number.
+    fn scaled_rows(&self, s: T) -> Self {
         Self { by_q: self.by_q * s, by_v: self.by_v * s, by_u: self.by_u * s }
     }
 
-    /// Returns the changes of impulses with contact velocities without them.
-    fn solved(&self, equations: &Linearised<T, CR>) -> Self {
+    /// Returns the derivatives of the impulses, if `self` holds the derivatives of the contact velocities
+    /// without impulses.
+    fn solved_impulses(&self, equations: &LinearisedImpulses<T, CR>) -> Self {
         let Self { by_q, by_v, by_u } = self;
-        Self { by_q: equations.changes(by_q), by_v: equations.changes(by_v), by_u: equations.changes(by_u) }
+        Self {
+            by_q: equations.impulse_changes(by_q),
+            by_v: equations.impulse_changes(by_v),
+            by_u: equations.impulse_changes(by_u),
+        }
     }
 
-    /// Adds the velocities that are the effect of impulses.
-    fn add_effect(&self, responses: &SMatrix<T, NV, CR>, to: &mut Sensitive<T, NV, NU>) {
+    /// Adds the velocity change that these impulses cause.
+    fn add_effect(&self, responses: &SMatrix<T, NV, CR>, to: &mut VectorWithDerivatives<T, NV, NU>) {
         add_product(&mut to.by_q, responses, &self.by_q);
         add_product(&mut to.by_v, responses, &self.by_v);
         add_product(&mut to.by_u, responses, &self.by_u);
@@ -296,35 +315,47 @@ impl<
     const NR: usize,
     const CK: usize,
     const CR: usize,
-> Closed<'a, M, T, NQ, NV, NU, NK, NR, CK, CR>
+> ClosedContacts<'a, M, T, NQ, NV, NU, NK, NR, CK, CR>
 where
     T: Real,
     M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     fn new(
-        contacts: &'a Touching<'a, M, T, NQ, NV>,
-        at: &'a Instant<'a, T, NQ, NV, NU>,
-        acted: &'a Acted<T, NV, CK, CR>,
+        contacts: &'a StepWithContacts<'a, M, T, NQ, NV>,
+        at: &'a ContactInstant<'a, T, NQ, NV, NU>,
+        acted: &'a ActedContacts<T, NV, CK, CR>,
         responses: &'a SMatrix<T, NV, CR>,
     ) -> Self {
         let (m, q) = (contacts.mechanism, at.q);
-        let jacobian = selected(&acted.selection, &m.contact_jacobian(at.t, q));
-        let factor = if m.features().feedback { None } else { Factor::factorise(&m.mass_matrix(at.t, q)) };
+        let jacobian = selected_rows(&acted.selection, &m.contact_jacobian(at.t, q));
+        let factor = if m.features().feedback {
+            None
+        } else {
+            CholeskyFactor::from_mass_matrix(&m.mass_matrix(at.t, q))
+        };
         Self { contacts, at, acted, responses, jacobian, factor }
     }
 
-    /// Returns the derivatives of the effect of `impulses` on velocities, and of contact velocities at the
-    /// velocity `v`.
-    fn by_place(&self, v: &SVector<T, NV>, impulses: &SVector<T, CR>) -> ByPlace<T, NV, CR> {
+    /// Returns two derivatives with respect to the configuration: of the velocity change by `impulses`, and
+    /// of the contact velocities at the velocity `v`.
+    fn configuration_derivatives(
+        &self,
+        v: &SVector<T, NV>,
+        impulses: &SVector<T, CR>,
+    ) -> ConfigurationDerivatives<T, NV, CR> {
         let (m, t, q) = (self.contacts.mechanism, self.at.t, self.at.q);
         let (still, effect) = (SVector::zeros(), self.responses * impulses);
-        let parts = m.contact_derivatives(t, q, v, &still, &self.acted.selection.spread(impulses));
-        let rates = selected(&self.acted.selection, &parts.rates_by_q);
+        let parts =
+            m.contact_derivatives(t, q, v, &still, &self.acted.selection.spread_to_mechanism(impulses));
+        let rates = selected_rows(&self.acted.selection, &parts.rates_by_q);
         let mut velocities;
         match &self.factor {
             Some(factor) => {
-                let mass = |a: &SVector<T, NV>| m.inverse_dynamics_derivatives(t, q, &still, a).0;
-                velocities = factor.solve_all(&(parts.forces_by_q - mass(&effect) + mass(&still)));
+                let mass_times_derivative =
+                    |a: &SVector<T, NV>| m.inverse_dynamics_derivatives(t, q, &still, a).0;
+                velocities = factor.solve_all(
+                    &(parts.forces_by_q - mass_times_derivative(&effect) + mass_times_derivative(&still)),
+                );
             }
             None => {
                 let bias = m.bias_forces(t, q, &still);
@@ -334,100 +365,112 @@ where
                 add_product(&mut velocities, &response, &parts.forces_by_q);
             }
         }
-        ByPlace { velocities, rates }
+        ConfigurationDerivatives { velocities, rates }
     }
 
-    /// Returns [`by_place`](Self::by_place) for a displacement: contact velocities without those of
-    /// prescribed motions.
-    fn by_place_of_displacement(&self, v: &SVector<T, NV>, impulses: &SVector<T, CR>) -> ByPlace<T, NV, CR> {
-        let found = self.by_place(v, impulses);
-        let still = self.rates_by_place(&SVector::zeros());
-        ByPlace { rates: found.rates - still, ..found }
+    /// Returns the derivatives of [`configuration_derivatives`](Self::configuration_derivatives) for a
+    /// displacement `v` instead of a velocity: contact velocities of prescribed motions are left out.
+    fn displacement_derivatives(
+        &self,
+        v: &SVector<T, NV>,
+        impulses: &SVector<T, CR>,
+    ) -> ConfigurationDerivatives<T, NV, CR> {
+        let found = self.configuration_derivatives(v, impulses);
+        let still = self.rate_derivatives(&SVector::zeros());
+        ConfigurationDerivatives { rates: found.rates - still, ..found }
     }
 
     /// Returns the derivatives of contact velocities at the velocity `v` with respect to the configuration.
-    fn rates_by_place(&self, v: &SVector<T, NV>) -> SMatrix<T, CR, NV> {
+    fn rate_derivatives(&self, v: &SVector<T, NV>) -> SMatrix<T, CR, NV> {
         let (m, t, q) = (self.contacts.mechanism, self.at.t, self.at.q);
         let parts = m.contact_derivatives(t, q, v, &SVector::zeros(), &SVector::zeros());
-        selected(&self.acted.selection, &parts.rates_by_q)
+        selected_rows(&self.acted.selection, &parts.rates_by_q)
     }
 
-    /// Adds changes of a velocity by the motion of the configuration.
-    fn add_moved(&self, sum: &mut Sensitive<T, NV, NU>, by_place: &SMatrix<T, NV, NV>) {
+    /// Adds to a velocity the change that follows from the displacement of the configuration.
+    fn add_displacement_effect(
+        &self,
+        sum: &mut VectorWithDerivatives<T, NV, NU>,
+        by_place: &SMatrix<T, NV, NV>,
+    ) {
         let Some(motion) = self.at.motion else { return add_multiple(&mut sum.by_q, T::one(), by_place) };
         add_product(&mut sum.by_q, by_place, &motion.by_q);
         add_product(&mut sum.by_v, by_place, &motion.by_v);
         add_product(&mut sum.by_u, by_place, &motion.by_u);
     }
 
-    /// Adds changes of contact velocities by the motion of the configuration.
-    fn add_moved_rates(&self, sum: &mut RowDerivatives<T, CR, NV, NU>, by_place: &SMatrix<T, CR, NV>) {
+    /// Adds to contact velocities the change that follows from the displacement of the configuration.
+    fn add_displacement_rates(&self, sum: &mut RowDerivatives<T, CR, NV, NU>, by_place: &SMatrix<T, CR, NV>) {
         match self.at.motion {
-            Some(motion) => sum.add(by_place, motion),
+            Some(motion) => sum.add_product(by_place, motion),
             None => add_multiple(&mut sum.by_q, T::one(), by_place),
         }
     }
 
-    /// Returns the velocity after the impulses.
-    fn after(&self) -> Sensitive<T, NV, NU> {
-        let Acted { problem, impulses, free: corrected, .. } = self.acted;
-        let (equations, is_whole) = problem.linearised(impulses);
-        let impulses = problem.spread(impulses);
+    /// Returns the velocity after the impulses, with its derivatives.
+    fn velocity_after(&self) -> VectorWithDerivatives<T, NV, NU> {
+        let ActedContacts { problem, impulses, free: corrected, .. } = self.acted;
+        let (equations, is_whole) = problem.linearised_impulse_equations(impulses);
+        let impulses = problem.spread_to_mechanism(impulses);
         let mut after = *self.at.free;
         after.value = corrected + self.responses * impulses;
         let (mut acting, is_corrected) = (impulses, *corrected != self.at.free.value);
         let transport = self.at.given.filter(|_| is_corrected).map(|given| {
-            let half = Sensitive { value: after.value, ..after.plus_scaled(constant(0.5), given) };
+            let half =
+                VectorWithDerivatives { value: after.value, ..after.plus_scaled(constant(0.5), given) };
             after = half;
-            let transport = self.transport(given, is_whole);
+            let transport = self.rotation_correction(given, is_whole);
             acting += transport.0;
             transport.1
         });
-        let by_place = self.by_place(&after.value, &acting);
-        self.add_moved(&mut after, &by_place.velocities);
+        let by_place = self.configuration_derivatives(&after.value, &acting);
+        self.add_displacement_effect(&mut after, &by_place.velocities);
         if let Some(Some(transported)) = transport {
             transported.add_effect(self.responses, &mut after);
         }
         let mut rates = RowDerivatives::zeros();
-        self.add_moved_rates(&mut rates, &by_place.rates);
-        rates.add(&self.jacobian, &after);
+        self.add_displacement_rates(&mut rates, &by_place.rates);
+        rates.add_product(&self.jacobian, &after);
         self.add_rebound(&mut rates);
-        rates.solved(&equations).add_effect(self.responses, &mut after);
+        rates.solved_impulses(&equations).add_effect(self.responses, &mut after);
         after
     }
 
     /// Returns the impulses that the correction for rotating contact forces adds, apart from half of `given`,
     /// and their derivatives. If all contacts stick (`is_whole`), the impulses of the step contain these
     /// derivatives.
-    fn transport(
+    fn rotation_correction(
         &self,
-        given: &Sensitive<T, NV, NU>,
+        given: &VectorWithDerivatives<T, NV, NU>,
         is_whole: bool,
     ) -> (SVector<T, CR>, Option<RowDerivatives<T, CR, NV, NU>>) {
         let (problem, half) = (&self.acted.problem, constant::<T>(0.5));
-        let (start, is_regular) = problem.impulses_for(&(self.jacobian * given.value), &mut Equations::new());
-        let start = problem.spread_alone(&start);
+        let (start, is_regular) =
+            problem.impulses_for(&(self.jacobian * given.value), &mut ImpulseEquations::new());
+        let start = problem.spread_without_compression(&start);
         if is_whole {
             return (start * -half, None);
         }
         let left = given.value - self.responses * start;
-        let by_place = self.by_place_of_displacement(&left, &start);
-        let mut effect = Sensitive { value: SVector::zeros(), ..*given };
-        self.add_moved(&mut effect, &(-by_place.velocities));
+        let by_place = self.displacement_derivatives(&left, &start);
+        let mut effect = VectorWithDerivatives { value: SVector::zeros(), ..*given };
+        self.add_displacement_effect(&mut effect, &(-by_place.velocities));
         let mut rates = RowDerivatives::zeros();
-        self.add_moved_rates(&mut rates, &by_place.rates);
-        rates.add(&self.jacobian, &effect);
-        let starts = rates.solved(&problem.constant_rates(&problem.all_rows())).scaled(-T::one());
-        let (mut offset, mut derivatives) = (start * -half, starts.scaled(-half));
+        self.add_displacement_rates(&mut rates, &by_place.rates);
+        rates.add_product(&self.jacobian, &effect);
+        let starts =
+            rates.solved_impulses(&problem.constant_rates(&problem.all_rows())).scaled_rows(-T::one());
+        let (mut offset, mut derivatives) = (start * -half, starts.scaled_rows(-half));
         if is_regular {
             let slipping = self.at.free.plus_scaled(T::one(), given);
             let m = self.contacts.mechanism;
-            let slip = self.acted.selection.rates(&m.contact_rates(self.at.t, self.at.q, &slipping.value));
+            let slip =
+                self.acted.selection.selected_rates(&m.contact_rates(self.at.t, self.at.q, &slipping.value));
             let rotated = problem.rotated_friction(&start, &slip);
             offset += rotated.impulses;
             let mut slips = RowDerivatives::zeros();
-            self.add_moved_rates(&mut slips, &self.rates_by_place(&slipping.value));
-            slips.add(&self.jacobian, &slipping);
+            self.add_displacement_rates(&mut slips, &self.rate_derivatives(&slipping.value));
+            slips.add_product(&self.jacobian, &slipping);
             derivatives.add_rows(&rotated.by_impulses, &starts);
             derivatives.add_rows(&rotated.by_slip, &slips);
         }
@@ -436,71 +479,71 @@ where
 
     /// Subtracts the derivatives of the normal velocities that restitution demands.
     fn add_rebound(&self, rates: &mut RowDerivatives<T, CR, NV, NU>) {
-        let Acted { problem, selection, .. } = self.acted;
-        if !problem.rebounds() {
+        let ActedContacts { problem, selection, .. } = self.acted;
+        if !problem.demands_restitution() {
             return;
         }
-        let (Touching { mechanism: m, manifold, start }, at) = (self.contacts, self.at);
-        let velocity = Sensitive::start_velocity(start.1);
+        let (StepWithContacts { mechanism: m, manifold, start }, at) = (self.contacts, self.at);
+        let velocity = VectorWithDerivatives::start_velocity(start.1);
         let carried = match at.motion {
             None => velocity,
-            Some(motion) => manifold.carried_between(at.t, (start.0, &velocity), (at.q, motion)),
+            Some(motion) => manifold.transport_between(at.t, (start.0, &velocity), (at.q, motion)),
         };
-        let before = selection.rates(&m.contact_rates(at.t, at.q, &carried.value));
+        let before = selection.selected_rates(&m.contact_rates(at.t, at.q, &carried.value));
         let factors = problem.rebound_factors(&before);
         let mut before = RowDerivatives::zeros();
-        self.add_moved_rates(&mut before, &self.rates_by_place(&carried.value));
-        before.add(&self.jacobian, &carried);
+        self.add_displacement_rates(&mut before, &self.rate_derivatives(&carried.value));
+        before.add_product(&self.jacobian, &carried);
         rates.add_rows(&SMatrix::from_diagonal(&-factors), &before);
     }
 
-    /// Returns the displacement that closes gaps at the end of a step, if there is any, with the
-    /// configuration before it.
-    fn closing(
+    /// Returns the displacement that closes gaps at the end of a step, with its derivatives; `None` if there
+    /// is no such displacement. `q` is the configuration before the displacement.
+    fn closing_displacement(
         &self,
-        closing: &Closing<T, CK, CR>,
-        (q, motion): &Place<T, NQ, NV, NU>,
-    ) -> Option<Sensitive<T, NV, NU>> {
-        let Acted { problem, selection, impulses, .. } = self.acted;
-        let Closing { gaps, reach, pushes, part } = closing;
+        closing: &GapClosing<T, CK, CR>,
+        (q, motion): &SensitiveConfiguration<T, NQ, NV, NU>,
+    ) -> Option<VectorWithDerivatives<T, NV, NU>> {
+        let ActedContacts { problem, selection, impulses, .. } = self.acted;
+        let GapClosing { gaps, reach, pushes, part } = closing;
         if *part == T::zero() {
             return None;
         }
         let (closed, kept) =
             problem.closed_rows(impulses, (gaps, touching_distance(), *reach), pushes.as_ref());
-        let jacobian = selected(selection, &self.contacts.mechanism.contact_jacobian(self.at.t, q));
+        let jacobian = selected_rows(selection, &self.contacts.mechanism.contact_jacobian(self.at.t, q));
         let mut rates = RowDerivatives::zeros();
-        rates.add(&jacobian, motion);
-        let mut rows = problem.held_matrix(&closed);
-        let mut by = Sensitive { value: zeros(), by_q: zeros(), by_v: zeros(), by_u: zeros() };
+        rates.add_product(&jacobian, motion);
+        let mut rows = problem.diagonal_of_rows(&closed);
+        let mut by = VectorWithDerivatives { value: zeros(), by_q: zeros(), by_v: zeros(), by_u: zeros() };
         // The gaps of these contacts stay the same.
         let mut all = RowDerivatives::zeros();
         all.add_rows(&rows, &rates);
         if let Some(pushes) = pushes {
             by.value = self.responses * pushes;
-            let by_place = self.by_place_of_displacement(&by.value, pushes);
-            self.add_moved(&mut by, &by_place.velocities);
+            let by_place = self.displacement_derivatives(&by.value, pushes);
+            self.add_displacement_effect(&mut by, &by_place.velocities);
             let mut more = RowDerivatives::zeros();
-            self.add_moved_rates(&mut more, &by_place.rates);
-            more.add(&self.jacobian, &by);
-            rows += problem.held_matrix(&kept);
+            self.add_displacement_rates(&mut more, &by_place.rates);
+            more.add_product(&self.jacobian, &by);
+            rows += problem.diagonal_of_rows(&kept);
             all.add_rows(&rows, &more);
         }
         let mut held = closed;
         held.iter_mut().zip(kept.iter()).for_each(|(held, kept)| *held |= *kept);
-        all.solved(&problem.constant_rates(&held)).add_effect(self.responses, &mut by);
+        all.solved_impulses(&problem.constant_rates(&held)).add_effect(self.responses, &mut by);
         Some(by.scaled_derivatives(*part))
     }
 }
 
 /// Returns the rows of selected contacts.
-fn selected<T: Real, const NV: usize, const NR: usize, const CK: usize, const CR: usize>(
-    selection: &Selection<CK, CR>,
+fn selected_rows<T: Real, const NV: usize, const NR: usize, const CK: usize, const CR: usize>(
+    selection: &ContactSelection<CK, CR>,
     all: &SMatrix<T, NR, NV>,
 ) -> SMatrix<T, CR, NV> {
     let mut rows = zeros::<T, CR, NV>();
     for (to, from) in rows.data.0.iter_mut().zip(&all.data.0) {
-        *to = selection.rates(&SVector::from(*from)).data.0[0];
+        *to = selection.selected_rates(&SVector::from(*from)).data.0[0];
     }
     rows
 }

@@ -1,11 +1,13 @@
 //! Impulses of closed contacts, and the velocity after them.
 
-use super::problem::{Equations, Problem};
-use super::response::Effects;
-use super::selection::Selection;
-use super::total::Total;
+use super::problem::{ContactProblem, ImpulseEquations};
+use super::response::ImpulseEffects;
+use super::selection::ContactSelection;
+use super::total::TotalArray;
 use super::velocities::ContactVelocities;
-use super::{Assumed, Contacts, Law, Solved, lawful, phase, touching_distance, unsolved_contact_error};
+use super::{
+    Assumed, Contacts, Law, Solved, checked_contact_laws, phase, touching_distance, unsolved_contact_error,
+};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::private::constant;
@@ -13,41 +15,47 @@ use nalgebra::{SMatrix, SVector};
 
 /// Closed contacts of a step, with their impulses and the effects of these on velocities. Its matrices are
 /// large, so it is filled in place.
-pub(super) struct Acted<T, const NV: usize, const CK: usize, const CR: usize> {
-    pub(super) selection: Selection<CK, CR>,
-    pub(super) problem: Problem<T, CK, CR>,
-    pub(super) impulses: Total<T, CR>,
+pub(super) struct ActedContacts<T, const NV: usize, const CK: usize, const CR: usize> {
+    pub(super) selection: ContactSelection<CK, CR>,
+    pub(super) problem: ContactProblem<T, CK, CR>,
+    pub(super) impulses: TotalArray<T, CR>,
     /// Velocity before the impulses, with the correction for contact forces that rotate in the step.
     pub(super) free: SVector<T, NV>,
     /// Effects of the impulses, unknown if no contact is loaded.
-    effects: Effects<T, NV, CR>,
+    effects: ImpulseEffects<T, NV, CR>,
 }
 
-impl<T: Real, const NV: usize, const CK: usize, const CR: usize> Acted<T, NV, CK, CR> {
-    pub(super) fn nothing(selection: Selection<CK, CR>, is_relaxed: bool) -> Self {
-        let (impulses, free) = (Total::repeat(T::zero()), SVector::zeros());
-        Self { selection, problem: Problem::empty(is_relaxed), impulses, free, effects: Effects::Unknown }
+impl<T: Real, const NV: usize, const CK: usize, const CR: usize> ActedContacts<T, NV, CK, CR> {
+    pub(super) fn without_impulses(selection: ContactSelection<CK, CR>, is_relaxed: bool) -> Self {
+        let (impulses, free) = (TotalArray::repeat_entry(T::zero()), SVector::zeros());
+        Self {
+            selection,
+            problem: ContactProblem::without_contacts(is_relaxed),
+            impulses,
+            free,
+            effects: ImpulseEffects::Unknown,
+        }
     }
 
     /// Whether contacts are loaded.
     pub(super) fn is_loaded(&self) -> bool {
-        !matches!(self.effects, Effects::Unknown)
+        !matches!(self.effects, ImpulseEffects::Unknown)
     }
 
     /// Returns `M⁻¹ Gᵀ`: the changes of the velocity by unit impulses at the rows of the selected contacts.
-    pub(super) fn responses(&self) -> SMatrix<T, NV, CR> {
+    pub(super) fn velocity_responses(&self) -> SMatrix<T, NV, CR> {
         let mut responses = SMatrix::<T, NV, CR>::zeros();
         for row in 0..CR {
             let mut unit = SVector::zeros();
             unit[row] = T::one();
-            responses.set_column(row, &self.velocity(&unit));
+            responses.set_column(row, &self.velocity_change(&unit));
         }
         responses
     }
 
     /// Returns the change of the velocity by impulses.
-    pub(super) fn velocity(&self, impulses: &SVector<T, CR>) -> SVector<T, NV> {
-        self.effects.velocity(&self.problem.basis, impulses)
+    pub(super) fn velocity_change(&self, impulses: &SVector<T, CR>) -> SVector<T, NV> {
+        self.effects.velocity_change(&self.problem.basis, impulses)
     }
 }
 
@@ -56,7 +64,7 @@ impl<T: Real, const NV: usize, const CK: usize, const CR: usize> Acted<T, NV, CK
 /// velocity that contact forces were assumed to cause in a step, with the impulses of the previous one, and
 /// true if bodies are moving. The search begins at these impulses, and the rotation of contact forces in the
 /// step of moving bodies is taken into account.
-pub(super) fn act<
+pub(super) fn compute_impulses<
     M,
     T,
     const NQ: usize,
@@ -72,21 +80,24 @@ pub(super) fn act<
     (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
     closed: &[bool; NK],
     (before, given): (impl Fn() -> SVector<T, CR>, Option<(Assumed<'_, T, NV>, bool)>),
-    acted: &mut Acted<T, NV, CK, CR>,
+    acted: &mut ActedContacts<T, NV, CK, CR>,
 ) -> Result<Solved<T, NV, NR>, ConstraintError>
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let mut solved = Solved { v: *free, impulses: SVector::zeros() };
-    let laws = lawful(mechanism)?;
-    let Acted { selection, problem, effects, .. } = acted;
-    let (layout, laws) = (selection.layout(), selection.laws(&laws));
-    let after = ContactVelocities::<M, T, NQ, NV, NR>::select(selection, velocities.of(free));
-    problem.select(layout, &laws, &selection.closed(), &after);
+    let laws = checked_contact_laws(mechanism)?;
+    let ActedContacts { selection, problem, effects, .. } = acted;
+    let (layout, laws) = (selection.contact_layout(), selection.selected_laws(&laws));
+    let after =
+        ContactVelocities::<M, T, NQ, NV, NR>::select_rates(selection, velocities.rates_of_velocity(free));
+    problem.select_contacts(layout, &laws, &selection.closed_contacts(), &after);
     if laws.iter().any(|law| law.stiction > law.friction) {
         let rates = before();
-        problem.stick(&laws, |k| phase::length(&rates, layout.tangents(k)) <= touching_distance());
+        problem.set_static_friction(&laws, |k| {
+            phase::norm_of_range(&rates, layout.tangent_rows(k)) <= touching_distance()
+        });
     }
     let is_loaded = problem.is_loaded();
     let before = match is_loaded && laws.iter().all(|law| law.restitution == T::zero()) {
@@ -97,19 +108,21 @@ where
         return Ok(solved);
     }
     selection.fill_effects(mechanism, (t, q, velocities), closed, effects, problem);
-    problem.depends_on(NV);
-    let failed = |contact| unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>(selection.contact(contact));
-    let mut equations = Equations::new();
+    problem.set_velocity_count(NV);
+    let unsolved_error =
+        |contact| unsolved_contact_error::<M, T, NQ, NV, NU, NK, NR>(selection.index_of_contact(contact));
+    let mut equations = ImpulseEquations::new();
     let (given, recorded, is_moving) = match given {
         Some(((given, recorded), is_moving)) => (Some(given), recorded.recall(selection), is_moving),
         None => (None, None, false),
     };
     // Contact forces on bodies at rest do not rotate.
     let still = SVector::<T, NV>::zeros();
-    let recorded = recorded.map(|all| problem.gather(&all));
+    let recorded = recorded.map(|all| problem.gather_closed_rows(&all));
     let transported = given.filter(|given| is_moving && **given != still).map(|given| {
-        let rates = ContactVelocities::<M, T, NQ, NV, NR>::select(selection, velocities.changes(given));
-        problem.transport(given, (&rates, recorded.as_ref()), effects, &mut equations)
+        let rates =
+            ContactVelocities::<M, T, NQ, NV, NR>::select_rates(selection, velocities.rate_changes(given));
+        problem.correct_for_rotation(given, (&rates, recorded.as_ref()), effects, &mut equations)
     });
     let start = transported.and_then(|(start, correction)| {
         solved.v += correction;
@@ -117,54 +130,58 @@ where
     });
     let start = recorded.or(start);
     acted.free = solved.v;
-    problem.compress(&laws, &before).map_err(failed)?;
-    problem.aim(&laws, &before, T::one());
+    problem.find_compression(&laws, &before).map_err(unsolved_error)?;
+    problem.set_restitution_demands(&laws, &before, T::one());
     // Only prescribed motions and restitution can add energy.
-    let may_gain = problem.rebounds() && !velocities.is_driven();
+    let may_gain = problem.demands_restitution() && !velocities.is_driven();
     let mut found = problem.solve_from(start.as_ref(), &mut equations);
-    while found.as_ref().is_ok_and(|impulses| problem.slide(impulses)) {
-        found = problem.solve();
+    while found.as_ref().is_ok_and(|impulses| problem.release_sliding_contacts(impulses)) {
+        found = problem.solve_impulses();
     }
     let impulses = match found {
-        Ok(impulses) if !(may_gain && problem.gains(&impulses)) => impulses,
-        Err(contact) if !problem.rebounds() => problem.relaxed(Err(contact)).map_err(failed)?,
+        Ok(impulses) if !(may_gain && problem.adds_energy(&impulses)) => impulses,
+        Err(contact) if !problem.demands_restitution() => {
+            problem.accept_if_relaxed(Err(contact)).map_err(unsolved_error)?
+        }
         _ => {
-            let found = tempered(problem, (&laws, &before), (start, &mut equations), may_gain);
-            problem.relaxed(found).map_err(failed)?
+            let found =
+                impulses_with_restitution(problem, (&laws, &before), (start, &mut equations), may_gain);
+            problem.accept_if_relaxed(found).map_err(unsolved_error)?
         }
     };
-    let all = problem.spread(&impulses);
-    solved.impulses = selection.spread(&all);
-    solved.v += effects.velocity(&problem.basis, &all);
+    let all = problem.spread_to_mechanism(&impulses);
+    solved.impulses = selection.spread_to_mechanism(&all);
+    solved.v += effects.velocity_change(&problem.basis, &all);
     acted.impulses = impulses;
     Ok(solved)
 }
 
-/// Returns impulses with the largest common fraction of all restitutions for which they exist. If no motion
-/// is prescribed, this fraction adds no energy either. The search begins at the impulses of `start`.
-fn tempered<T: Real, const NK: usize, const NR: usize>(
-    problem: &mut Problem<T, NK, NR>,
+/// Returns impulses with the largest fraction of the restitution, common to all contacts, for which a
+/// solution exists. If no motion is prescribed, this fraction also adds no energy. The search starts at the
+/// impulses `start`.
+fn impulses_with_restitution<T: Real, const NK: usize, const NR: usize>(
+    problem: &mut ContactProblem<T, NK, NR>,
     (laws, before): (&[Law<T>; NK], &SVector<T, NR>),
-    (mut start, equations): (Option<Total<T, NR>>, &mut Equations<T, NR>),
+    (mut start, equations): (Option<TotalArray<T, NR>>, &mut ImpulseEquations<T, NR>),
     may_gain: bool,
-) -> Result<Total<T, NR>, usize> {
+) -> Result<TotalArray<T, NR>, usize> {
     // Each bisection determines one bit of the fraction.
     let (mut least, mut step, mut found) = (T::zero(), T::one(), None);
-    for _ in 0..problem.halvings() {
+    for _ in 0..problem.max_halvings() {
         if !problem.may_refine() {
             break;
         }
         step *= constant(0.5);
-        problem.aim(laws, before, least + step);
+        problem.set_restitution_demands(laws, before, least + step);
         if let Ok(impulses) = problem.solve_from(start.as_ref(), equations)
-            && !(may_gain && problem.gains(&impulses))
+            && !(may_gain && problem.adds_energy(&impulses))
         {
             least += step;
-            start = Some(problem.total(&impulses));
-            found = Some((impulses, problem.violation()));
+            start = Some(problem.total_impulses(&impulses));
+            found = Some((impulses, problem.largest_violation()));
         }
     }
-    problem.aim(laws, before, least);
+    problem.set_restitution_demands(laws, before, least);
     match found {
         Some((impulses, violation)) => {
             problem.set_violation(violation);

@@ -1,12 +1,14 @@
 //! Effects of contacts in a step: impulses, and displacements that remove penetrations.
 
-use super::layout::Layout;
-use super::observer::{Closing, Observer, Unobserved};
-use super::problem::{Equations, Problem, entry, put};
-use super::selection::{FEW, Selection};
-use super::total::Total;
+use super::layout::ContactLayout;
+use super::observer::{GapClosing, ImpulseObserver, Unobserved};
+use super::problem::{ContactProblem, ImpulseEquations, entry_or_zero, set_entry};
+use super::selection::{ContactSelection, FEW};
+use super::total::TotalArray;
 use super::velocities::ContactVelocities;
-use super::{Acted, Assumed, Contacts, Impulses, Law, Rows, Touched, act, touching_distance};
+use super::{
+    ActedContacts, Assumed, Contacts, Impulses, Law, Rows, Touched, compute_impulses, touching_distance,
+};
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::private::{constant, epsilon, positive_part};
@@ -22,7 +24,7 @@ const MEDIUM: usize = 72;
 const LARGE: usize = 144;
 
 /// Start of a step.
-pub(super) struct Came<'a, T, const NQ: usize, const NV: usize> {
+pub(super) struct StepStart<'a, T, const NQ: usize, const NV: usize> {
     /// Configuration and velocity at the start of the step.
     start: (&'a SVector<T, NQ>, &'a SVector<T, NV>),
     /// Velocity of the start in the axes at the end of the step
@@ -34,10 +36,14 @@ pub(super) struct Came<'a, T, const NQ: usize, const NV: usize> {
     held: SVector<T, NV>,
 }
 
-impl<'a, T: Real, const NQ: usize, const NV: usize> Came<'a, T, NQ, NV> {
+impl<'a, T: Real, const NQ: usize, const NV: usize> StepStart<'a, T, NQ, NV> {
     /// Returns the start of a step of `h` seconds from a state, with the displacement `held` by the assumed
     /// contact forces.
-    pub(super) fn from(start: (&'a SVector<T, NQ>, &'a SVector<T, NV>), h: T, held: SVector<T, NV>) -> Self {
+    pub(super) fn from_state(
+        start: (&'a SVector<T, NQ>, &'a SVector<T, NV>),
+        h: T,
+        held: SVector<T, NV>,
+    ) -> Self {
         Self { start, carried: Cell::new(None), h, held }
     }
 
@@ -65,12 +71,11 @@ impl<'a, T: Real, const NQ: usize, const NV: usize> Came<'a, T, NQ, NV> {
     }
 }
 
-/// Returns the contacts that are closed, if any is, where a motion has led to the configuration `q` and the
-/// velocity `free`: those with a gap of zero there, with or without the assumed contact forces, and those
-/// that were closed before and did not separate. Of these the other contacts may press any, whichever way it
-/// would go without them all.
+/// Returns the contacts that are closed after a motion to the configuration `q` and velocity `free`; `None`
+/// if there are none. Closed are contacts with a gap of zero, with or without the assumed contact forces, and
+/// contacts that were closed at the start and did not separate.
 #[allow(clippy::type_complexity, reason = "sizes of arrays")]
-pub(super) fn closed<
+pub(super) fn closed_contacts<
     M,
     T,
     const NQ: usize,
@@ -82,7 +87,7 @@ pub(super) fn closed<
     mechanism: &M,
     t: T,
     (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
-    came: Option<(&Came<'_, T, NQ, NV>, &ContactVelocities<'_, M, T, NQ, NV, NR>)>,
+    came: Option<(&StepStart<'_, T, NQ, NV>, &ContactVelocities<'_, M, T, NQ, NV, NR>)>,
 ) -> Result<Option<[bool; NK]>, ConstraintError>
 where
     T: Real,
@@ -93,8 +98,9 @@ where
         return Err(ConstraintError::NotFinite);
     }
     let mut closed: [bool; NK] = gaps.data.0[0].map(|gap| gap <= touching_distance());
-    let open = |closed: &[bool; NK]| closed.iter().any(|is_closed| !is_closed);
-    if let Some((came, velocities)) = came.filter(|(came, _)| came.h > T::zero() && open(&closed)) {
+    let has_open_contact = |closed: &[bool; NK]| closed.iter().any(|is_closed| !is_closed);
+    if let Some((came, velocities)) = came.filter(|(came, _)| came.h > T::zero() && has_open_contact(&closed))
+    {
         let (h, held, still) = (&came.h, &came.held, SVector::<T, NV>::zeros());
         let starts = mechanism.contact_gaps(t - *h, came.start.0);
         let is_held = *held != still;
@@ -103,15 +109,15 @@ where
         if !is_held && !touched {
             return Ok(closed.contains(&true).then_some(closed));
         }
-        let layout = Layout::of(mechanism);
+        let layout = ContactLayout::of_mechanism(mechanism);
         let carried = came.velocity_at_end(mechanism, t, q);
-        let (rate, after) = (velocities.of(&carried), velocities.of(free));
-        let displacement = velocities.changes(held);
+        let (rate, after) = (velocities.rates_of_velocity(&carried), velocities.rates_of_velocity(free));
+        let displacement = velocities.rate_changes(held);
         for (k, (closed, (gap, start))) in closed.iter_mut().zip(gaps.iter().zip(&starts)).enumerate() {
             if *closed || (!is_held && *start > touching_distance()) {
                 continue;
             }
-            let (by, place) = layout.pressing(k);
+            let (by, place) = layout.bounding_contact(k);
             let apart = if is_held { displacement(by, place) } else { T::zero() };
             *closed = *gap - apart <= touching_distance();
             if *closed || *start > touching_distance() {
@@ -171,16 +177,16 @@ pub(super) fn observed_step<
     (q, free): (&SVector<T, NQ>, &SVector<T, NV>),
     (given, impulses): Assumed<'_, T, NV>,
     h: T,
-    observer: &mut impl Observer<T, NV>,
+    observer: &mut impl ImpulseObserver<T, NV>,
 ) -> Result<Touched<T, NQ, NV>, ConstraintError>
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let half = h * constant(0.5);
-    let came = Came::from((start, v), h, given * half);
+    let came = StepStart::from_state((start, v), h, given * half);
     // What impulses do to the velocity they do in the mean of the step.
-    let led = |after: &SVector<T, NV>, by_contacts: &SVector<T, NV>| {
+    let state_after_impulses = |after: &SVector<T, NV>, by_contacts: &SVector<T, NV>| {
         let moved = (after - free - given) * half;
         // Smooth forces move it by so little that their axes stay the same.
         Touched {
@@ -192,10 +198,14 @@ where
         }
     };
     let still = SVector::<T, NV>::zeros();
-    let velocities = ContactVelocities::at(mechanism, t, q);
-    let Some(closed) = closed(mechanism, t, (q, free), Some((&came, &velocities)))? else {
+    let velocities = ContactVelocities::in_configuration(mechanism, t, q);
+    let Some(closed) = closed_contacts(mechanism, t, (q, free), Some((&came, &velocities)))? else {
         let is_led = h != T::zero() && *given != still;
-        return Ok(if is_led { led(free, &still) } else { Touched::state_without_contacts(*q, *free) });
+        return Ok(if is_led {
+            state_after_impulses(free, &still)
+        } else {
+            Touched::state_without_contacts(*q, *free)
+        });
     };
     let (rows, _) = mechanism.contact_tables();
     let rows = rows.iter().zip(&closed).filter(|(_, is_closed)| **is_closed);
@@ -204,21 +214,47 @@ where
     let at_end = (t, &velocities);
     // Matrices of few closed contacts are small, however many contacts a mechanism has.
     if const { NR > SMALL } && rows <= SMALL {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, SMALL, SMALL>(mechanism, at_end, run, &closed, led, observer)
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, SMALL, SMALL>(
+            mechanism,
+            at_end,
+            run,
+            &closed,
+            state_after_impulses,
+            observer,
+        )
     } else if const { NR > MEDIUM } && rows <= MEDIUM {
         act_in_step::<M, T, NQ, NV, NU, NK, NR, MEDIUM, MEDIUM>(
-            mechanism, at_end, run, &closed, led, observer,
+            mechanism,
+            at_end,
+            run,
+            &closed,
+            state_after_impulses,
+            observer,
         )
     } else if const { NR > LARGE } && rows <= LARGE {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, LARGE, LARGE>(mechanism, at_end, run, &closed, led, observer)
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, LARGE, LARGE>(
+            mechanism,
+            at_end,
+            run,
+            &closed,
+            state_after_impulses,
+            observer,
+        )
     } else {
-        act_in_step::<M, T, NQ, NV, NU, NK, NR, NK, NR>(mechanism, at_end, run, &closed, led, observer)
+        act_in_step::<M, T, NQ, NV, NU, NK, NR, NK, NR>(
+            mechanism,
+            at_end,
+            run,
+            &closed,
+            state_after_impulses,
+            observer,
+        )
     }
 }
 
-/// Start of a step, its end without contacts, and the change of velocity by the assumed contact forces.
-type Run<'a, T, const NQ: usize, const NV: usize> = (
-    &'a Came<'a, T, NQ, NV>,
+/// Start of a step, its end without contacts, and the velocity change by the assumed contact forces.
+type StepRun<'a, T, const NQ: usize, const NV: usize> = (
+    &'a StepStart<'a, T, NQ, NV>,
     (&'a SVector<T, NQ>, &'a SVector<T, NV>),
     (&'a SVector<T, NQ>, &'a SVector<T, NV>),
     Assumed<'a, T, NV>,
@@ -240,30 +276,41 @@ fn act_in_step<
 >(
     mechanism: &M,
     (t, velocities): (T, &ContactVelocities<'_, M, T, NQ, NV, NR>),
-    (came, (start, v), (q, free), (given, recorded)): Run<'_, T, NQ, NV>,
+    (came, (start, v), (q, free), (given, recorded)): StepRun<'_, T, NQ, NV>,
     closed: &[bool; NK],
     led: impl Fn(&SVector<T, NV>, &SVector<T, NV>) -> Touched<T, NQ, NV>,
-    observer: &mut impl Observer<T, NV>,
+    observer: &mut impl ImpulseObserver<T, NV>,
 ) -> Result<Touched<T, NQ, NV>, ConstraintError>
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
     let (h, still) = (came.h, SVector::<T, NV>::zeros());
-    let selection = Selection::<CK, CR>::select(Layout::of(mechanism), closed);
-    let mut acted = Acted::nothing(selection, true);
-    let own_rates = || {
+    let selection = ContactSelection::<CK, CR>::select_closed(ContactLayout::of_mechanism(mechanism), closed);
+    let mut acted = ActedContacts::without_impulses(selection, true);
+    let own_velocities = || {
         let carried = came.velocity_at_end(mechanism, t, q);
-        ContactVelocities::<M, T, NQ, NV, NR>::select(&selection, velocities.of(&carried))
+        ContactVelocities::<M, T, NQ, NV, NR>::select_rates(
+            &selection,
+            velocities.rates_of_velocity(&carried),
+        )
     };
-    let moves = |far: T| v.iter().any(|v| v.abs() * h > far);
-    let is_moving = moves(touching_distance::<T>() * constant(10.0));
+    let moves_farther_than = |far: T| v.iter().any(|v| v.abs() * h > far);
+    let is_moving = moves_farther_than(touching_distance::<T>() * constant(10.0));
     let assumed = Some(((given, recorded), is_moving));
-    let after = act(mechanism, (t, velocities), (q, free), closed, (own_rates, assumed), &mut acted)?.v;
+    let after = compute_impulses(
+        mechanism,
+        (t, velocities),
+        (q, free),
+        closed,
+        (own_velocities, assumed),
+        &mut acted,
+    )?
+    .v;
     if h == T::zero() {
         observer.observe(&acted, None);
-        let (held, violation) = (after - free, acted.problem.violation());
-        let impulses = Impulses::record(&selection, &acted.problem.spread(&acted.impulses));
+        let (held, violation) = (after - free, acted.problem.largest_violation());
+        let impulses = Impulses::record(&selection, &acted.problem.spread_to_mechanism(&acted.impulses));
         return Ok(Touched { q: *q, v: after, held, impulses, violation });
     }
     if !acted.is_loaded() {
@@ -272,48 +319,58 @@ where
     let corrected = acted.free;
     let mut touched = led(&after, &(after - corrected));
     // The energy without what contacts have done: they have worked along the mean of the velocities.
-    let most = || {
+    let allowed_energy = || {
         let mean = (came.velocity_at_end(mechanism, t, q) + free + given) * constant::<T>(0.5);
         let work = mechanism.generalized_momentum(t, q, &mean).dot(given);
-        energy(mechanism, t, &Touched::state_without_contacts(*q, free + given)) - work
+        total_energy(mechanism, t, &Touched::state_without_contacts(*q, free + given)) - work
     };
-    if acted.problem.rebounds() {
-        let led = |by_contacts: &SVector<T, NV>| led(&(corrected + by_contacts), by_contacts);
-        let laws = selection.laws(&mechanism.contact_laws());
-        if let Some(less) =
-            tempered(mechanism, t, (&mut acted, &laws, &own_rates()), &led, (&touched, most()))
-        {
+    if acted.problem.demands_restitution() {
+        let led_state = |by_contacts: &SVector<T, NV>| led(&(corrected + by_contacts), by_contacts);
+        let laws = selection.selected_laws(&mechanism.contact_laws());
+        if let Some(less) = state_with_restitution(
+            mechanism,
+            t,
+            (&mut acted, &laws, &own_velocities()),
+            &led_state,
+            (&touched, allowed_energy()),
+        ) {
             (touched, acted.impulses) = less;
         }
     }
     let (problem, impulses) = (&acted.problem, &acted.impulses);
-    touched.violation = problem.violation();
-    touched.impulses = Impulses::record(&selection, &problem.spread(impulses));
-    if !is_moving && !moves(touching_distance::<T>() * constant(1e-3)) {
+    touched.violation = problem.largest_violation();
+    touched.impulses = Impulses::record(&selection, &problem.spread_to_mechanism(impulses));
+    if !is_moving && !moves_farther_than(touching_distance::<T>() * constant(1e-3)) {
         let states = ((start, v), &touched, &after);
         let creep = creep_reversal(mechanism, (t, velocities), states, h, (problem, &selection));
         if let Some(creep) = creep {
-            touched.q = mechanism.integrate(&touched.q, &acted.velocity(&creep));
+            touched.q = mechanism.integrate(&touched.q, &acted.velocity_change(&creep));
         }
     }
     let gaps = mechanism.contact_gaps(t, &touched.q);
-    let own = selection.gaps(&gaps);
-    let mut closing = Closing { gaps: own, reach: touching_distance(), pushes: None, part: T::one() };
-    if !problem.is_shut(&own, touching_distance()) {
-        let speed = own_rates().iter().fold(problem.speed(), |most, rate| most.max(rate.abs()));
+    let own = selection.selected_gaps(&gaps);
+    let mut closing = GapClosing { gaps: own, reach: touching_distance(), pushes: None, part: T::one() };
+    if !problem.are_gaps_closed(&own, touching_distance()) {
+        let speed = own_velocities().iter().fold(problem.largest_rate(), |most, rate| most.max(rate.abs()));
         closing.reach += speed * h;
-        closing.pushes = problem.close(impulses, &own, (touching_distance(), closing.reach));
+        closing.pushes = problem.gap_closing_impulses(impulses, &own, (touching_distance(), closing.reach));
     }
     if let Some(pushes) = &closing.pushes {
-        (touched, closing.part) = pushed(mechanism, t, (&touched, &gaps), &acted.velocity(pushes), most);
+        (touched, closing.part) = displaced_within_energy(
+            mechanism,
+            t,
+            (&touched, &gaps),
+            &acted.velocity_change(pushes),
+            allowed_energy,
+        );
     }
     observer.observe(&acted, Some(&closing));
     Ok(touched)
 }
 
-/// Impulses that, as displacements, take the bodies of a mechanism at rest back by what contacts that stick
-/// have crept in a step; `None` if they have not. The forces of a step are constant, and loads that change in
-/// it move what they hold.
+/// Returns impulses that, applied as displacements, reverse the creep of sticking contacts in a step, if the
+/// bodies of the mechanism are at rest. The creep results from constant forces in a step whose loads vary.
+/// Returns `None` if nothing has crept.
 #[allow(clippy::type_complexity, reason = "states at both ends of the step")]
 fn creep_reversal<
     M,
@@ -330,7 +387,7 @@ fn creep_reversal<
     (t, velocities): (T, &ContactVelocities<'_, M, T, NQ, NV, NR>),
     ((start, v), touched, after): ((&SVector<T, NQ>, &SVector<T, NV>), &Touched<T, NQ, NV>, &SVector<T, NV>),
     h: T,
-    (problem, selection): (&Problem<T, CK, CR>, &Selection<CK, CR>),
+    (problem, selection): (&ContactProblem<T, CK, CR>, &ContactSelection<CK, CR>),
 ) -> Option<SVector<T, CR>>
 where
     T: Real,
@@ -342,25 +399,31 @@ where
     let translation = mechanism.translation(t, &mean);
     let expected = mechanism.integrate(&mechanism.integrate(start, &translation), &(mean - translation));
     let excess = mechanism.difference(&expected, &touched.q);
-    let largest = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
-    if largest(&excess) <= largest(&touched.held) * h * epsilon::<T>().sqrt() {
+    let largest_magnitude = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
+    if largest_magnitude(&excess) <= largest_magnitude(&touched.held) * h * epsilon::<T>().sqrt() {
         return None;
     }
-    let crept = ContactVelocities::<M, T, NQ, NV, NR>::select(selection, velocities.changes(&excess));
-    let slip = ContactVelocities::<M, T, NQ, NV, NR>::select(selection, velocities.of(after));
-    let (layout, mut back) = (selection.layout(), SVector::<T, CR>::zeros());
-    for tangents in (0..CK).map(|k| layout.tangents(k)) {
-        if tangents.clone().all(|i| entry(&slip, i).abs() <= touching_distance::<T>() * touching_distance()) {
-            tangents.for_each(|i| put(&mut back, i, -entry(&crept, i)));
+    let crept =
+        ContactVelocities::<M, T, NQ, NV, NR>::select_rates(selection, velocities.rate_changes(&excess));
+    let slip =
+        ContactVelocities::<M, T, NQ, NV, NR>::select_rates(selection, velocities.rates_of_velocity(after));
+    let (layout, mut back) = (selection.contact_layout(), SVector::<T, CR>::zeros());
+    for tangents in (0..CK).map(|k| layout.tangent_rows(k)) {
+        if tangents
+            .clone()
+            .all(|i| entry_or_zero(&slip, i).abs() <= touching_distance::<T>() * touching_distance())
+        {
+            tangents.for_each(|i| set_entry(&mut back, i, -entry_or_zero(&crept, i)));
         }
     }
-    Some(problem.displacements(&back))
+    Some(problem.impulses_for_changes(&back))
 }
 
-/// A state with the largest part of all restitutions after which the energy is no more than `most`, and the
-/// impulses that lead there; `None` where it is no more with all of them.
+/// Returns a state with the largest fraction of the restitution, common to all contacts, after which the
+/// energy is at most `most`, and the impulses that lead there. Returns `None` if the full restitution already
+/// satisfies this.
 #[allow(clippy::type_complexity, reason = "sizes of arrays")]
-fn tempered<
+fn state_with_restitution<
     M,
     T,
     const NQ: usize,
@@ -373,49 +436,49 @@ fn tempered<
 >(
     mechanism: &M,
     t: T,
-    (acted, laws, before): (&mut Acted<T, NV, CK, CR>, &[Law<T>; CK], &SVector<T, CR>),
+    (acted, laws, before): (&mut ActedContacts<T, NV, CK, CR>, &[Law<T>; CK], &SVector<T, CR>),
     led: &impl Fn(&SVector<T, NV>) -> Touched<T, NQ, NV>,
     (all, most): (&Touched<T, NQ, NV>, T),
-) -> Option<(Touched<T, NQ, NV>, Total<T, CR>)>
+) -> Option<(Touched<T, NQ, NV>, TotalArray<T, CR>)>
 where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    let most = most + rounding(most);
-    if energy(mechanism, t, all) <= most {
+    let most = most + energy_rounding(most);
+    if total_energy(mechanism, t, all) <= most {
         return None;
     }
     let (mut found, mut least, mut step) = (None, T::zero(), T::one());
-    let (mut equations, mut violation) = (Equations::new(), acted.problem.violation());
-    let mut start = Some(acted.problem.total(&acted.impulses));
-    for round in 0..=acted.problem.halvings() {
+    let (mut equations, mut violation) = (ImpulseEquations::new(), acted.problem.largest_violation());
+    let mut start = Some(acted.problem.total_impulses(&acted.impulses));
+    for round in 0..=acted.problem.max_halvings() {
         if found.is_some() && !acted.problem.may_refine() {
             break;
         }
         // None of it, then a bit of the part each.
         let part = if round == 0 { T::zero() } else { least + step };
-        acted.problem.aim(laws, before, part);
+        acted.problem.set_restitution_demands(laws, before, part);
         if let Ok(impulses) = acted.problem.solve_from(start.as_ref(), &mut equations) {
-            start = Some(acted.problem.total(&impulses));
-            let touched = led(&acted.velocity(&acted.problem.spread(&impulses)));
-            if round == 0 || energy(mechanism, t, &touched) <= most {
+            start = Some(acted.problem.total_impulses(&impulses));
+            let touched = led(&acted.velocity_change(&acted.problem.spread_to_mechanism(&impulses)));
+            if round == 0 || total_energy(mechanism, t, &touched) <= most {
                 (found, least) = (Some((touched, impulses)), part);
-                violation = acted.problem.violation();
+                violation = acted.problem.largest_violation();
             }
         }
         step *= constant(0.5);
     }
-    acted.problem.aim(laws, before, least);
+    acted.problem.set_restitution_demands(laws, before, least);
     acted.problem.set_violation(violation);
     found
 }
 
 /// Returns the rounding error of an energy.
-fn rounding<T: Real>(energy: T) -> T {
+fn energy_rounding<T: Real>(energy: T) -> T {
     energy.abs() * epsilon() * constant(8.0)
 }
 
-fn energy<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+fn total_energy<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
     mechanism: &M,
     t: T,
     Touched { q, v, .. }: &Touched<T, NQ, NV>,
@@ -431,7 +494,15 @@ where
 /// after it is at most `most`, which is evaluated only if the energy grows, or the energy before it. If
 /// surfaces overlap before, with the gaps `gaps`, none overlap more deeply afterwards than the deepest did,
 /// including those of contacts that were open.
-fn pushed<M, T, const NQ: usize, const NV: usize, const NU: usize, const NK: usize, const NR: usize>(
+fn displaced_within_energy<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NK: usize,
+    const NR: usize,
+>(
     mechanism: &M,
     t: T,
     (from, gaps): (&Touched<T, NQ, NV>, &SVector<T, NK>),
@@ -442,7 +513,7 @@ where
     T: Real,
     M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
 {
-    let before = energy(mechanism, t, from);
+    let before = total_energy(mechanism, t, from);
     let (mut part, mut allowed) = (T::one(), None);
     let deepest = gaps.iter().fold(T::zero(), |deepest, gap| deepest.min(*gap));
     for _ in 0..PARTS {
@@ -459,12 +530,12 @@ where
             part *= constant(0.5);
             continue;
         }
-        let after = energy(mechanism, t, &to);
-        if after <= before + rounding(before) {
+        let after = total_energy(mechanism, t, &to);
+        if after <= before + energy_rounding(before) {
             return (to, part);
         }
         let most = *allowed.get_or_insert_with(&most);
-        if after <= most + rounding(before) {
+        if after <= most + energy_rounding(before) {
             return (to, part);
         }
         if most <= before {

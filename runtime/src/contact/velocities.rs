@@ -1,7 +1,7 @@
 //! Contact velocities in one configuration.
 
-use super::problem::{entry, put};
-use super::selection::{FEW, Selection};
+use super::problem::{entry_or_zero, set_entry};
+use super::selection::{ContactSelection, FEW};
 use super::{Contacts, Rows};
 use crate::Real;
 use core::cell::OnceCell;
@@ -19,7 +19,7 @@ pub(super) struct ContactVelocities<'a, M, T, const NQ: usize, const NV: usize, 
 }
 
 /// Returns the value of a cell, which is computed first if the cell is empty.
-fn stored<T>(cell: &OnceCell<T>, value: impl FnOnce() -> T) -> Option<&T> {
+fn get_or_compute<T>(cell: &OnceCell<T>, value: impl FnOnce() -> T) -> Option<&T> {
     if cell.get().is_none() {
         // The cell is empty, so that this cannot fail.
         let _ = cell.set(value());
@@ -30,26 +30,31 @@ fn stored<T>(cell: &OnceCell<T>, value: impl FnOnce() -> T) -> Option<&T> {
 impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
     ContactVelocities<'a, M, T, NQ, NV, NR>
 {
-    /// Returns the contact velocities in a configuration.
-    pub(super) fn at(mechanism: &'a M, t: T, q: &'a SVector<T, NQ>) -> Self {
+    /// Returns the contact velocities in a configuration, as functions of the velocity that are not yet
+    /// evaluated.
+    pub(super) fn in_configuration(mechanism: &'a M, t: T, q: &'a SVector<T, NQ>) -> Self {
         Self { mechanism, t, q, jacobian: OnceCell::new(), drift: OnceCell::new() }
     }
 
     /// Returns the Jacobian of all contacts, which always exists; an `Option` needs no code that panics.
-    pub(super) fn jacobian<const NU: usize, const NK: usize>(&self) -> Option<&SMatrix<T, NR, NV>>
+    pub(super) fn contact_jacobian<const NU: usize, const NK: usize>(&self) -> Option<&SMatrix<T, NR, NV>>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        stored(&self.jacobian, || self.mechanism.contact_jacobian(self.t, self.q))
+        get_or_compute(&self.jacobian, || self.mechanism.contact_jacobian(self.t, self.q))
     }
 
     /// Returns the contact velocities at rest; `None` if no prescribed motion may cause any.
-    fn drift<const NU: usize, const NK: usize>(&self) -> Option<&SVector<T, NR>>
+    fn rest_velocities<const NU: usize, const NK: usize>(&self) -> Option<&SVector<T, NR>>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        let drift = || self.mechanism.contact_rates(self.t, self.q, &SVector::zeros());
-        if self.mechanism.contacts_drift() { stored(&self.drift, drift) } else { None }
+        let compute_rest_velocities = || self.mechanism.contact_rates(self.t, self.q, &SVector::zeros());
+        if self.mechanism.contacts_drift() {
+            get_or_compute(&self.drift, compute_rest_velocities)
+        } else {
+            None
+        }
     }
 
     /// Whether prescribed motions cause contact velocities.
@@ -57,12 +62,12 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
-        self.drift().is_some_and(|drift| drift.iter().any(|rate| *rate != T::zero()))
+        self.rest_velocities().is_some_and(|drift| drift.iter().any(|rate| *rate != T::zero()))
     }
 
     /// Returns a function of the contact velocities for a velocity, which takes a contact and one of its
     /// rows.
-    pub(super) fn of<const NU: usize, const NK: usize>(
+    pub(super) fn rates_of_velocity<const NU: usize, const NK: usize>(
         &self,
         v: &SVector<T, NV>,
     ) -> impl Fn(usize, usize) -> T
@@ -70,18 +75,18 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
         let all = (NR <= FEW).then(|| self.mechanism.contact_rates(self.t, self.q, v));
-        let drift = if NR <= FEW { None } else { self.drift() };
+        let drift = if NR <= FEW { None } else { self.rest_velocities() };
         let change = self.changes_from_jacobian(v);
         move |k, row| match (&all, drift) {
-            (Some(all), _) => entry(all, row),
-            (None, Some(drift)) => change(k, row) + entry(drift, row),
+            (Some(all), _) => entry_or_zero(all, row),
+            (None, Some(drift)) => change(k, row) + entry_or_zero(drift, row),
             (None, None) => change(k, row),
         }
     }
 
     /// Returns a function of the changes of the contact velocities for a change of the velocity, which takes
     /// a contact and one of its rows.
-    pub(super) fn changes<const NU: usize, const NK: usize>(
+    pub(super) fn rate_changes<const NU: usize, const NK: usize>(
         &self,
         change: &SVector<T, NV>,
     ) -> impl Fn(usize, usize) -> T
@@ -89,17 +94,18 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
     {
         let all = (NR <= FEW).then(|| {
-            let rates = |v| self.mechanism.contact_rates(self.t, self.q, v);
-            match self.drift() {
-                Some(drift) => rates(change) - drift,
-                None => rates(change),
+            let contact_rates_of = |v| self.mechanism.contact_rates(self.t, self.q, v);
+            match self.rest_velocities() {
+                Some(drift) => contact_rates_of(change) - drift,
+                None => contact_rates_of(change),
             }
         });
         let change = self.changes_from_jacobian(change);
-        move |k, row| all.as_ref().map_or_else(|| change(k, row), |all| entry(all, row))
+        move |k, row| all.as_ref().map_or_else(|| change(k, row), |all| entry_or_zero(all, row))
     }
 
-    /// [`changes`](Self::changes) from the Jacobian, which the first call of the function evaluates.
+    /// Computes [`rate_changes`](Self::rate_changes) from the contact Jacobian, which the first call of the
+    /// returned function evaluates.
     fn changes_from_jacobian<const NU: usize, const NK: usize>(
         &self,
         change: &SVector<T, NV>,
@@ -110,22 +116,23 @@ impl<'a, M, T: Real, const NQ: usize, const NV: usize, const NR: usize>
         let columns = self.mechanism.contact_columns();
         move |k, row| {
             let (first, last) = columns.get(k).copied().unwrap_or((0, NV));
-            let Some(jacobian) = self.jacobian() else { return T::zero() };
+            let Some(jacobian) = self.contact_jacobian() else { return T::zero() };
             let terms = jacobian.data.0.iter().zip(&change.data.0[0]).take(last).skip(first);
             terms.fold(T::zero(), |sum, (column, v)| sum + column.get(row).copied().unwrap_or(T::zero()) * *v)
         }
     }
 
     /// Returns values of a function of contacts and rows for selected contacts.
-    pub(super) fn select<const CK: usize, const CR: usize>(
-        selection: &Selection<CK, CR>,
+    pub(super) fn select_rates<const CK: usize, const CR: usize>(
+        selection: &ContactSelection<CK, CR>,
         rate: impl Fn(usize, usize) -> T,
     ) -> SVector<T, CR> {
-        let (layout, mut rates) = (selection.layout(), SVector::zeros());
-        for k in 0..selection.count() {
+        let (layout, mut rates) = (selection.contact_layout(), SVector::zeros());
+        for k in 0..selection.contact_count() {
             let Rows { first, count } = layout.rows(k);
-            (first..first + count)
-                .for_each(|i| put(&mut rates, i, rate(selection.contact(k), selection.row(i))));
+            (first..first + count).for_each(|i| {
+                set_entry(&mut rates, i, rate(selection.index_of_contact(k), selection.index_of_row(i)))
+            });
         }
         rates
     }

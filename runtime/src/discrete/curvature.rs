@@ -1,23 +1,23 @@
 //! Second derivatives within a step: the chain rule for functions of two vectors, and second derivatives of
 //! displacements.
 
-use super::explicit::Sensitive;
+use super::explicit::VectorWithDerivatives;
 use crate::blocks::{add_multiple, add_product, product, transposed};
 use crate::private::constant;
 use crate::{InputSecondOrder, Real, SecondDerivatives};
 use nalgebra::{SMatrix, SVector};
 
-type Square<T, const NV: usize> = SMatrix<T, NV, NV>;
+type SquareMatrix<T, const NV: usize> = SMatrix<T, NV, NV>;
 
 /// Second derivatives of a function of two vectors: with respect to the first twice, to the first (rows) and
 /// the second (columns), and to the second twice. `None` is zero.
-pub(super) struct Curvature<T, const NV: usize> {
-    pub(super) first: Option<Square<T, NV>>,
-    pub(super) mixed: Square<T, NV>,
-    pub(super) second: Option<Square<T, NV>>,
+pub(super) struct SecondDerivativesOfTwo<T, const NV: usize> {
+    pub(super) first: Option<SquareMatrix<T, NV>>,
+    pub(super) mixed: SquareMatrix<T, NV>,
+    pub(super) second: Option<SquareMatrix<T, NV>>,
 }
 
-impl<T: Real, const NV: usize> Curvature<T, NV> {
+impl<T: Real, const NV: usize> SecondDerivativesOfTwo<T, NV> {
     /// Returns the products of the Hessian with columns of changes of both vectors: the rows of the first
     /// vector and of the second.
     fn hessian_products<const C: usize>(
@@ -41,25 +41,25 @@ impl<T: Real, const NV: usize> Curvature<T, NV> {
     pub(super) fn add_to<const NU: usize>(
         &self,
         sum: &mut InputSecondOrder<T, NV, NU>,
-        first: &Sensitive<T, NV, NU>,
-        second: &Sensitive<T, NV, NU>,
+        first: &VectorWithDerivatives<T, NV, NU>,
+        second: &VectorWithDerivatives<T, NV, NU>,
     ) {
         let turned = [&first.by_q, &second.by_q, &first.by_v, &second.by_v].map(transposed);
         let [first_q, second_q, first_v, second_v] = &turned;
         let (a, b) = self.hessian_products(&first.by_q, &second.by_q);
-        add_both(&mut sum.0, (first_q, &a), (second_q, &b));
+        add_two_products(&mut sum.0, (first_q, &a), (second_q, &b));
         let (a, b) = self.hessian_products(&first.by_v, &second.by_v);
-        add_both(&mut sum.1, (first_q, &a), (second_q, &b));
-        add_both(&mut sum.2, (first_v, &a), (second_v, &b));
+        add_two_products(&mut sum.1, (first_q, &a), (second_q, &b));
+        add_two_products(&mut sum.2, (first_v, &a), (second_v, &b));
         let (a, b) = self.hessian_products(&first.by_u, &second.by_u);
-        add_both(&mut sum.3, (first_q, &a), (second_q, &b));
-        add_both(&mut sum.4, (first_v, &a), (second_v, &b));
-        add_both(&mut sum.5, (&transposed(&first.by_u), &a), (&transposed(&second.by_u), &b));
+        add_two_products(&mut sum.3, (first_q, &a), (second_q, &b));
+        add_two_products(&mut sum.4, (first_v, &a), (second_v, &b));
+        add_two_products(&mut sum.5, (&transposed(&first.by_u), &a), (&transposed(&second.by_u), &b));
     }
 }
 
 /// Adds two products, `a b + c d`, to `sum`.
-fn add_both<T: Real, const R: usize, const K: usize, const C: usize>(
+fn add_two_products<T: Real, const R: usize, const K: usize, const C: usize>(
     sum: &mut SMatrix<T, R, C>,
     (a, b): (&SMatrix<T, R, K>, &SMatrix<T, K, C>),
     (c, d): (&SMatrix<T, R, K>, &SMatrix<T, K, C>),
@@ -70,15 +70,15 @@ fn add_both<T: Real, const R: usize, const K: usize, const C: usize>(
 
 /// Displacement of a configuration to second order. A change `δq` of the start and a change of `dv` move the
 /// end of `q ⊕ dv` by `ξ`: it becomes `q ⊕ dv ⊕ ξ`.
-pub(super) struct Displacement<T, const NV: usize> {
+pub(super) struct SecondOrderDisplacement<T, const NV: usize> {
     /// Derivative of the displacement `ξ` of the end with respect to the displacement `δq` of the start.
-    pub(super) by_q: Square<T, NV>,
+    pub(super) by_q: SquareMatrix<T, NV>,
     /// Derivative of the displacement `ξ` of the end with respect to `dv`.
-    pub(super) by_dv: Square<T, NV>,
+    pub(super) by_dv: SquareMatrix<T, NV>,
     dv: SVector<T, NV>,
 }
 
-impl<T: Real, const NV: usize> Displacement<T, NV> {
+impl<T: Real, const NV: usize> SecondOrderDisplacement<T, NV> {
     pub(super) fn new<M, const NQ: usize, const NU: usize>(m: &M, dv: &SVector<T, NV>) -> Self
     where
         M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
@@ -98,7 +98,7 @@ impl<T: Real, const NV: usize> Displacement<T, NV> {
         &self,
         m: &M,
         lambda: &SVector<T, NV>,
-    ) -> Curvature<T, NV>
+    ) -> SecondDerivativesOfTwo<T, NV>
     where
         M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
@@ -110,7 +110,7 @@ impl<T: Real, const NV: usize> Displacement<T, NV> {
         let bent = product(&inverse, &self.by_dv);
         let mut second = transposed(&bent);
         add_multiple(&mut second, T::one(), &bent);
-        Curvature {
+        SecondDerivativesOfTwo {
             first: None,
             mixed: product(&transposed(&self.by_q), &product(&bracket, &self.by_dv)),
             second: Some(second * constant::<T>(-0.5)),

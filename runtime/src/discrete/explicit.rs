@@ -12,14 +12,14 @@ use nalgebra::{SMatrix, SVector};
 /// Vector of the tangent space with its derivatives with respect to the state at the start of a step and to
 /// the inputs.
 #[derive(Clone, Copy)]
-pub(crate) struct Sensitive<T, const NV: usize, const NU: usize> {
+pub(crate) struct VectorWithDerivatives<T, const NV: usize, const NU: usize> {
     pub(crate) value: SVector<T, NV>,
     pub(crate) by_q: SMatrix<T, NV, NV>,
     pub(crate) by_v: SMatrix<T, NV, NV>,
     pub(crate) by_u: SMatrix<T, NV, NU>,
 }
 
-impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
+impl<T: Real, const NV: usize, const NU: usize> VectorWithDerivatives<T, NV, NU> {
     /// Returns the velocity at the start of the step, with its derivatives: the identity with respect to
     /// itself, otherwise zero.
     pub(crate) fn start_velocity(v: &SVector<T, NV>) -> Self {
@@ -77,14 +77,14 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
 }
 
 /// Start of a step: mechanism, time, configuration and inputs.
-pub(crate) struct Start<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
+pub(crate) struct DifferentiatedStart<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
     pub(crate) mechanism: &'a M,
     pub(crate) t: T,
     pub(crate) q: &'a SVector<T, NQ>,
     pub(crate) u: &'a SVector<T, NU>,
 }
 
-impl<M, T, const NQ: usize, const NV: usize, const NU: usize> Start<'_, M, T, NQ, NV, NU>
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize> DifferentiatedStart<'_, M, T, NQ, NV, NU>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
@@ -93,16 +93,16 @@ where
     /// derivatives with respect to the start and the inputs.
     pub(crate) fn displace_configuration(
         &self,
-        displacement: &Sensitive<T, NV, NU>,
-    ) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
+        displacement: &VectorWithDerivatives<T, NV, NU>,
+    ) -> (SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>) {
         let q = self.mechanism.integrate(self.q, &displacement.value);
         if self.mechanism.features().is_plain() {
             // In coordinates that are a vector space, displacements are added.
             let by_q = displacement.by_q + SMatrix::<T, NV, NV>::identity();
-            return (q, Sensitive { by_q, ..*displacement });
+            return (q, VectorWithDerivatives { by_q, ..*displacement });
         }
         let (by_q, by_dv) = self.mechanism.integrate_derivatives_at(self.q, &displacement.value);
-        let mut motion = Sensitive {
+        let mut motion = VectorWithDerivatives {
             value: displacement.value,
             by_q,
             by_v: product(&by_dv, &displacement.by_v),
@@ -117,11 +117,12 @@ where
     pub(crate) fn acceleration_after(
         &self,
         h: T,
-        (q, motion): &(SVector<T, NQ>, Sensitive<T, NV, NU>),
-        v: &Sensitive<T, NV, NU>,
-    ) -> Sensitive<T, NV, NU> {
+        (q, motion): &(SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>),
+        v: &VectorWithDerivatives<T, NV, NU>,
+    ) -> VectorWithDerivatives<T, NV, NU> {
         let own = self.acceleration_in_state(h, (q, &v.value));
-        let mut found = Sensitive::compose_derivatives(own.value, (&own.by_q, motion), (&own.by_v, v));
+        let mut found =
+            VectorWithDerivatives::compose_derivatives(own.value, (&own.by_q, motion), (&own.by_v, v));
         add_multiple(&mut found.by_u, T::one(), &own.by_u);
         found
     }
@@ -132,9 +133,9 @@ where
         &self,
         h: T,
         state: (&SVector<T, NQ>, &SVector<T, NV>),
-    ) -> Sensitive<T, NV, NU> {
-        let mut found = Sensitive { value: zeros(), by_q: zeros(), by_v: zeros(), by_u: zeros() };
-        let Sensitive { value, by_q, by_v, by_u } = &mut found;
+    ) -> VectorWithDerivatives<T, NV, NU> {
+        let mut found = VectorWithDerivatives { value: zeros(), by_q: zeros(), by_v: zeros(), by_u: zeros() };
+        let VectorWithDerivatives { value, by_q, by_v, by_u } = &mut found;
         *value = accelerated_into(self.mechanism, self.t + h, state, self.u, (by_q, by_v, by_u));
         found
     }
@@ -142,15 +143,15 @@ where
     /// Returns the state after a step with a given displacement and final velocity.
     pub(crate) fn end_of_step(
         &self,
-        displacement: &Sensitive<T, NV, NU>,
-        v: &Sensitive<T, NV, NU>,
+        displacement: &VectorWithDerivatives<T, NV, NU>,
+        v: &VectorWithDerivatives<T, NV, NU>,
     ) -> Transition<T, NQ, NV, NU> {
         Transition::from_sensitive(&self.displace_configuration(displacement), v)
     }
 
     /// Returns the configuration at the start; its derivative with respect to itself is the identity.
-    pub(crate) fn start_configuration(&self) -> (SVector<T, NQ>, Sensitive<T, NV, NU>) {
-        (*self.q, Sensitive::zero_displacement())
+    pub(crate) fn start_configuration(&self) -> (SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>) {
+        (*self.q, VectorWithDerivatives::zero_displacement())
     }
 }
 
@@ -217,7 +218,7 @@ fn complete_step_by_chain_rule<M, T, const NQ: usize, const NV: usize, const NU:
 impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
     const IN_MOMENTA: [bool; 2] = [false, true];
 
-    fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
+    fn differentiate_step<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
         t: T,
@@ -245,7 +246,7 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        let h = self.length();
+        let h = self.nominal_step_length();
         let Transition { v_by_q, v_by_v, v_by_u, .. } = &mut *step;
         (*v_by_q, *v_by_v) = (zeros(), zeros());
         let acceleration = accelerated_into(mechanism, t, (q, v), u, (v_by_q, v_by_v, v_by_u));
@@ -281,7 +282,7 @@ impl<T: Real> DifferentiableStep<T> for SemiImplicitEuler<T> {
 impl<T: Real> DifferentiableStep<T> for Rk4<T> {
     const IN_MOMENTA: [bool; 2] = [false; 2];
 
-    fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
+    fn differentiate_step<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
         t: T,
@@ -292,23 +293,27 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        let (h, start) = (self.length(), Start { mechanism, t, q, u });
+        let (h, start) = (self.nominal_step_length(), DifferentiatedStart { mechanism, t, q, u });
         if mechanism.features().is_plain() {
-            return Ok(plain::runge_kutta(&start, v, h));
+            return Ok(plain::runge_kutta_transition(&start, v, h));
         }
-        let v = Sensitive::start_velocity(v);
-        let stage_derivatives =
-            |h: T, (rate, acceleration): &(Sensitive<T, NV, NU>, Sensitive<T, NV, NU>)| {
-                let (displacement, v) = (rate.scaled_derivatives(h), v.plus_scaled(h, acceleration));
-                let (by_q, by_dv, by_v) =
-                    mechanism.displacement_rate_derivatives(q, &displacement.value, &v.value);
-                let value = mechanism.displacement_rate(q, &displacement.value, &v.value);
-                let mut rate = Sensitive::compose_derivatives(value, (&by_dv, &displacement), (&by_v, &v));
-                if mechanism.features().speeds {
-                    rate.by_q += by_q;
-                }
-                (rate, start.acceleration_after(h, &start.displace_configuration(&displacement), &v))
-            };
+        let v = VectorWithDerivatives::start_velocity(v);
+        let stage_derivatives = |h: T,
+                                 (rate, acceleration): &(
+            VectorWithDerivatives<T, NV, NU>,
+            VectorWithDerivatives<T, NV, NU>,
+        )| {
+            let (displacement, v) = (rate.scaled_derivatives(h), v.plus_scaled(h, acceleration));
+            let (by_q, by_dv, by_v) =
+                mechanism.displacement_rate_derivatives(q, &displacement.value, &v.value);
+            let value = mechanism.displacement_rate(q, &displacement.value, &v.value);
+            let mut rate =
+                VectorWithDerivatives::compose_derivatives(value, (&by_dv, &displacement), (&by_v, &v));
+            if mechanism.features().speeds {
+                rate.by_q += by_q;
+            }
+            (rate, start.acceleration_after(h, &start.displace_configuration(&displacement), &v))
+        };
         let half = h * constant(0.5);
         let k1 = (v, start.acceleration_after(T::zero(), &start.start_configuration(), &v));
         let k2 = stage_derivatives(half, &k1);
@@ -347,6 +352,10 @@ impl<T: Real> DifferentiableStep<T> for Rk4<T> {
     where
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        projected::project_step(mechanism, t + self.length(), self.differentiate(mechanism, t, q, v, u)?)
+        projected::project_step(
+            mechanism,
+            t + self.nominal_step_length(),
+            self.differentiate_step(mechanism, t, q, v, u)?,
+        )
     }
 }

@@ -6,13 +6,13 @@
 //! velocities enforced at the midpoint, and the rates of all constraints enforced at the end
 //! ([`ImplicitMidpoint`](crate::integrate::ImplicitMidpoint)).
 
-use super::projected::Corrections;
+use super::projected::StepCorrections;
 use super::{DifferentiableStep, Transition, state_after_step};
-use crate::constraint::{ConstrainedDerivatives, column_or_zeros, each_column, multipliers_of_forces};
+use crate::constraint::{ConstrainedDerivatives, column_or_zeros, matrix_of_columns, multipliers_of_forces};
 use crate::derivatives::{ByMotion, Derivatives};
 use crate::integrate::{Error, ImplicitMidpoint, SemiImplicitEuler};
 use crate::private::{constant, epsilon};
-use crate::speeds::{at_midpoint, reached_configurations, way_of};
+use crate::speeds::{displacement_of_mechanism, midpoint_velocity, reached_configurations};
 use crate::{Real, at};
 use nalgebra::{SMatrix, SVector};
 
@@ -70,9 +70,9 @@ where
     (by_q - m.momentum_rate_derivatives(t, q, &SVector::zeros()).0, by_v, SMatrix::zeros())
 }
 
-/// Completed step: the state before it, its period, the velocity of its midpoint, and the derivatives of the
-/// momentum's rate at the midpoint and of the momentum at the start.
-struct Made<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
+/// Data of a completed implicit step: the state before it, its period, the velocity of its midpoint, and the
+/// derivatives of the momentum's rate at the midpoint and of the momentum at the start.
+struct ImplicitStepData<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
     m: &'a M,
     t: T,
     h: T,
@@ -91,48 +91,56 @@ struct Made<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> {
 }
 
 /// Linear solutions of the equations of the midpoint and of the end for given perturbations.
-trait Answer<T, const NV: usize> {
+trait StepPerturbationSolver<T, const NV: usize> {
     /// Returns the change of the midpoint's velocity due to forces and to the configuration at the start.
-    fn middle<const C: usize>(
+    fn midpoint_velocity_change<const C: usize>(
         &self,
         force: &SMatrix<T, NV, C>,
         by_q: &SMatrix<T, NV, C>,
     ) -> SMatrix<T, NV, C>;
     /// Returns the change of the velocity at the end due to momenta and to the configuration at the end.
-    fn end<const C: usize>(&self, p: &SMatrix<T, NV, C>, by_q: &SMatrix<T, NV, C>) -> SMatrix<T, NV, C>;
+    fn end_velocity_change<const C: usize>(
+        &self,
+        p: &SMatrix<T, NV, C>,
+        by_q: &SMatrix<T, NV, C>,
+    ) -> SMatrix<T, NV, C>;
 }
 
 /// Linear solver for perturbations of an implicit step, for mechanisms without constraints.
-struct Free<T, const NV: usize> {
+struct UnconstrainedSolver<T, const NV: usize> {
     matrix: SMatrix<T, NV, NV>,
     mass: SMatrix<T, NV, NV>,
     momentum_by_q: SMatrix<T, NV, NV>,
 }
 
-impl<T: Real, const NV: usize> Answer<T, NV> for Free<T, NV> {
-    fn middle<const C: usize>(
+impl<T: Real, const NV: usize> StepPerturbationSolver<T, NV> for UnconstrainedSolver<T, NV> {
+    fn midpoint_velocity_change<const C: usize>(
         &self,
         force: &SMatrix<T, NV, C>,
         _by_q: &SMatrix<T, NV, C>,
     ) -> SMatrix<T, NV, C> {
-        eliminated(self.matrix, *force)
+        eliminate_with_pivoting(self.matrix, *force)
     }
 
-    fn end<const C: usize>(&self, p: &SMatrix<T, NV, C>, by_q: &SMatrix<T, NV, C>) -> SMatrix<T, NV, C> {
-        eliminated(self.mass, p - self.momentum_by_q * by_q)
+    fn end_velocity_change<const C: usize>(
+        &self,
+        p: &SMatrix<T, NV, C>,
+        by_q: &SMatrix<T, NV, C>,
+    ) -> SMatrix<T, NV, C> {
+        eliminate_with_pivoting(self.mass, p - self.momentum_by_q * by_q)
     }
 }
 
 /// Linear solver for perturbations of an implicit step, for mechanisms with constraints.
-struct Held<'a, M, T, const NQ: usize, const NV: usize, const NC: usize> {
+struct ConstrainedSolver<'a, M, T, const NQ: usize, const NV: usize, const NC: usize> {
     m: &'a M,
     matrix: SMatrix<T, NV, NV>,
     /// Derivatives of the midpoint's velocity with respect to constraint impulses at the start.
     pushed: SMatrix<T, NV, NC>,
     /// Derivatives of the constraint impulses at the start with respect to the configuration.
     pushes_by_q: SMatrix<T, NV, NV>,
-    /// Derivatives of the step's constraints with respect to the velocity of the midpoint and to the
-    /// configuration at the start.
+    /// Derivatives of the constraints that the step enforces, with respect to the velocity of the midpoint
+    /// and to the configuration at the start.
     by_w: SMatrix<T, NC, NV>,
     by_q: SMatrix<T, NC, NV>,
     /// Time and configuration of the end, and the derivatives with respect to that configuration of the
@@ -143,8 +151,8 @@ struct Held<'a, M, T, const NQ: usize, const NV: usize, const NC: usize> {
     rates_by_q: SMatrix<T, NC, NV>,
 }
 
-/// [`Held`] with the const parameters of its mechanism's traits.
-struct Numbered<
+/// Linear solver [`Held`] with the number of constraints as const parameter.
+struct NumberedConstrainedSolver<
     'a,
     'b,
     M,
@@ -154,29 +162,33 @@ struct Numbered<
     const NU: usize,
     const NH: usize,
     const NC: usize,
->(&'b Held<'a, M, T, NQ, NV, NC>);
+>(&'b ConstrainedSolver<'a, M, T, NQ, NV, NC>);
 
-impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize> Answer<T, NV>
-    for Numbered<'_, '_, M, T, NQ, NV, NU, NH, NC>
+impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
+    StepPerturbationSolver<T, NV> for NumberedConstrainedSolver<'_, '_, M, T, NQ, NV, NU, NH, NC>
 where
     T: Real,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
-    fn middle<const C: usize>(
+    fn midpoint_velocity_change<const C: usize>(
         &self,
         force: &SMatrix<T, NV, C>,
         by_q: &SMatrix<T, NV, C>,
     ) -> SMatrix<T, NV, C> {
         let held = self.0;
-        let free = eliminated(held.matrix, force + held.pushes_by_q * by_q);
+        let free = eliminate_with_pivoting(held.matrix, force + held.pushes_by_q * by_q);
         let lacking = held.by_q * by_q + held.by_w * free;
-        free - held.pushed * eliminated(held.by_w * held.pushed, lacking)
+        free - held.pushed * eliminate_with_pivoting(held.by_w * held.pushed, lacking)
     }
 
-    fn end<const C: usize>(&self, p: &SMatrix<T, NV, C>, by_q: &SMatrix<T, NV, C>) -> SMatrix<T, NV, C> {
+    fn end_velocity_change<const C: usize>(
+        &self,
+        p: &SMatrix<T, NV, C>,
+        by_q: &SMatrix<T, NV, C>,
+    ) -> SMatrix<T, NV, C> {
         let held = self.0;
         let (forces, gaps) = (p - held.balance_by_q * by_q, held.rates_by_q * by_q);
-        each_column(|j| {
+        matrix_of_columns(|j| {
             held.m.constraint_response(
                 held.t,
                 held.end,
@@ -187,19 +199,19 @@ where
     }
 }
 
-impl<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> Made<'a, M, T, NQ, NV, NU>
+impl<'a, M, T, const NQ: usize, const NV: usize, const NU: usize> ImplicitStepData<'a, M, T, NQ, NV, NU>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
-    fn half_step(&self) -> T {
+    fn half_step_length(&self) -> T {
         self.h * constant(0.5)
     }
 
     /// Returns the derivative of the residual of the midpoint's equation with respect to the midpoint's
     /// velocity.
     fn residual_derivative(&self) -> SMatrix<T, NV, NV> {
-        let half = self.half_step();
+        let half = self.half_step_length();
         let (by_q, by_v) = momentum_derivatives(self.m, self.t + half, &self.middle, &self.w);
         let moves = self.led[0].1;
         by_v - self.rate.1 * half + (by_q - self.rate.0 * half) * moves * half
@@ -209,24 +221,24 @@ where
     /// before it, of the momentum at the start and of the momentum's rate.
     fn changes_after_step<const C: usize>(
         &self,
-        answer: &impl Answer<T, NV>,
+        answer: &impl StepPerturbationSolver<T, NV>,
         by_q: &SMatrix<T, NV, C>,
         start: &SMatrix<T, NV, C>,
         rate: &SMatrix<T, NV, C>,
     ) -> (SMatrix<T, NV, C>, SMatrix<T, NV, C>) {
-        let half = self.half_step();
+        let half = self.half_step_length();
         let (p_by_q, mass) = momentum_derivatives(self.m, self.t + half, &self.middle, &self.w);
         let [(turned, moves), end] = self.led;
         let force = start + rate * half - (p_by_q - self.rate.0 * half) * turned * by_q;
-        let w = answer.middle(&force, by_q);
+        let w = answer.midpoint_velocity_change(&force, by_q);
         let middle = turned * by_q + moves * w * half;
         let p = (p_by_q + self.rate.0 * half) * middle + (mass + self.rate.1 * half) * w + rate * half;
         let (turned, moves) = end;
         let end = turned * by_q + moves * w * self.h;
-        (end, answer.end(&p, &end))
+        (end, answer.end_velocity_change(&p, &end))
     }
 
-    fn transition_of_step(&self, answer: &impl Answer<T, NV>) -> Transition<T, NQ, NV, NU> {
+    fn transition_of_step(&self, answer: &impl StepPerturbationSolver<T, NV>) -> Transition<T, NQ, NV, NU> {
         let none = SMatrix::zeros();
         let (q_by_q, v_by_q) = self.changes_after_step(answer, &SMatrix::identity(), &self.start.0, &none);
         let (q_by_v, v_by_v) = self.changes_after_step(answer, &none, &self.start.1, &none);
@@ -239,7 +251,11 @@ where
     fn transition_without_constraints(&self) -> Transition<T, NQ, NV, NU> {
         let (q, v) = &self.end;
         let (momentum_by_q, mass) = momentum_derivatives(self.m, self.t + self.h, q, v);
-        self.transition_of_step(&Free { matrix: self.residual_derivative(), mass, momentum_by_q })
+        self.transition_of_step(&UnconstrainedSolver {
+            matrix: self.residual_derivative(),
+            mass,
+            momentum_by_q,
+        })
     }
 
     fn constrained_transition<const NH: usize, const NC: usize>(
@@ -249,10 +265,10 @@ where
     where
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        let (m, t, h, half, still) = (self.m, self.t, self.h, self.half_step(), SVector::zeros());
+        let (m, t, h, half, still) = (self.m, self.t, self.h, self.half_step_length(), SVector::zeros());
         let (middle, (end, after)) = (self.middle, &self.end);
-        m.check_regular(t, self.q)?;
-        m.check_regular(t + h, end)?;
+        m.check_full_rank(t, self.q)?;
+        m.check_full_rank(t + h, end)?;
         let matrix = self.residual_derivative();
         let own = m.generalized_momentum(t + half, &middle, &self.w);
         let lambda = multipliers_of_forces(m, t, self.q, &(own - self.kick - gain));
@@ -274,26 +290,27 @@ where
         }
         let p = own + gain;
         let mu = multipliers_of_forces(m, t + h, end, &(m.generalized_momentum(t + h, end, after) - p));
-        let held = Held {
+        let held = ConstrainedSolver {
             m,
             matrix,
-            pushed: eliminated(matrix, jacobian.transpose()),
-            pushes_by_q: -m.balance(t, self.q, &still, &lambda).0,
+            pushed: eliminate_with_pivoting(matrix, jacobian.transpose()),
+            pushes_by_q: -m.balance_derivatives(t, self.q, &still, &lambda).0,
             by_w,
             by_q,
             t: t + h,
             end,
-            balance_by_q: momentum_derivatives(m, t + h, end, after).0 + m.balance(t + h, end, &still, &mu).0,
+            balance_by_q: momentum_derivatives(m, t + h, end, after).0
+                + m.balance_derivatives(t + h, end, &still, &mu).0,
             rates_by_q: m.equation_derivatives(t + h, end, after, &still, &SVector::zeros()).rates_by_q,
         };
-        Ok(self.transition_of_step(&Numbered::<M, T, NQ, NV, NU, NH, NC>(&held)))
+        Ok(self.transition_of_step(&NumberedConstrainedSolver::<M, T, NQ, NV, NU, NH, NC>(&held)))
     }
 }
 
 impl<T: Real> DifferentiableStep<T> for ImplicitMidpoint<T> {
     const IN_MOMENTA: [bool; 2] = [true; 2];
 
-    fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
+    fn differentiate_step<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         m: &M,
         t: T,
@@ -326,9 +343,9 @@ impl<T: Real> DifferentiableStep<T> for ImplicitMidpoint<T> {
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
         let made = self.prepare_step(m, t, q, v, u)?;
-        let (now, middle) = (t + made.half_step(), made.middle);
+        let (now, middle) = (t + made.half_step_length(), made.middle);
         let force = m.momentum_rate(now, &middle, &made.w) + m.generalized_forces(now, &middle, &made.w, u);
-        made.constrained_transition(&(force * made.half_step()))
+        made.constrained_transition(&(force * made.half_step_length()))
     }
 }
 
@@ -340,17 +357,17 @@ impl<T: Real> ImplicitMidpoint<T> {
         q: &'a SVector<T, NQ>,
         v: &SVector<T, NV>,
         u: &SVector<T, NU>,
-    ) -> Result<Made<'a, M, T, NQ, NV, NU>, Error>
+    ) -> Result<ImplicitStepData<'a, M, T, NQ, NV, NU>, Error>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        let h = self.length();
+        let h = self.nominal_step_length();
         let (end, mean) = state_after_step(m, self, t, q, v, u, h)?;
         let half = h * constant(0.5);
-        let w = at_midpoint(m, q, mean, half);
+        let w = midpoint_velocity(m, q, mean, half);
         let (by_q, by_v) = momentum_derivatives(m, t, q, v);
-        let middle = m.integrate(q, &way_of(m, q, &w, half));
-        Ok(Made {
+        let middle = m.integrate(q, &displacement_of_mechanism(m, q, &w, half));
+        Ok(ImplicitStepData {
             led: reached_configurations(m, q, &w, half),
             middle,
             m,
@@ -388,16 +405,16 @@ where
     T: Real,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
-    let (h, still) = (method.length(), SVector::zeros());
+    let (h, still) = (method.nominal_step_length(), SVector::zeros());
     let (end, mean) = state_after_step(m, method, t, q, v, u, h)?;
     let half = h * constant(0.5);
-    let w = at_midpoint(m, q, mean, half);
+    let w = midpoint_velocity(m, q, mean, half);
     let (by_q, by_v) = momentum_derivatives(m, t, q, v);
     let (force_by_q, force_by_v, force_by_u) = m.generalized_forces_derivatives(t, q, v, u);
     let rest_by_q = m.momentum_rate_derivatives(t, q, &still).0;
-    let middle = m.integrate(q, &way_of(m, q, &w, half));
+    let middle = m.integrate(q, &displacement_of_mechanism(m, q, &w, half));
     let force = m.momentum_rate(t, q, &still) + m.generalized_forces(t, q, v, u);
-    let made = Made {
+    let made = ImplicitStepData {
         led: reached_configurations(m, q, &w, half),
         middle,
         m,
@@ -417,7 +434,7 @@ where
 
 /// Solves `m x = b` by Gaussian elimination with complete pivoting. Unknowns whose pivots are below rounding
 /// error are set to zero.
-pub fn eliminated<T: Real, const N: usize, const C: usize>(
+pub fn eliminate_with_pivoting<T: Real, const N: usize, const C: usize>(
     mut m: SMatrix<T, N, N>,
     mut b: SMatrix<T, N, C>,
 ) -> SMatrix<T, N, C> {

@@ -95,12 +95,12 @@ pub trait StepByParameters<T: Real>: FixedStep<T> {
 
 /// Vector of the tangent space with its derivatives with respect to the parameters.
 #[derive(Clone, Copy)]
-struct Changing<T, const NV: usize, const NP: usize> {
+struct ParameterSensitive<T, const NV: usize, const NP: usize> {
     value: SVector<T, NV>,
     by: SMatrix<T, NV, NP>,
 }
 
-impl<T: Real, const NV: usize, const NP: usize> Changing<T, NV, NP> {
+impl<T: Real, const NV: usize, const NP: usize> ParameterSensitive<T, NV, NP> {
     fn parameter_independent(value: &SVector<T, NV>) -> Self {
         Self { value: *value, by: SMatrix::zeros() }
     }
@@ -115,15 +115,15 @@ impl<T: Real, const NV: usize, const NP: usize> Changing<T, NV, NP> {
     }
 }
 
-/// Returns the acceleration at a stage of a step that starts with `q` at time `t`: after `h` seconds, for a
-/// displacement and a velocity.
+/// Returns the acceleration with its parameter derivatives at a stage of a step: `h` seconds after the start
+/// at time `t` with the configuration `q`, for a displacement and a velocity.
 fn acceleration_at_stage<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
     m: &M,
     t: T,
-    (q, displacement): (&SVector<T, NQ>, &Changing<T, NV, NP>),
-    v: &Changing<T, NV, NP>,
+    (q, displacement): (&SVector<T, NQ>, &ParameterSensitive<T, NV, NP>),
+    v: &ParameterSensitive<T, NV, NP>,
     u: &SVector<T, NU>,
-) -> Changing<T, NV, NP>
+) -> ParameterSensitive<T, NV, NP>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
@@ -140,14 +140,14 @@ where
     }
     add_product(&mut by, &motion.by_q, &derivatives);
     add_product(&mut by, &motion.by_v, &v.by);
-    Changing { value: motion.acceleration, by }
+    ParameterSensitive { value: motion.acceleration, by }
 }
 
-/// Returns the derivatives of the configuration after a displacement.
+/// Returns the derivatives of the configuration after a displacement with respect to the parameters.
 fn configuration_derivatives<M, T, const NQ: usize, const NV: usize, const NU: usize, const NP: usize>(
     m: &M,
     q: &SVector<T, NQ>,
-    displacement: &Changing<T, NV, NP>,
+    displacement: &ParameterSensitive<T, NV, NP>,
 ) -> SMatrix<T, NV, NP>
 where
     T: Real,
@@ -171,10 +171,16 @@ impl<T: Real> StepByParameters<T> for SemiImplicitEuler<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
     {
-        let (h, v) = (self.length(), Changing::parameter_independent(v));
+        let (h, v) = (self.nominal_step_length(), ParameterSensitive::parameter_independent(v));
         let after = v.plus_scaled(
             h,
-            &acceleration_at_stage(m, t, (q, &Changing::parameter_independent(&SVector::zeros())), &v, u),
+            &acceleration_at_stage(
+                m,
+                t,
+                (q, &ParameterSensitive::parameter_independent(&SVector::zeros())),
+                &v,
+                u,
+            ),
         );
         (configuration_derivatives(m, q, &after.scaled_derivatives(h)), after.by)
     }
@@ -191,18 +197,30 @@ impl<T: Real> StepByParameters<T> for Rk4<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T> + Sensitivities<NQ, NV, NU, NP, Scalar = T>,
     {
-        let (h, v) = (self.length(), Changing::parameter_independent(v));
+        let (h, v) = (self.nominal_step_length(), ParameterSensitive::parameter_independent(v));
         let half = h * constant(0.5);
-        let stage_derivatives = |after: T, (rate, change): &(Changing<T, NV, NP>, Changing<T, NV, NP>)| {
+        let stage_derivatives = |after: T,
+                                 (rate, change): &(
+            ParameterSensitive<T, NV, NP>,
+            ParameterSensitive<T, NV, NP>,
+        )| {
             let (displacement, v) = (rate.scaled_derivatives(after), v.plus_scaled(after, change));
             let (_, by_dv, by_v) = m.displacement_rate_derivatives(q, &displacement.value, &v.value);
             let value = m.displacement_rate(q, &displacement.value, &v.value);
             let mut by = product(&by_v, &v.by);
             add_product(&mut by, &by_dv, &displacement.by);
-            (Changing { value, by }, acceleration_at_stage(m, t + after, (q, &displacement), &v, u))
+            (ParameterSensitive { value, by }, acceleration_at_stage(m, t + after, (q, &displacement), &v, u))
         };
-        let k1 =
-            (v, acceleration_at_stage(m, t, (q, &Changing::parameter_independent(&SVector::zeros())), &v, u));
+        let k1 = (
+            v,
+            acceleration_at_stage(
+                m,
+                t,
+                (q, &ParameterSensitive::parameter_independent(&SVector::zeros())),
+                &v,
+                u,
+            ),
+        );
         let k2 = stage_derivatives(half, &k1);
         let k3 = stage_derivatives(half, &k2);
         let k4 = stage_derivatives(h, &k3);

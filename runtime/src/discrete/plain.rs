@@ -8,19 +8,19 @@
 //! with such derivatives.
 
 use super::Transition;
-use super::explicit::{Sensitive, Start};
+use super::explicit::{DifferentiatedStart, VectorWithDerivatives};
 use crate::Real;
 use crate::blocks::{add_multiple, add_product, combined};
 use crate::derivatives::Derivatives;
 use crate::private::constant;
 use nalgebra::{SMatrix, SVector};
 
-/// Coefficient and acceleration (with derivatives) of an earlier Runge–Kutta stage.
-type Part<'a, T, const NV: usize, const NU: usize> = (T, &'a Sensitive<T, NV, NU>);
+/// Coefficient and acceleration of an earlier Runge–Kutta stage. The acceleration has derivatives.
+type EarlierStage<'a, T, const NV: usize, const NU: usize> = (T, &'a VectorWithDerivatives<T, NV, NU>);
 
-impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
+impl<T: Real, const NV: usize, const NU: usize> VectorWithDerivatives<T, NV, NU> {
     /// Adds a matrix times the derivatives of another vector.
-    fn add_led(&mut self, by: &SMatrix<T, NV, NV>, other: &Self) {
+    fn add_matrix_product(&mut self, by: &SMatrix<T, NV, NV>, other: &Self) {
         add_product(&mut self.by_q, by, &other.by_q);
         add_product(&mut self.by_v, by, &other.by_v);
         add_product(&mut self.by_u, by, &other.by_u);
@@ -31,12 +31,12 @@ impl<T: Real, const NV: usize, const NU: usize> Sensitive<T, NV, NU> {
 /// Multiples of the earlier accelerations `near` and `far` are added to the velocity and to the displacement
 /// of the stage.
 fn acceleration_stage<M, T, const NQ: usize, const NV: usize, const NU: usize>(
-    start: &Start<'_, M, T, NQ, NV, NU>,
+    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
     v: &SVector<T, NV>,
     after: T,
-    near: Option<Part<'_, T, NV, NU>>,
-    far: Option<Part<'_, T, NV, NU>>,
-) -> Sensitive<T, NV, NU>
+    near: Option<EarlierStage<'_, T, NV, NU>>,
+    far: Option<EarlierStage<'_, T, NV, NU>>,
+) -> VectorWithDerivatives<T, NV, NU>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
@@ -58,15 +58,15 @@ where
     add_multiple(&mut found.by_v, after, &by_q);
     for (by, part) in parts.iter().zip([near, far]) {
         if let (Some(by), Some((_, part))) = (by, part) {
-            found.add_led(by, part);
+            found.add_matrix_product(by, part);
         }
     }
     found
 }
 
-/// Returns the step of `h` seconds from a start with the velocity `v`.
-pub(super) fn runge_kutta<M, T, const NQ: usize, const NV: usize, const NU: usize>(
-    start: &Start<'_, M, T, NQ, NV, NU>,
+/// Returns the Runge–Kutta step of `h` seconds from a start with the velocity `v`, with its Jacobians.
+pub(super) fn runge_kutta_transition<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
     v: &SVector<T, NV>,
     h: T,
 ) -> Transition<T, NQ, NV, NU>
@@ -101,10 +101,10 @@ where
 /// Returns the weighted sum `s Σ weight · term` of vectors with derivatives.
 fn weighted_sum<T: Real, const NV: usize, const NU: usize, const N: usize>(
     s: T,
-    terms: [(f64, &Sensitive<T, NV, NU>); N],
-) -> Sensitive<T, NV, NU> {
+    terms: [(f64, &VectorWithDerivatives<T, NV, NU>); N],
+) -> VectorWithDerivatives<T, NV, NU> {
     let weights = terms.map(|(weight, _)| s * constant(weight));
-    Sensitive {
+    VectorWithDerivatives {
         value: combined(&weights, terms.map(|(_, k)| &k.value)),
         by_q: combined(&weights, terms.map(|(_, k)| &k.by_q)),
         by_v: combined(&weights, terms.map(|(_, k)| &k.by_v)),

@@ -4,7 +4,7 @@ use super::Transition;
 use crate::Real;
 use crate::blocks::product;
 use crate::constraint::{
-    ConstrainedDerivatives, ConstraintError, EquationDerivatives, column_or_zeros, each_column,
+    ConstrainedDerivatives, ConstraintError, EquationDerivatives, column_or_zeros, matrix_of_columns,
     multipliers_of_forces,
 };
 use crate::integrate::Error;
@@ -16,20 +16,20 @@ use nalgebra::{SMatrix, SVector};
 pub(super) const MOST_CORRECTIONS: usize = 8;
 
 /// First derivatives of a Newton correction `x` of a configuration: `M x = Jᵀ λ`, `J x = −φ`.
-pub(super) struct Correction<T, const NV: usize, const NC: usize> {
+pub(super) struct ConfigurationCorrection<T, const NV: usize, const NC: usize> {
     pub(super) x: SVector<T, NV>,
     /// Multipliers `λ` of the Newton correction of the configuration.
     pub(super) own: SVector<T, NC>,
     /// Derivatives of `M x − Jᵀ λ` with respect to the configuration.
     pub(super) forces: SMatrix<T, NV, NV>,
-    /// Derivatives of the correction with respect to the configuration.
+    /// Derivatives of the Newton correction with respect to the configuration.
     pub(super) change: SMatrix<T, NV, NV>,
     /// Whether the Newton correction is at rounding level, so that the iteration ends.
     pub(super) done: bool,
 }
 
 /// First derivatives of the correction `x` of a velocity: `M x = Jᵀ λ`, `J (v + x) + … = 0`.
-pub(super) struct Stop<T, const NV: usize, const NC: usize> {
+pub(super) struct VelocityCorrection<T, const NV: usize, const NC: usize> {
     /// Multipliers `λ` of the correction of the velocity.
     pub(super) own: SVector<T, NC>,
     /// Derivatives of `M x − Jᵀ λ` with respect to the configuration.
@@ -41,7 +41,7 @@ pub(super) struct Stop<T, const NV: usize, const NC: usize> {
 }
 
 /// Newton corrections that project the end of a step onto the constraints, with their derivatives.
-pub(super) trait Corrections<
+pub(super) trait StepCorrections<
     T: Real,
     const NQ: usize,
     const NV: usize,
@@ -50,8 +50,9 @@ pub(super) trait Corrections<
     const NC: usize,
 >: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T> + Sized
 {
-    /// Returns the derivatives of `M x − Jᵀ λ` and `J x` with respect to the configuration.
-    fn balance(
+    /// Returns the derivatives of the correction equations `M x − Jᵀ λ` and `J x` with respect to the
+    /// configuration.
+    fn balance_derivatives(
         &self,
         t: T,
         q: &SVector<T, NQ>,
@@ -69,58 +70,64 @@ pub(super) trait Corrections<
     /// # Errors
     ///
     /// [`ConstraintError::Singular`] where constraints lose rank.
-    fn check_regular(&self, t: T, q: &SVector<T, NQ>) -> Result<(), Error> {
+    fn check_full_rank(&self, t: T, q: &SVector<T, NQ>) -> Result<(), Error> {
         if self.is_nearly_singular(t, q, &SVector::zeros()) {
             return Err(Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular });
         }
         Ok(())
     }
 
-    /// Returns the correction of a configuration at time `t`.
-    fn correction(&self, t: T, near: &SVector<T, NQ>) -> Correction<T, NV, NC> {
+    /// Returns the Newton correction of a configuration at time `t`, with its derivatives.
+    fn configuration_correction(&self, t: T, near: &SVector<T, NQ>) -> ConfigurationCorrection<T, NV, NC> {
         let residuals = self.constraint_residuals(t, near);
         let gap = SVector::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
         let x = self.constraint_correction(t, near, &gap);
         let done = x.amax() <= constant::<T>(64.0) * epsilon::<T>() * near.amax().max(T::one());
         let own = multipliers_of_forces(self, t, near, &(self.mass_matrix(t, near) * x));
-        let (forces, mut gaps) = self.balance(t, near, &x, &own);
+        let (forces, mut gaps) = self.balance_derivatives(t, near, &x, &own);
         let jacobian = self.constraint_jacobian(t, near);
         for k in 0..NH {
             gaps.set_row(k, &(gaps.row(k) + jacobian.row(k)));
         }
-        let change = each_column(|j| {
+        let change = matrix_of_columns(|j| {
             self.constraint_response(t, near, &-column_or_zeros(&forces, j), &column_or_zeros(&gaps, j))
         });
-        Correction { x, own, forces, change, done }
+        ConfigurationCorrection { x, own, forces, change, done }
     }
 
     /// Returns the derivatives of the velocity correction `x` that results in the velocity `v`.
-    fn stop(&self, t: T, (q, v): (&SVector<T, NQ>, &SVector<T, NV>), x: &SVector<T, NV>) -> Stop<T, NV, NC> {
+    fn velocity_correction(
+        &self,
+        t: T,
+        (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
+        x: &SVector<T, NV>,
+    ) -> VelocityCorrection<T, NV, NC> {
         let own = multipliers_of_forces(self, t, q, &(self.mass_matrix(t, q) * x));
-        let forces = self.balance(t, q, x, &own).0;
+        let forces = self.balance_derivatives(t, q, x, &own).0;
         let (still, none) = (SVector::zeros(), SVector::zeros());
         let rates = self.equation_derivatives(t, q, v, &still, &SVector::zeros()).rates_by_q;
         let jacobian = self.constraint_jacobian(t, q);
-        let turned = each_column(|j| {
+        let turned = matrix_of_columns(|j| {
             self.constraint_response(t, q, &-column_or_zeros(&forces, j), &column_or_zeros(&rates, j))
         });
         let kept: SMatrix<T, NV, NV> = SMatrix::identity()
-            + each_column::<T, NV, NV>(|j| {
+            + matrix_of_columns::<T, NV, NV>(|j| {
                 self.constraint_response(t, q, &none, &column_or_zeros(&jacobian, j))
             });
-        Stop { own, forces, turned, kept }
+        VelocityCorrection { own, forces, turned, kept }
     }
 }
 
 impl<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>
-    Corrections<T, NQ, NV, NU, NH, NC> for M
+    StepCorrections<T, NQ, NV, NU, NH, NC> for M
 where
     T: Real,
     M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
 }
 
-/// Returns a step projected onto the constraints at its end, at time `t`.
+/// Returns the step `free` with its end, at time `t`, projected onto the constraints, including the
+/// derivatives of the projection.
 ///
 /// Newton corrections project the configuration, and one linear correction projects the velocity. Each
 /// correction is differentiated as computed.
@@ -143,11 +150,11 @@ where
 {
     let constraint_error = |reason| Error::Constraint { t: to_f64(t), reason };
     let (q, v) = m.project(t, &free.q, &free.v).map_err(constraint_error)?;
-    m.check_regular(t, &q)?;
+    m.check_full_rank(t, &q)?;
     let mut near = free.q;
     let mut moved = SMatrix::<T, NV, NV>::identity();
     for _ in 0..MOST_CORRECTIONS {
-        let Correction { x, change, done, .. } = m.correction(t, &near);
+        let ConfigurationCorrection { x, change, done, .. } = m.configuration_correction(t, &near);
         let (by_q, by_x) = m.integrate_derivatives_at(&near, &x);
         moved = product(&(by_q + product(&by_x, &change)), &moved);
         near = m.integrate(&near, &x);
@@ -155,7 +162,7 @@ where
             break;
         }
     }
-    let Stop { turned, kept, .. } = m.stop(t, (&q, &v), &(v - free.v));
+    let VelocityCorrection { turned, kept, .. } = m.velocity_correction(t, (&q, &v), &(v - free.v));
     let turned = product(&turned, &moved);
     Ok(Transition {
         q,

@@ -1,7 +1,7 @@
 //! Second derivatives of the projection onto constraints at the end of a step.
 
-use super::curvature::{Curvature, Displacement};
-use super::projected::{Correction, Corrections, MOST_CORRECTIONS, Stop};
+use super::curvature::{SecondDerivativesOfTwo, SecondOrderDisplacement};
+use super::projected::{ConfigurationCorrection, MOST_CORRECTIONS, StepCorrections, VelocityCorrection};
 use crate::Real;
 use crate::blocks::product;
 use crate::constraint::{
@@ -14,17 +14,17 @@ use nalgebra::{SMatrix, SVector};
 
 /// Derivatives of a projection contracted with factors of the projected configuration and velocity, with
 /// respect to the state before the projection.
-pub(super) struct Contraction<T, const NV: usize> {
+pub(super) struct ProjectionContraction<T, const NV: usize> {
     /// Gradient of the contracted projection with respect to the configuration and the velocity before it.
     pub(super) gradient: (SVector<T, NV>, SVector<T, NV>),
     /// Second derivatives of the contracted projection; the block of second derivatives with respect to the
     /// velocity is zero.
-    pub(super) second: Curvature<T, NV>,
+    pub(super) second: SecondDerivativesOfTwo<T, NV>,
 }
 
 /// Equations of a correction `x` with multipliers `λ`, contracted with `w`, `z` and `y`: `wᵀ (M x − Jᵀ λ) +
 /// zᵀ J x + yᵀ (J v + …)`.
-struct Contracted<'a, T, const NV: usize, const NC: usize> {
+struct ContractedCorrection<'a, T, const NV: usize, const NC: usize> {
     x: &'a SVector<T, NV>,
     lambda: &'a SVector<T, NC>,
     w: &'a SVector<T, NV>,
@@ -32,7 +32,7 @@ struct Contracted<'a, T, const NV: usize, const NC: usize> {
     y: &'a SVector<T, NC>,
 }
 
-impl<T: Real, const NV: usize, const NC: usize> Contracted<'_, T, NV, NC> {
+impl<T: Real, const NV: usize, const NC: usize> ContractedCorrection<'_, T, NV, NC> {
     /// Returns the second derivatives of the contracted correction equations: those of the equations of
     /// motion with acceleration `x`, minus those at zero acceleration.
     fn curvature_of_equations<M, const NQ: usize, const NU: usize, const NH: usize>(
@@ -84,11 +84,19 @@ where
 }
 
 /// Returns the second derivatives of `factorsᵀ x` for a correction `x` of the configuration.
-fn of_correction<M, T, const NQ: usize, const NV: usize, const NU: usize, const NH: usize, const NC: usize>(
+fn correction_curvature<
+    M,
+    T,
+    const NQ: usize,
+    const NV: usize,
+    const NU: usize,
+    const NH: usize,
+    const NC: usize,
+>(
     m: &M,
     t: T,
     q: &SVector<T, NQ>,
-    found: &Correction<T, NV, NC>,
+    found: &ConfigurationCorrection<T, NV, NC>,
     factors: &SVector<T, NV>,
 ) -> SMatrix<T, NV, NV>
 where
@@ -96,14 +104,14 @@ where
     M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
     let (w, z) = adjoint_variables(m, t, q, factors);
-    let Correction { x, own, forces, change, .. } = found;
+    let ConfigurationCorrection { x, own, forces, change, .. } = found;
     let (still, none) = (SVector::zeros(), SVector::zeros());
-    let equations =
-        Contracted { x, lambda: own, w: &-w, z: &-z, y: &none }.curvature_of_equations(m, t, q, &still);
+    let equations = ContractedCorrection { x, lambda: own, w: &-w, z: &-z, y: &none }
+        .curvature_of_equations(m, t, q, &still);
     // The second derivatives of the residuals are derivatives of the Jacobian's rows.
-    let of_residual = |k: usize| z.get(k).copied().filter(|_| k < NH).unwrap_or(T::zero());
-    let holonomic = SVector::from_fn(|k, _| of_residual(k));
-    let residuals = m.balance(t, q, &still, &holonomic).0;
+    let residual_factor = |k: usize| z.get(k).copied().filter(|_| k < NH).unwrap_or(T::zero());
+    let holonomic = SVector::from_fn(|k, _| residual_factor(k));
+    let residuals = m.balance_derivatives(t, q, &still, &holonomic).0;
     // Derivatives along body axes are not symmetric, but derivatives along `q ⊕ ε dq` are.
     let residuals = with_transpose(SMatrix::zeros(), &(residuals * constant::<T>(0.5)));
     let multipliers = multiplier_changes(m, t, q, change, forces);
@@ -125,23 +133,24 @@ pub(super) fn curvature_of_projection<
     t: T,
     (q_free, v_free): (&SVector<T, NQ>, &SVector<T, NV>),
     (of_q, of_v): (&SVector<T, NV>, &SVector<T, NV>),
-) -> Result<Contraction<T, NV>, Error>
+) -> Result<ProjectionContraction<T, NV>, Error>
 where
     T: Real,
     M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
 {
     let constraint_error = |reason| Error::Constraint { t: to_f64(t), reason };
     let (q, v) = m.project(t, q_free, v_free).map_err(constraint_error)?;
-    m.check_regular(t, &q)?;
+    m.check_full_rank(t, &q)?;
     // Intermediate configurations of the projection, with their derivatives with respect to the first. In
     // coordinates that are a vector space, the derivative of a displacement is the identity.
-    let displacement_if_on_manifold = |x: &SVector<T, NV>| (NQ != NV).then(|| Displacement::new(m, x));
+    let displacement_if_on_manifold =
+        |x: &SVector<T, NV>| (NQ != NV).then(|| SecondOrderDisplacement::new(m, x));
     let mut way = [(*q_free, SMatrix::zeros()); MOST_CORRECTIONS];
     let (mut near, mut moved, mut count) = (*q_free, SMatrix::<T, NV, NV>::identity(), 0);
     for stage in &mut way {
         *stage = (near, moved);
         count += 1;
-        let found = m.correction(t, &near);
+        let found = m.configuration_correction(t, &near);
         moved = match displacement_if_on_manifold(&found.x) {
             Some(along) => product(&(along.by_q + product(&along.by_dv, &found.change)), &moved),
             None => moved + product(&found.change, &moved),
@@ -153,11 +162,11 @@ where
     }
 
     let x = v - v_free;
-    let Stop { own, forces, turned, kept } = m.stop(t, (&q, &v), &x);
+    let VelocityCorrection { own, forces, turned, kept } = m.velocity_correction(t, (&q, &v), &x);
     let (w, z) = adjoint_variables(m, t, &q, of_v);
     let none = SVector::zeros();
-    let equations =
-        Contracted { x: &x, lambda: &own, w: &-w, z: &none, y: &-z }.curvature_of_equations(m, t, &q, &v);
+    let equations = ContractedCorrection { x: &x, lambda: &own, w: &-w, z: &none, y: &-z }
+        .curvature_of_equations(m, t, &q, &v);
     let by_x = equations.qa + equations.qv;
     let identity = SMatrix::<T, NV, NV>::identity();
     let mixed = product(&by_x, &turned)
@@ -171,21 +180,21 @@ where
 
     let mut gradient = of_q + turned.tr_mul(of_v);
     for (near, moved) in way.iter().take(count).rev() {
-        let found = m.correction(t, near);
+        let found = m.configuration_correction(t, near);
         let mut of_x = gradient;
         let mut own = SMatrix::zeros();
         if let Some(along) = displacement_if_on_manifold(&found.x) {
             of_x = along.by_dv.tr_mul(&gradient);
-            let Curvature { mixed, second, .. } = along.curvature_of_displacement(m, &gradient);
+            let SecondDerivativesOfTwo { mixed, second, .. } = along.curvature_of_displacement(m, &gradient);
             let twice =
                 second.map_or_else(SMatrix::zeros, |b| found.change.tr_mul(&product(&b, &found.change)));
             own = with_transpose(twice, &product(&mixed, &found.change));
             gradient = along.by_q.tr_mul(&gradient);
         }
-        own += of_correction(m, t, near, &found, &of_x);
+        own += correction_curvature(m, t, near, &found, &of_x);
         qq += moved.tr_mul(&product(&own, moved));
         gradient += found.change.tr_mul(&of_x);
     }
-    let second = Curvature { first: Some(qq), mixed: qv, second: None };
-    Ok(Contraction { gradient: (gradient, kept.tr_mul(of_v)), second })
+    let second = SecondDerivativesOfTwo { first: Some(qq), mixed: qv, second: None };
+    Ok(ProjectionContraction { gradient: (gradient, kept.tr_mul(of_v)), second })
 }

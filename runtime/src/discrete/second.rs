@@ -1,9 +1,9 @@
 //! Second derivatives of steps, contracted with factors: the curvature that differential dynamic programming
 //! adds to the costs.
 
-use super::curvature::{Curvature, Displacement};
-use super::explicit::{Sensitive, Start};
-use super::{DifferentiableStep, Through, projection};
+use super::curvature::{SecondDerivativesOfTwo, SecondOrderDisplacement};
+use super::explicit::{DifferentiatedStart, VectorWithDerivatives};
+use super::{ContactStepVisitor, DifferentiableStep, projection};
 use crate::constraint::{ConstrainedSecondDerivatives, ConstraintError, CurvatureVisitor};
 use crate::derivatives::LinearMotion;
 use crate::integrate::{Error, Rk4, SemiImplicitEuler};
@@ -82,7 +82,7 @@ where
     method.check()?;
     let found = if M::CONSTRAINED {
         let undetermined = Error::Constraint { t: to_f64(t), reason: ConstraintError::Singular };
-        let through = Curved { through: Through { method, t, q, v, u }, factors };
+        let through = ConstrainedCurvature { through: ContactStepVisitor { method, t, q, v, u }, factors };
         mechanism.visit_constraint_curvature(through).unwrap_or(Err(undetermined))?
     } else {
         method.differentiate_twice(mechanism, t, q, v, u, factors)
@@ -91,14 +91,15 @@ where
     if finite { Ok(found) } else { Err(Error::NotFinite { t: to_f64(t) }) }
 }
 
-/// Arguments of a step under constraints, with the factors of the state after it.
-struct Curved<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
-    through: Through<'a, S, T, NQ, NV, NU>,
+/// Arguments of a step with constraints, and the factors of the state after it in the contracted second
+/// derivatives.
+struct ConstrainedCurvature<'a, S, T, const NQ: usize, const NV: usize, const NU: usize> {
+    through: ContactStepVisitor<'a, S, T, NQ, NV, NU>,
     factors: (&'a SVector<T, NV>, &'a SVector<T, NV>),
 }
 
 impl<S, T, const NQ: usize, const NV: usize, const NU: usize> CurvatureVisitor<T, NQ, NV, NU>
-    for Curved<'_, S, T, NQ, NV, NU>
+    for ConstrainedCurvature<'_, S, T, NQ, NV, NU>
 where
     T: Real,
     S: TwiceDifferentiableStep<T>,
@@ -111,13 +112,13 @@ where
     where
         M: ConstrainedSecondDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        let Through { method, t, q, v, u } = self.through;
-        let free = method.differentiate(mechanism, t, q, v, u)?;
-        let end = t + method.period();
+        let ContactStepVisitor { method, t, q, v, u } = self.through;
+        let free = method.differentiate_step(mechanism, t, q, v, u)?;
+        let end = t + method.step_length();
         let added = projection::curvature_of_projection(mechanism, end, (&free.q, &free.v), self.factors)?;
         let mut sum =
             method.differentiate_twice(mechanism, t, q, v, u, (&added.gradient.0, &added.gradient.1));
-        let new_sensitive = |value, by_q, by_v, by_u| Sensitive { value, by_q, by_v, by_u };
+        let new_sensitive = |value, by_q, by_v, by_u| VectorWithDerivatives { value, by_q, by_v, by_u };
         let displacement = new_sensitive(SVector::zeros(), free.q_by_q, free.q_by_v, free.q_by_u);
         let velocity = new_sensitive(free.v, free.v_by_q, free.v_by_v, free.v_by_u);
         added.second.add_to(&mut sum, &displacement, &velocity);
@@ -136,7 +137,7 @@ pub trait TwiceDifferentiableStep<T: Real>: DifferentiableStep<T> {
     const UNDER_CONSTRAINTS: bool;
 
     /// Returns the length of a step of the method, s.
-    fn period(&self) -> T;
+    fn step_length(&self) -> T;
 
     /// Returns the second derivatives of a step before its projection onto constraints.
     fn differentiate_twice<M, const NQ: usize, const NV: usize, const NU: usize>(
@@ -155,8 +156,8 @@ pub trait TwiceDifferentiableStep<T: Real>: DifferentiableStep<T> {
 impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
     const UNDER_CONSTRAINTS: bool = false;
 
-    fn period(&self) -> T {
-        self.length()
+    fn step_length(&self) -> T {
+        self.nominal_step_length()
     }
 
     fn differentiate_twice<M, const NQ: usize, const NV: usize, const NU: usize>(
@@ -172,21 +173,25 @@ impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
         M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
         // q⁺ = q ⊕ h v⁺, v⁺ = v + h v̇.
-        let (h, now) = (self.length(), at(mechanism, t));
+        let (h, now) = (self.nominal_step_length(), at(mechanism, t));
         if NQ == NV {
             return now.second_order_motion(q, v, u, &((by_v + by_q * h) * h));
         }
         let motion = Derivatives::linear_motion(&now, q, v, u);
-        let first = Sensitive::start_velocity(v);
-        let change =
-            Sensitive { value: motion.acceleration, by_q: motion.by_q, by_v: motion.by_v, by_u: motion.by_u };
+        let first = VectorWithDerivatives::start_velocity(v);
+        let change = VectorWithDerivatives {
+            value: motion.acceleration,
+            by_q: motion.by_q,
+            by_v: motion.by_v,
+            by_u: motion.by_u,
+        };
         let displacement = first.plus_scaled(h, &change).scaled_derivatives(h);
-        let moved = Displacement::new(mechanism, &displacement.value);
+        let moved = SecondOrderDisplacement::new(mechanism, &displacement.value);
         let of_displacement = moved.by_dv.tr_mul(by_q);
         let mut sum = now.second_order_motion(q, v, u, &((by_v + of_displacement * h) * h));
         moved.curvature_of_displacement(mechanism, by_q).add_to(
             &mut sum,
-            &Sensitive::zero_displacement(),
+            &VectorWithDerivatives::zero_displacement(),
             &displacement,
         );
         sum
@@ -195,19 +200,19 @@ impl<T: Real> TwiceDifferentiableStep<T> for SemiImplicitEuler<T> {
 
 /// Stage of a step: its time and displacement after the start, the state of evaluation, and the linearised
 /// motion in that state.
-struct Stage<T, const NQ: usize, const NV: usize, const NU: usize> {
+struct DifferentiatedStage<T, const NQ: usize, const NV: usize, const NU: usize> {
     after: T,
-    displacement: Sensitive<T, NV, NU>,
-    q: (SVector<T, NQ>, Sensitive<T, NV, NU>),
-    v: Sensitive<T, NV, NU>,
+    displacement: VectorWithDerivatives<T, NV, NU>,
+    q: (SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>),
+    v: VectorWithDerivatives<T, NV, NU>,
     motion: LinearMotion<T, NV, NU>,
 }
 
 impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
     const UNDER_CONSTRAINTS: bool = true;
 
-    fn period(&self) -> T {
-        self.length()
+    fn step_length(&self) -> T {
+        self.nominal_step_length()
     }
 
     fn differentiate_twice<M, const NQ: usize, const NV: usize, const NU: usize>(
@@ -222,13 +227,18 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
     where
         M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
-        let (h, start) = (self.length(), Start { mechanism, t, q, u });
+        let (h, start) = (self.nominal_step_length(), DifferentiatedStart { mechanism, t, q, u });
         let half = h * constant(0.5);
-        let first = Sensitive::start_velocity(v);
-        let begin = Stage::new(&start, T::zero(), first.scaled_derivatives(T::zero()), first);
-        let next_stage = |after: T, stage: &Stage<T, NQ, NV, NU>| {
+        let first = VectorWithDerivatives::start_velocity(v);
+        let begin = DifferentiatedStage::new(&start, T::zero(), first.scaled_derivatives(T::zero()), first);
+        let next_stage = |after: T, stage: &DifferentiatedStage<T, NQ, NV, NU>| {
             let v = first.plus_scaled(after, &stage.stage_acceleration());
-            Stage::new(&start, after, stage.displacement_rate(&start).scaled_derivatives(after), v)
+            DifferentiatedStage::new(
+                &start,
+                after,
+                stage.displacement_rate(&start).scaled_derivatives(after),
+                v,
+            )
         };
         let second = next_stage(half, &begin);
         let third = next_stage(half, &second);
@@ -270,7 +280,7 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
             of_displacement += by_way.tr_mul(&rate);
             of_v += by_v.tr_mul(&rate);
             let (twice, mixed) = mechanism.tangent_rate_second_derivatives(&way.value, &v.value, &rate);
-            Curvature { first: Some(twice), mixed, second: None }.add_to(&mut sum, way, v);
+            SecondDerivativesOfTwo { first: Some(twice), mixed, second: None }.add_to(&mut sum, way, v);
         }
         sum
     }
@@ -280,7 +290,7 @@ impl<T: Real> TwiceDifferentiableStep<T> for Rk4<T> {
 /// Returns the gradient with respect to the displacement.
 fn add_displacement<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     mechanism: &M,
-    displacement: &Sensitive<T, NV, NU>,
+    displacement: &VectorWithDerivatives<T, NV, NU>,
     lambda: &SVector<T, NV>,
     sum: &mut InputSecondOrder<T, NV, NU>,
 ) -> SVector<T, NV>
@@ -288,10 +298,10 @@ where
     T: Real,
     M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
 {
-    let moved = Displacement::new(mechanism, &displacement.value);
+    let moved = SecondOrderDisplacement::new(mechanism, &displacement.value);
     moved.curvature_of_displacement(mechanism, lambda).add_to(
         sum,
-        &Sensitive::zero_displacement(),
+        &VectorWithDerivatives::zero_displacement(),
         displacement,
     );
     moved.by_dv.tr_mul(lambda)
@@ -302,12 +312,12 @@ fn zero_second_order<T: Real, const NV: usize, const NU: usize>() -> InputSecond
     (state, state, state, mixed, mixed, SMatrix::zeros())
 }
 
-impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV, NU> {
+impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> DifferentiatedStage<T, NQ, NV, NU> {
     fn new<M>(
-        start: &Start<'_, M, T, NQ, NV, NU>,
+        start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
         after: T,
-        displacement: Sensitive<T, NV, NU>,
-        v: Sensitive<T, NV, NU>,
+        displacement: VectorWithDerivatives<T, NV, NU>,
+        v: VectorWithDerivatives<T, NV, NU>,
     ) -> Self
     where
         M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
@@ -320,7 +330,10 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV
 
     /// Returns the rate of displacements from the start, with its derivatives with respect to the start of
     /// the step.
-    fn displacement_rate<M>(&self, start: &Start<'_, M, T, NQ, NV, NU>) -> Sensitive<T, NV, NU>
+    fn displacement_rate<M>(
+        &self,
+        start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
+    ) -> VectorWithDerivatives<T, NV, NU>
     where
         M: SecondDerivatives<NQ, NV, NU, Scalar = T>,
     {
@@ -330,20 +343,21 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV
         let (way, v) = (&self.displacement, &self.v);
         let (by_way, by_v) = start.mechanism.tangent_rate_derivatives(&way.value, &v.value);
         let value = start.mechanism.tangent_rate(&way.value, &v.value);
-        Sensitive::compose_derivatives(value, (&by_way, way), (&by_v, v))
+        VectorWithDerivatives::compose_derivatives(value, (&by_way, way), (&by_v, v))
     }
 
     /// Returns the acceleration, with its derivatives with respect to the start of the step.
-    fn stage_acceleration(&self) -> Sensitive<T, NV, NU> {
+    fn stage_acceleration(&self) -> VectorWithDerivatives<T, NV, NU> {
         let LinearMotion { acceleration, by_q, by_v, by_u, .. } = &self.motion;
-        let found = Sensitive::compose_derivatives(*acceleration, (by_q, &self.q.1), (by_v, &self.v));
-        Sensitive { by_u: found.by_u + by_u, ..found }
+        let found =
+            VectorWithDerivatives::compose_derivatives(*acceleration, (by_q, &self.q.1), (by_v, &self.v));
+        VectorWithDerivatives { by_u: found.by_u + by_u, ..found }
     }
 
     /// Adds the second derivatives of `λᵀ v̇` at this stage with respect to the start of the step.
     fn add_curvature<M>(
         &self,
-        start: &Start<'_, M, T, NQ, NV, NU>,
+        start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
         lambda: &SVector<T, NV>,
         sum: &mut InputSecondOrder<T, NV, NU>,
     ) where
@@ -357,6 +371,6 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Stage<T, NQ, NV
         sum.4 += q.by_v.tr_mul(&qu) + v.by_v.tr_mul(&vu);
         let crossed = qu.tr_mul(&q.by_u) + vu.tr_mul(&v.by_u);
         sum.5 += crossed + crossed.transpose() + uu;
-        Curvature { first: Some(qq), mixed: qv, second: Some(vv) }.add_to(sum, q, v);
+        SecondDerivativesOfTwo { first: Some(qq), mixed: qv, second: Some(vv) }.add_to(sum, q, v);
     }
 }

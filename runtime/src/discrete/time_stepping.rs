@@ -1,7 +1,7 @@
 //! Derivatives of steps of [`TimeStepping`]: the motion without contact impulses at the end, and
 //! displacements and transported velocities. Derivatives of the impulses are in `contact`.
 
-use super::explicit::{Sensitive, Start};
+use super::explicit::{DifferentiatedStart, VectorWithDerivatives};
 use super::{DifferentiableStep, Transition, projected};
 use crate::Real;
 use crate::blocks::{NearlyIdentity, add_product, add_product_of_some, is_zero, scale};
@@ -14,14 +14,14 @@ use nalgebra::{SMatrix, SVector};
 
 /// Configuration manifold of a mechanism.
 #[derive(Clone, Copy)]
-pub(crate) struct Manifold<'a, M, const NV: usize> {
+pub(crate) struct ConfigurationManifold<'a, M, const NV: usize> {
     mechanism: &'a M,
     /// Indices of all velocities, and the half-open range of those of ball and free joints.
     indices: [usize; NV],
     rotating: (usize, usize),
 }
 
-impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
+impl<'a, M, const NV: usize> ConfigurationManifold<'a, M, NV> {
     /// Returns the manifold of a mechanism.
     pub(crate) fn new<T: Real, const NQ: usize, const NU: usize>(mechanism: &'a M) -> Self
     where
@@ -33,11 +33,11 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
     }
 
     /// Whether no joint has rotating axes.
-    fn is_plain(&self) -> bool {
+    fn has_fixed_axes(&self) -> bool {
         self.rotating.0 >= self.rotating.1
     }
 
-    /// Returns the velocities of ball and free joints.
+    /// Returns the indices of the velocities of ball and free joints.
     fn rotating_indices(&self) -> &[usize] {
         self.indices.get(self.rotating.0..self.rotating.1).unwrap_or(&[])
     }
@@ -46,9 +46,9 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
     /// derivatives of a vector.
     fn add_mapped<T: Real, const NU: usize>(
         &self,
-        sum: &mut Sensitive<T, NV, NU>,
+        sum: &mut VectorWithDerivatives<T, NV, NU>,
         by: &SMatrix<T, NV, NV>,
-        of: &Sensitive<T, NV, NU>,
+        of: &VectorWithDerivatives<T, NV, NU>,
     ) {
         let places = self.rotating_indices();
         add_product_of_some(&mut sum.by_q, places, by, &of.by_q);
@@ -60,7 +60,11 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
 
     /// Multiplies derivatives from the left by a matrix that is the identity outside of the rows and columns
     /// of ball and free joints.
-    fn lead<T: Real, const NU: usize>(&self, by: &SMatrix<T, NV, NV>, of: &mut Sensitive<T, NV, NU>) {
+    fn multiply_from_left<T: Real, const NU: usize>(
+        &self,
+        by: &SMatrix<T, NV, NV>,
+        of: &mut VectorWithDerivatives<T, NV, NU>,
+    ) {
         let by = NearlyIdentity::with_range(by, self.rotating);
         by.lead(&mut of.by_q);
         by.lead(&mut of.by_v);
@@ -69,81 +73,82 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
 
     /// Returns a configuration after a displacement, with the derivatives of its motion. Those of the
     /// configuration before are `motion`.
-    pub(crate) fn displaced<T: Real, const NQ: usize, const NU: usize>(
+    pub(crate) fn displaced_configuration<T: Real, const NQ: usize, const NU: usize>(
         &self,
-        (q, motion): (&SVector<T, NQ>, &Sensitive<T, NV, NU>),
-        by: &Sensitive<T, NV, NU>,
-    ) -> (SVector<T, NQ>, Sensitive<T, NV, NU>)
+        (q, motion): (&SVector<T, NQ>, &VectorWithDerivatives<T, NV, NU>),
+        by: &VectorWithDerivatives<T, NV, NU>,
+    ) -> (SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>)
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         let to = self.mechanism.integrate(q, &by.value);
-        if self.is_plain() {
+        if self.has_fixed_axes() {
             return (to, motion.plus_scaled(T::one(), by));
         }
         let (by_q, by_dv) = self.mechanism.integrate_derivatives_at(q, &by.value);
         let (mut turned, mut way) = (*motion, *by);
-        self.lead(&by_q, &mut turned);
-        self.lead(&by_dv, &mut way);
+        self.multiply_from_left(&by_q, &mut turned);
+        self.multiply_from_left(&by_dv, &mut way);
         (to, turned.plus_scaled(T::one(), &way))
     }
 
-    /// Returns [`displaced`](Self::displaced) for a displacement during which the origins of free bodies move
-    /// along straight lines.
+    /// Returns [`displaced_configuration`](Self::displaced_configuration) for a displacement during which the
+    /// origins of free bodies move along straight lines.
     fn displaced_in_space<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
-        from: (&SVector<T, NQ>, &Sensitive<T, NV, NU>),
-        by: &Sensitive<T, NV, NU>,
-    ) -> (SVector<T, NQ>, Sensitive<T, NV, NU>)
+        from: (&SVector<T, NQ>, &VectorWithDerivatives<T, NV, NU>),
+        by: &VectorWithDerivatives<T, NV, NU>,
+    ) -> (SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>)
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         let is_linear = self.mechanism.translation(t, &SVector::repeat(T::one()));
         if is_linear.iter().all(|x| *x == T::zero()) {
-            return self.displaced(from, by);
+            return self.displaced_configuration(from, by);
         }
-        let mut translation = Sensitive { value: self.mechanism.translation(t, &by.value), ..*by };
+        let mut translation =
+            VectorWithDerivatives { value: self.mechanism.translation(t, &by.value), ..*by };
         translation.keep_rows(|k| is_linear.get(k) == Some(&T::one()));
         let remainder = by.plus_scaled(-T::one(), &translation);
-        let (q, motion) = self.displaced(from, &translation);
-        self.displaced((&q, &motion), &remainder)
+        let (q, motion) = self.displaced_configuration(from, &translation);
+        self.displaced_configuration((&q, &motion), &remainder)
     }
 
     /// Returns a velocity in the axes after a displacement `by` from the configuration `q`, with its
     /// derivatives ([`carry`](crate::integrate::Hooks::carry)). The motion of `q` does not affect it.
-    pub(crate) fn carried<T: Real, const NQ: usize, const NU: usize>(
+    pub(crate) fn transported_velocity<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
         q: &SVector<T, NQ>,
-        by: &Sensitive<T, NV, NU>,
-        v: &Sensitive<T, NV, NU>,
-    ) -> Sensitive<T, NV, NU>
+        by: &VectorWithDerivatives<T, NV, NU>,
+        v: &VectorWithDerivatives<T, NV, NU>,
+    ) -> VectorWithDerivatives<T, NV, NU>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        if self.is_plain() {
+        if self.has_fixed_axes() {
             return *v;
         }
         let (_, by_dv) = self.mechanism.integrate_derivatives_at(q, &by.value);
         let mut end = *by;
-        self.lead(&by_dv, &mut end);
-        self.carried_to(t, q, (&by.value, &end), v)
+        self.multiply_from_left(&by_dv, &mut end);
+        self.transport_to_end(t, q, (&by.value, &end), v)
     }
 
-    /// Returns [`carried`](Self::carried), or with declared generalized speeds the same speeds.
-    fn transported<T: Real, const NQ: usize, const NU: usize>(
+    /// Returns [`transported_velocity`](Self::transported_velocity), or with declared generalized speeds the same speeds.
+    fn transported_or_same_speeds<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
         q: &SVector<T, NQ>,
-        by: &Sensitive<T, NV, NU>,
-        v: &Sensitive<T, NV, NU>,
-    ) -> Sensitive<T, NV, NU>
+        by: &VectorWithDerivatives<T, NV, NU>,
+        v: &VectorWithDerivatives<T, NV, NU>,
+    ) -> VectorWithDerivatives<T, NV, NU>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
         match self.mechanism.carry_rate(t, &v.value, &v.value) {
-            Some(_) => self.carried(t, q, by, v),
+            Some(_) => self.transported_velocity(t, q, by, v),
             None => *v,
         }
     }
@@ -152,9 +157,9 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
     /// Its derivatives are those with respect to the state.
     fn in_space<T: Real, const NQ: usize, const NU: usize>(
         &self,
-        mut acceleration: Sensitive<T, NV, NU>,
+        mut acceleration: VectorWithDerivatives<T, NV, NU>,
         (t, v): (T, &SVector<T, NV>),
-    ) -> Sensitive<T, NV, NU>
+    ) -> VectorWithDerivatives<T, NV, NU>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
@@ -177,22 +182,22 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
 
     /// Returns a velocity in the axes after a displacement `dv` from `q`, given the derivatives of the motion
     /// of the displaced configuration relative to `q`.
-    pub(crate) fn carried_to<T: Real, const NQ: usize, const NU: usize>(
+    pub(crate) fn transport_to_end<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
         q: &SVector<T, NQ>,
-        (dv, end): (&SVector<T, NV>, &Sensitive<T, NV, NU>),
-        v: &Sensitive<T, NV, NU>,
-    ) -> Sensitive<T, NV, NU>
+        (dv, end): (&SVector<T, NV>, &VectorWithDerivatives<T, NV, NU>),
+        v: &VectorWithDerivatives<T, NV, NU>,
+    ) -> VectorWithDerivatives<T, NV, NU>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        if self.is_plain() {
+        if self.has_fixed_axes() {
             return *v;
         }
         let m = self.mechanism;
         let value = m.carry(t, q, dv, &v.value);
-        let mut carried = Sensitive { value, ..*v };
+        let mut carried = VectorWithDerivatives { value, ..*v };
         let unit =
             |k: usize, length: T| SVector::<T, NV>::from_fn(|i, _| if i == k { length } else { T::zero() });
         let (mut axes, mut rotation) = (SMatrix::<T, NV, NV>::identity(), SMatrix::<T, NV, NV>::zeros());
@@ -203,53 +208,55 @@ impl<'a, M, const NV: usize> Manifold<'a, M, NV> {
             }
             // By Rodrigues' formula, half the difference of a vector rotated by right angles in both
             // directions is its cross product with the axis: the derivative of a rotation about it.
-            let rotated = |angle: T| m.carry(t, q, &unit(*k, angle), &value);
+            let rotated_value = |angle: T| m.carry(t, q, &unit(*k, angle), &value);
             if let Some(column) = rotation.data.0.get_mut(*k) {
-                *column = ((rotated(right_angle) - rotated(-right_angle)) * constant::<T>(0.5)).data.0[0];
+                *column = ((rotated_value(right_angle) - rotated_value(-right_angle)) * constant::<T>(0.5))
+                    .data
+                    .0[0];
             }
         }
-        self.lead(&axes, &mut carried);
+        self.multiply_from_left(&axes, &mut carried);
         self.add_mapped(&mut carried, &rotation, end);
         carried
     }
 
-    /// Returns the velocity `v` of the configuration `from` in the axes of the configuration `to`, with its
-    /// derivatives; those of the motion of `to` are `motion`, and `from` moves along all velocities.
-    pub(crate) fn carried_between<T: Real, const NQ: usize, const NU: usize>(
+    /// Returns the velocity `v` at the configuration `from`, in the axes of the configuration `to`, with its
+    /// derivatives. `motion` has the derivatives of `to`; `from` is the start of the derivatives.
+    pub(crate) fn transport_between<T: Real, const NQ: usize, const NU: usize>(
         &self,
         t: T,
-        (from, v): (&SVector<T, NQ>, &Sensitive<T, NV, NU>),
-        (to, motion): (&SVector<T, NQ>, &Sensitive<T, NV, NU>),
-    ) -> Sensitive<T, NV, NU>
+        (from, v): (&SVector<T, NQ>, &VectorWithDerivatives<T, NV, NU>),
+        (to, motion): (&SVector<T, NQ>, &VectorWithDerivatives<T, NV, NU>),
+    ) -> VectorWithDerivatives<T, NV, NU>
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        if self.is_plain() {
+        if self.has_fixed_axes() {
             return *v;
         }
         let way = self.mechanism.difference(from, to);
         let (by_q, _) = self.mechanism.integrate_derivatives_at(from, &way);
-        let relative = Sensitive { by_q: motion.by_q - by_q, ..*motion };
-        self.carried_to(t, from, (&way, &relative), v)
+        let relative = VectorWithDerivatives { by_q: motion.by_q - by_q, ..*motion };
+        self.transport_to_end(t, from, (&way, &relative), v)
     }
 }
 
 /// End of a step before the impulses of its contacts, with derivatives.
 pub(crate) struct SmoothMotion<T, const NQ: usize, const NV: usize, const NU: usize> {
-    pub(crate) q: (SVector<T, NQ>, Sensitive<T, NV, NU>),
-    /// Velocity, with the contribution of the contact forces that were assumed.
-    pub(crate) v: Sensitive<T, NV, NU>,
-    /// Contribution of the assumed contact forces.
-    pub(crate) given: Option<Sensitive<T, NV, NU>>,
+    pub(crate) q: (SVector<T, NQ>, VectorWithDerivatives<T, NV, NU>),
+    /// Velocity at the end of the step, including the contribution of the assumed contact forces.
+    pub(crate) v: VectorWithDerivatives<T, NV, NU>,
+    /// Contribution of the assumed contact forces to the velocity.
+    pub(crate) given: Option<VectorWithDerivatives<T, NV, NU>>,
 }
 
 /// Returns the acceleration without contacts at the start of a step, with the velocity `v`, as
 /// [`smooth_motion`] takes it.
 pub(crate) fn acceleration_at_start<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     method: &TimeStepping<T>,
-    start: &Start<'_, M, T, NQ, NV, NU>,
+    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
     v: &SVector<T, NV>,
-) -> Sensitive<T, NV, NU>
+) -> VectorWithDerivatives<T, NV, NU>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
@@ -257,7 +264,7 @@ where
     let acceleration = start.acceleration_in_state(T::zero(), (start.q, v));
     match method.has_four_stages() {
         true => acceleration,
-        false => Manifold::new(start.mechanism).in_space(acceleration, (start.t, v)),
+        false => ConfigurationManifold::new(start.mechanism).in_space(acceleration, (start.t, v)),
     }
 }
 
@@ -265,48 +272,54 @@ where
 /// `rate` to the velocity per second.
 pub(crate) fn smooth_motion<M, T, const NQ: usize, const NV: usize, const NU: usize>(
     method: &TimeStepping<T>,
-    start: &Start<'_, M, T, NQ, NV, NU>,
-    v: &Sensitive<T, NV, NU>,
-    before: &Sensitive<T, NV, NU>,
-    rate: Option<&Sensitive<T, NV, NU>>,
+    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
+    v: &VectorWithDerivatives<T, NV, NU>,
+    before: &VectorWithDerivatives<T, NV, NU>,
+    rate: Option<&VectorWithDerivatives<T, NV, NU>>,
 ) -> SmoothMotion<T, NQ, NV, NU>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
     match method.has_four_stages() {
-        true => four_stages(start, method.length(), v, before, rate),
-        false => through_middle(start, method.length(), v, before, rate),
+        true => four_stage_motion(start, method.nominal_step_length(), v, before, rate),
+        false => midpoint_motion(start, method.nominal_step_length(), v, before, rate),
     }
 }
 
-fn through_middle<M, T, const NQ: usize, const NV: usize, const NU: usize>(
-    start: &Start<'_, M, T, NQ, NV, NU>,
+fn midpoint_motion<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
     h: T,
-    v: &Sensitive<T, NV, NU>,
-    before: &Sensitive<T, NV, NU>,
-    rate: Option<&Sensitive<T, NV, NU>>,
+    v: &VectorWithDerivatives<T, NV, NU>,
+    before: &VectorWithDerivatives<T, NV, NU>,
+    rate: Option<&VectorWithDerivatives<T, NV, NU>>,
 ) -> SmoothMotion<T, NQ, NV, NU>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
-    let (half, manifold) = (h * constant(0.5), Manifold::new(start.mechanism));
+    let (half, manifold) = (h * constant(0.5), ConfigurationManifold::new(start.mechanism));
     let to_middle = v.scaled_derivatives(half);
     // Only the configuration and the velocity at the start move the middle.
-    let (middle, motion) =
-        manifold.displaced_in_space(start.t, (start.q, &Sensitive::zero_displacement()), &to_middle);
-    let in_middle = |x: &Sensitive<T, NV, NU>| manifold.transported(start.t, start.q, &to_middle, x);
-    let rate = rate.map(|rate| manifold.carried(start.t, start.q, &to_middle, rate));
-    let under_contacts = |v: Sensitive<T, NV, NU>, h: T| match &rate {
+    let (middle, motion) = manifold.displaced_in_space(
+        start.t,
+        (start.q, &VectorWithDerivatives::zero_displacement()),
+        &to_middle,
+    );
+    let in_middle = |x: &VectorWithDerivatives<T, NV, NU>| {
+        manifold.transported_or_same_speeds(start.t, start.q, &to_middle, x)
+    };
+    let rate = rate.map(|rate| manifold.transported_velocity(start.t, start.q, &to_middle, rate));
+    let under_contacts = |v: VectorWithDerivatives<T, NV, NU>, h: T| match &rate {
         Some(rate) => v.plus_scaled(h, rate),
         None => v,
     };
     let velocity = under_contacts(in_middle(&v.plus_scaled(half, before)), half);
     let own = start.acceleration_in_state(half, (&middle, &velocity.value));
     let own = manifold.in_space(own, (start.t + half, &velocity.value));
-    let mut acceleration = Sensitive { value: own.value, by_q: own.by_q, by_v: own.by_q, by_u: own.by_u };
-    if !manifold.is_plain() {
+    let mut acceleration =
+        VectorWithDerivatives { value: own.value, by_q: own.by_q, by_v: own.by_q, by_u: own.by_u };
+    if !manifold.has_fixed_axes() {
         NearlyIdentity::with_range(&motion.by_q, manifold.rotating).follow(&mut acceleration.by_q);
         let by_displacement = motion.by_v * (T::one() / half);
         NearlyIdentity::with_range(&by_displacement, manifold.rotating).follow(&mut acceleration.by_v);
@@ -317,31 +330,33 @@ where
     add_product(&mut acceleration.by_u, &own.by_v, &velocity.by_u);
     let in_axes_of_middle = under_contacts(in_middle(v).plus_scaled(h, &acceleration), h);
     let to_end = in_axes_of_middle.scaled_derivatives(half);
-    let end = manifold.transported(start.t + half, &middle, &to_end, &in_axes_of_middle);
-    let given =
-        rate.map(|rate| manifold.carried(start.t + half, &middle, &to_end, &rate).scaled_derivatives(h));
+    let end = manifold.transported_or_same_speeds(start.t + half, &middle, &to_end, &in_axes_of_middle);
+    let given = rate.map(|rate| {
+        manifold.transported_velocity(start.t + half, &middle, &to_end, &rate).scaled_derivatives(h)
+    });
     let q = manifold.displaced_in_space(start.t + half, (&middle, &motion), &to_end);
     SmoothMotion { q, v: end, given }
 }
 
-fn four_stages<M, T, const NQ: usize, const NV: usize, const NU: usize>(
-    start: &Start<'_, M, T, NQ, NV, NU>,
+fn four_stage_motion<M, T, const NQ: usize, const NV: usize, const NU: usize>(
+    start: &DifferentiatedStart<'_, M, T, NQ, NV, NU>,
     h: T,
-    v: &Sensitive<T, NV, NU>,
-    before: &Sensitive<T, NV, NU>,
-    rate: Option<&Sensitive<T, NV, NU>>,
+    v: &VectorWithDerivatives<T, NV, NU>,
+    before: &VectorWithDerivatives<T, NV, NU>,
+    rate: Option<&VectorWithDerivatives<T, NV, NU>>,
 ) -> SmoothMotion<T, NQ, NV, NU>
 where
     T: Real,
     M: Derivatives<NQ, NV, NU, Scalar = T>,
 {
-    type StageRates<T, const NV: usize, const NU: usize> = (Sensitive<T, NV, NU>, Sensitive<T, NV, NU>);
-    let (half, manifold) = (h * constant(0.5), Manifold::new(start.mechanism));
+    type StageRates<T, const NV: usize, const NU: usize> =
+        (VectorWithDerivatives<T, NV, NU>, VectorWithDerivatives<T, NV, NU>);
+    let (half, manifold) = (h * constant(0.5), ConfigurationManifold::new(start.mechanism));
     let is_plain = start.mechanism.features().is_plain();
-    let stage = |after: T, (rates, acceleration): &StageRates<T, NV, NU>| {
+    let stage_state = |after: T, (rates, acceleration): &StageRates<T, NV, NU>| {
         let (way, v) = (rates.scaled_derivatives(after), v.plus_scaled(after, acceleration));
         let mut acceleration = start.acceleration_after(after, &start.displace_configuration(&way), &v);
-        let carried = rate.map(|rate| manifold.carried(start.t, start.q, &way, rate));
+        let carried = rate.map(|rate| manifold.transported_velocity(start.t, start.q, &way, rate));
         if let Some(carried) = &carried {
             acceleration = acceleration.plus_scaled(T::one(), carried);
         }
@@ -350,12 +365,15 @@ where
         }
         let (_, by_dv, by_v) = start.mechanism.displacement_rate_derivatives(start.q, &way.value, &v.value);
         let value = start.mechanism.displacement_rate(start.q, &way.value, &v.value);
-        ((Sensitive::compose_derivatives(value, (&by_dv, &way), (&by_v, &v)), acceleration), carried)
+        (
+            (VectorWithDerivatives::compose_derivatives(value, (&by_dv, &way), (&by_v, &v)), acceleration),
+            carried,
+        )
     };
     let k1 = (*v, rate.map_or(*before, |rate| before.plus_scaled(T::one(), rate)));
-    let (k2, _) = stage(half, &k1);
-    let (k3, _) = stage(half, &k2);
-    let (k4, at_end) = stage(h, &k3);
+    let (k2, _) = stage_state(half, &k1);
+    let (k3, _) = stage_state(half, &k2);
+    let (k4, at_end) = stage_state(h, &k3);
     let (two, sixth) = (constant::<T>(2.0), h / constant(6.0));
     let way =
         k1.0.plus_scaled(two, &k2.0)
@@ -375,7 +393,7 @@ where
 }
 
 /// Arguments of a step of a mechanism with contacts.
-struct Contacting<'a, T, const NQ: usize, const NV: usize, const NU: usize> {
+struct ContactTransitionVisitor<'a, T, const NQ: usize, const NV: usize, const NU: usize> {
     method: &'a TimeStepping<T>,
     t: T,
     state: (&'a SVector<T, NQ>, &'a SVector<T, NV>),
@@ -384,7 +402,7 @@ struct Contacting<'a, T, const NQ: usize, const NV: usize, const NU: usize> {
 }
 
 impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, NV, NU>
-    for Contacting<'_, T, NQ, NV, NU>
+    for ContactTransitionVisitor<'_, T, NQ, NV, NU>
 {
     type Output = Result<(), Error>;
 
@@ -403,7 +421,7 @@ impl<T: Real, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, 
 impl<T: Real> DifferentiableStep<T> for TimeStepping<T> {
     const IN_MOMENTA: [bool; 2] = [false; 2];
 
-    fn differentiate<M, const NQ: usize, const NV: usize, const NU: usize>(
+    fn differentiate_step<M, const NQ: usize, const NV: usize, const NU: usize>(
         &self,
         mechanism: &M,
         t: T,
@@ -431,11 +449,12 @@ impl<T: Real> DifferentiableStep<T> for TimeStepping<T> {
     where
         M: Derivatives<NQ, NV, NU, Scalar = T>,
     {
-        let step = Contacting { method: self, t, state: (q, v), u, into: &mut *into };
+        let step = ContactTransitionVisitor { method: self, t, state: (q, v), u, into: &mut *into };
         if let Some(done) = mechanism.visit_contacts(step) {
             return done;
         }
-        let (start, v) = (Start { mechanism, t, q, u }, Sensitive::start_velocity(v));
+        let (start, v) =
+            (DifferentiatedStart { mechanism, t, q, u }, VectorWithDerivatives::start_velocity(v));
         let before = acceleration_at_start(self, &start, &v.value);
         let motion = smooth_motion(self, &start, &v, &before, None);
         *into = Transition::from_sensitive(&motion.q, &motion.v);
@@ -460,6 +479,10 @@ impl<T: Real> DifferentiableStep<T> for TimeStepping<T> {
     where
         M: ConstrainedDerivatives<NQ, NV, NU, NH, NC, Scalar = T>,
     {
-        projected::project_step(mechanism, t + self.length(), self.differentiate(mechanism, t, q, v, u)?)
+        projected::project_step(
+            mechanism,
+            t + self.nominal_step_length(),
+            self.differentiate_step(mechanism, t, q, v, u)?,
+        )
     }
 }

@@ -7,7 +7,7 @@
 /// expressions of it; its rate is `rate(theta)`. Its unit follows from its use.
 pub enum Coordinate {}
 
-/// Axes without an origin, rotated by expressions.
+/// Frame axes without an origin, rotated by expressions.
 ///
 /// `#[frame(start, z(psi), x(theta), eigenaxis(n, angle))]`: starts with the axes of a body, another frame or
 /// `ground` and rotates successively about body-fixed axes, by expressions of coordinates, parameters and

@@ -7,8 +7,8 @@ use crate::derivatives::{ByMotion, unknown_matrix};
 use crate::{Derivatives, Mechanism, Real};
 use nalgebra::{SMatrix, SVector};
 
-/// Returns the block matrix of `block` (velocities) with rows for the states below it and columns for the
-/// states next to it.
+/// Returns the block matrix of `block` (velocities), with the rows of the first-order states below it and
+/// their columns next to it.
 fn bordered_matrix<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     block: &SMatrix<T, NV, NV>,
     below: &SMatrix<T, NX, NV>,
@@ -162,7 +162,7 @@ where
         )
     }
 
-    /// Returns NaN: derivatives of momenta with respect to the states are not available.
+    /// Returns NaN, because derivatives of momenta with respect to first-order states are not available.
     fn generalized_momentum_derivatives(
         &self,
         _t: M::Scalar,
@@ -172,7 +172,7 @@ where
         unknown_matrix()
     }
 
-    /// Returns NaN: derivatives of momenta with respect to the states are not available.
+    /// Returns NaN, because derivatives of momenta with respect to first-order states are not available.
     fn momentum_rate_derivatives(
         &self,
         _t: M::Scalar,

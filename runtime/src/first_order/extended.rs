@@ -37,7 +37,8 @@ pub fn join<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     SVector::from_fn(|k, _| v.get(k).or(x.get(k.wrapping_sub(NV))).copied().unwrap_or(T::zero()))
 }
 
-/// Returns a square matrix with a block for the velocities, and `diagonal` times the identity for the states.
+/// Returns a square matrix with a block for the velocities, and `diagonal` times the identity for the
+/// first-order states.
 pub fn with_diagonal<T: Real, const NV: usize, const NX: usize, const NE: usize>(
     block: &SMatrix<T, NV, NV>,
     diagonal: T,
@@ -47,7 +48,7 @@ pub fn with_diagonal<T: Real, const NV: usize, const NX: usize, const NE: usize>
     all
 }
 
-/// Joins the names, or the units, of velocities and states.
+/// Concatenates the names, or the units, of velocities and first-order states.
 const fn join_names<const NV: usize, const NX: usize, const NE: usize>(
     velocities: [&'static str; NV],
     states: [&'static str; NX],
@@ -70,7 +71,8 @@ impl<'m, M, const NV: usize, const NX: usize, const NE: usize> Extended<'m, M, N
         Extended { mechanism }
     }
 
-    /// Returns the mechanism with the states contained in `all`, and the velocities of `all`.
+    /// Returns the mechanism with the first-order states contained in the extended velocity `all`, and the
+    /// velocities contained in it.
     pub(super) fn with_states<T: Real, const NQ: usize, const NU: usize>(
         &self,
         all: &SVector<T, NE>,
@@ -131,7 +133,8 @@ where
         join(&self.mechanism.displacement_rate(q, &dv, &v), &x)
     }
 
-    /// Returns the mass matrix; masses that depend on states use the values stored in the struct.
+    /// Returns the mass matrix. If masses depend on first-order states, the values stored in the struct are
+    /// used.
     fn mass_matrix(&self, t: M::Scalar, q: &SVector<M::Scalar, NQ>) -> SMatrix<M::Scalar, NE, NE> {
         with_diagonal::<_, NV, NX, NE>(&self.mechanism.mass_matrix(t, q), nalgebra::one())
     }
@@ -204,7 +207,8 @@ where
         m.kinetic_energy(t, q, &v)
     }
 
-    /// Returns the potential energy; terms that depend on states use the values stored in the struct.
+    /// Returns the potential energy. If it depends on first-order states, the values stored in the struct are
+    /// used.
     fn potential_energy(&self, t: M::Scalar, q: &SVector<M::Scalar, NQ>) -> M::Scalar {
         self.mechanism.potential_energy(t, q)
     }

@@ -27,7 +27,7 @@ pub trait OutputsByStates<const NQ: usize, const NV: usize, const NU: usize, con
     ) -> SMatrix<Self::Scalar, NY, NX>;
 }
 
-/// Returns outputs that use the states contained in the velocities.
+/// Returns the outputs for the first-order states contained in the extended velocity.
 impl<
     M,
     T,

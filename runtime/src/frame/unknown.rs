@@ -20,18 +20,30 @@ impl Message {
     /// Returns the message that a mechanism has no frame of this name, with the most similar names, or all
     /// names if there are few.
     pub const fn unknown_frame(mechanism: &str, frames: &[&str], name: &str) -> Message {
-        let start =
-            Message::empty_message().add("`").add(mechanism).add("` has no frame `").add(name).add("`");
+        let start = Message::empty_message()
+            .append_text("`")
+            .append_text(mechanism)
+            .append_text("` has no frame `")
+            .append_text(name)
+            .append_text("`");
         match start.append_nearest_names(frames, name) {
             (message, true) => message,
-            (message, false) => message.add("; `").add(mechanism).add("::FRAMES` lists those that it has"),
+            (message, false) => message
+                .append_text("; `")
+                .append_text(mechanism)
+                .append_text("::FRAMES` lists those that it has"),
         }
     }
 
     /// Returns the message that a list does not contain this name, with the most similar names, or all names
     /// if there are few.
     pub const fn unknown_name(list: &str, names: &[&str], name: &str) -> Message {
-        let start = Message::empty_message().add("`").add(list).add("` has no entry `").add(name).add("`");
+        let start = Message::empty_message()
+            .append_text("`")
+            .append_text(list)
+            .append_text("` has no entry `")
+            .append_text(name)
+            .append_text("`");
         start.append_nearest_names(names, name).0
     }
 
@@ -39,8 +51,8 @@ impl Message {
         Message { text: [0; Message::CAPACITY], length: 0 }
     }
 
-    /// Appends the names most similar to `name`, or all names if there are few; the flag states whether
-    /// anything was appended.
+    /// Appends the names most similar to `name` to the message, or all names if there are few. The flag is
+    /// true if anything was appended.
     const fn append_nearest_names(self, names: &[&str], name: &str) -> (Message, bool) {
         let mut message = self;
         let mut first = true;
@@ -49,7 +61,9 @@ impl Message {
             let mut k = 0;
             while k < names.len() {
                 if edit_distance(names[k].as_bytes(), name.as_bytes()) == edits {
-                    message = message.add(if first { "; did you mean `" } else { "` or `" }).add(names[k]);
+                    message = message
+                        .append_text(if first { "; did you mean `" } else { "` or `" })
+                        .append_text(names[k]);
                     first = false;
                 }
                 k += 1;
@@ -58,17 +72,17 @@ impl Message {
             edits = if first { edits + 1 } else { EDITS + 2 };
         }
         if !first {
-            return (message.add("`?"), true);
+            return (message.append_text("`?"), true);
         }
         if names.len() > LISTED {
             return (message, false);
         }
         let mut k = 0;
         while k < names.len() {
-            message = message.add(if k == 0 { "; expected `" } else { "`, `" }).add(names[k]);
+            message = message.append_text(if k == 0 { "; expected `" } else { "`, `" }).append_text(names[k]);
             k += 1;
         }
-        (if names.is_empty() { message } else { message.add("`") }, true)
+        (if names.is_empty() { message } else { message.append_text("`") }, true)
     }
 
     /// Returns the text of the message as a string.
@@ -80,7 +94,7 @@ impl Message {
         }
     }
 
-    const fn add(mut self, text: &str) -> Message {
+    const fn append_text(mut self, text: &str) -> Message {
         let text = text.as_bytes();
         if self.length + text.len() > Message::CAPACITY {
             return self;
@@ -152,7 +166,7 @@ const fn edit_distance(a: &[u8], b: &[u8]) -> usize {
     }
 }
 
-/// Whether `b` is a substring of `a`.
+/// Whether the bytes `b` occur as a substring in `a`.
 const fn contains_name(a: &[u8], b: &[u8]) -> bool {
     let mut start = 0;
     while start + b.len() <= a.len() {
@@ -178,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_names_are_told() {
+    fn message_lists_nearest_names() {
         let frames = ["base", "panda_link1", "panda_link2", "panda_hand", "tool"];
         assert_eq!(unknown_frame_message(&frames, "Tool"), "`Arm` has no frame `Tool`; did you mean `tool`?");
         assert_eq!(
@@ -209,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn long_names_do_no_harm() {
+    fn long_names_are_accepted() {
         let long = "ü".repeat(600);
         assert!(unknown_frame_message(&[&long, "a"], &long[..400]).starts_with("`Arm` has no frame"));
         assert!(unknown_frame_message(&[&long, &long], "a").starts_with("`Arm` has no frame `a`"));

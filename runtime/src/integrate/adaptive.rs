@@ -1,6 +1,6 @@
 //! Step size control from error tolerances, common to all adaptive methods.
 
-use super::control::{Scale, first_step};
+use super::control::{ErrorScale, first_step};
 use super::{Dynamics, Error, State, Step, check_positive, is_finite, project_end_of_step};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
@@ -8,7 +8,7 @@ use nalgebra::SVector;
 
 /// Settings of an adaptive method: tolerances, limits of the step length, and maximum number of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Settings<T> {
+pub(super) struct AdaptiveSettings<T> {
     pub relative: T,
     pub absolute: T,
     pub first: Option<T>,
@@ -21,7 +21,7 @@ pub(super) struct Settings<T> {
 /// the error of the previous step to the power `beta`. `factors` are the maximum increase and the maximum
 /// decrease of the step.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Control {
+pub(super) struct StepControl {
     pub exponent: f64,
     pub beta: f64,
     pub factors: [f64; 2],
@@ -43,19 +43,19 @@ impl<T: Real, const NV: usize> AdaptiveMemory<T, NV> {
         Self { acceleration: None, step: first, error: constant(1e-4), trials: 0 }
     }
 
-    /// Counts a trial.
+    /// Counts a trial step, and returns an error if the maximum number of steps is exceeded.
     ///
     /// # Errors
     ///
     /// [`Error::TooManySteps`] above the maximum number of trials.
-    pub(super) fn count_trial(&mut self, settings: &Settings<T>, t: T) -> Result<(), Error> {
+    pub(super) fn count_trial(&mut self, settings: &AdaptiveSettings<T>, t: T) -> Result<(), Error> {
         self.trials += 1;
         if self.trials > settings.most_steps { Err(Error::TooManySteps { t: to_f64(t) }) } else { Ok(()) }
     }
 }
 
-/// Step before its acceptance by the error test.
-pub(super) struct Trial<T, const NQ: usize, const NV: usize> {
+/// Trial step of an adaptive method, before the error test accepts or rejects it.
+pub(super) struct StepTrial<T, const NQ: usize, const NV: usize> {
     pub step: Step<T, NQ, NV>,
     /// Acceleration at the end, if the method computes it.
     pub acceleration: Option<SVector<T, NV>>,
@@ -65,15 +65,15 @@ pub(super) struct Trial<T, const NQ: usize, const NV: usize> {
 }
 
 /// Start, length and end of a trial step.
-pub(super) struct Attempt<'a, T, const NQ: usize, const NV: usize> {
+pub(super) struct TrialStep<'a, T, const NQ: usize, const NV: usize> {
     pub start: &'a State<T, NQ, NV>,
     pub acceleration: &'a SVector<T, NV>,
-    pub scale: &'a Scale<T>,
+    pub scale: &'a ErrorScale<T>,
     pub h: T,
     pub t: T,
 }
 
-impl<T: Real> Settings<T> {
+impl<T: Real> AdaptiveSettings<T> {
     pub fn new() -> Self {
         let tolerance = constant::<T>(1e-9).max(constant::<T>(64.0) * epsilon());
         Self {
@@ -115,7 +115,7 @@ impl<T: Real> Settings<T> {
 
     /// Returns the next step sizes after an error estimate, for an accepted and for a rejected step: the
     /// controller of DOPRI5 and related programs.
-    fn next_steps(control: &Control, h: T, error: T, last: T) -> (T, T) {
+    fn next_steps(control: &StepControl, h: T, error: T, last: T) -> (T, T) {
         let ([longer, shorter], safety) = (control.factors, constant::<T>(0.9));
         let raw = error.powf(constant(control.exponent));
         let smooth = raw / last.powf(constant(control.beta)) / safety;
@@ -126,7 +126,7 @@ impl<T: Real> Settings<T> {
     /// Checks that the step `h` from `t` to `end` can be taken; `wanted` is its length before it was cut at
     /// `until`. If the previous trial was not finite (`finite` is false), that is reported as the cause of a
     /// small step.
-    fn check_size(&self, [t, end]: [T; 2], h: T, wanted: T, finite: bool, now: T) -> Result<(), Error> {
+    fn check_step_size(&self, [t, end]: [T; 2], h: T, wanted: T, finite: bool, now: T) -> Result<(), Error> {
         // Steps count time from their start, so only double precision's rounding of the whole run limits
         // them.
         let least = self.least.unwrap_or(T::zero()).max(constant::<T>(f64::EPSILON) * now.abs());
@@ -142,12 +142,12 @@ impl<T: Real> Settings<T> {
     /// accepted step.
     pub fn advance<D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
         &self,
-        control: &Control,
+        control: &StepControl,
         memory: &mut AdaptiveMemory<T, NV>,
         system: &mut D,
         start: &State<T, NQ, NV>,
         until: Option<T>,
-        mut attempt: impl FnMut(&mut D, &Attempt<'_, T, NQ, NV>) -> Result<Trial<T, NQ, NV>, Error>,
+        mut attempt: impl FnMut(&mut D, &TrialStep<'_, T, NQ, NV>) -> Result<StepTrial<T, NQ, NV>, Error>,
     ) -> Result<Step<T, NQ, NV>, Error> {
         let known = memory.acceleration.take();
         let acceleration = known.unwrap_or_else(|| system.acceleration(start.t, &start.q, &start.v));
@@ -155,16 +155,16 @@ impl<T: Real> Settings<T> {
             return Err(Error::NotFinite { t: to_f64(start.t) });
         }
         let dimensions = system.dimensions();
-        let scale = Scale { relative: self.relative, absolute: self.absolute, dimensions };
+        let scale = ErrorScale { relative: self.relative, absolute: self.absolute, dimensions };
         let chosen = memory.step.unwrap_or_else(|| first_step(system, &scale, start, &acceleration));
         let mut wanted = self.limited_step_length(chosen);
         let (mut rejected, mut finite) = (false, true);
         loop {
             let (h, t) = self.fit_step_length(wanted, start.t, until);
-            self.check_size([start.t, t], h, wanted, finite, system.time(start.t))?;
+            self.check_step_size([start.t, t], h, wanted, finite, system.time(start.t))?;
             memory.count_trial(self, start.t)?;
             let trial =
-                attempt(system, &Attempt { start, acceleration: &acceleration, scale: &scale, h, t })?;
+                attempt(system, &TrialStep { start, acceleration: &acceleration, scale: &scale, h, t })?;
             let error = trial.error;
             finite = error.is_finite() && is_finite(&trial.step.end.q);
             let (larger, smaller) = Self::next_steps(control, h, error, memory.error);
@@ -191,35 +191,35 @@ macro_rules! adaptive {
             /// Returns the method with relative and absolute tolerance 1e-9 (or 64 machine epsilons of a less
             /// precise `T`) and at most ten million steps.
             pub fn new() -> Self {
-                Self { settings: Settings::new() }
+                Self { settings: AdaptiveSettings::new() }
             }
 
             /// Sets the error allowed per step: relative to the magnitude of each coordinate and velocity,
             /// and absolute in SI units.
             pub fn tolerance(self, relative: T, absolute: T) -> Self {
-                Self { settings: Settings { relative, absolute, ..self.settings } }
+                Self { settings: AdaptiveSettings { relative, absolute, ..self.settings } }
             }
 
             /// Sets the first trial step, s; without this setting the method estimates it.
             pub fn initial_step(self, step: T) -> Self {
-                Self { settings: Settings { first: Some(step), ..self.settings } }
+                Self { settings: AdaptiveSettings { first: Some(step), ..self.settings } }
             }
 
             /// Sets the longest step, s; without this setting there is no limit. Set it below the duration of
             /// the shortest event that must not be stepped over.
             pub fn max_step(self, step: T) -> Self {
-                Self { settings: Settings { longest: Some(step), ..self.settings } }
+                Self { settings: AdaptiveSettings { longest: Some(step), ..self.settings } }
             }
 
             /// Sets the minimum length of a step, s. If the tolerance requires a shorter step, the run ends
             /// with [`Error::StepTooSmall`].
             pub fn min_step(self, step: T) -> Self {
-                Self { settings: Settings { least: Some(step), ..self.settings } }
+                Self { settings: AdaptiveSettings { least: Some(step), ..self.settings } }
             }
 
             /// Sets the maximum number of trial steps in one run, counting both accepted and rejected ones.
             pub fn max_steps(self, steps: u64) -> Self {
-                Self { settings: Settings { most_steps: steps, ..self.settings } }
+                Self { settings: AdaptiveSettings { most_steps: steps, ..self.settings } }
             }
         }
 

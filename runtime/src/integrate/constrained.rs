@@ -41,13 +41,13 @@ pub(super) fn displacement_to_midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ
     }
 }
 
-/// Convergence test for iterations of a velocity: whether changes are at rounding level.
-pub(super) struct Settling<T> {
+/// Convergence test for the iteration of a midpoint velocity: whether changes are at rounding level.
+pub(super) struct VelocityConvergence<T> {
     half: T,
     last: Option<T>,
 }
 
-impl<T: Real> Settling<T> {
+impl<T: Real> VelocityConvergence<T> {
     /// Returns the test for steps of length `2 half`.
     pub(super) fn new(half: T) -> Self {
         Self { half, last: None }
@@ -57,7 +57,7 @@ impl<T: Real> Settling<T> {
     /// or it no longer decreases and is negligible. A change is negligible if it is small relative to the
     /// velocity, or too small to move any coordinate; the latter applies at rest, where the velocity itself
     /// is rounding.
-    pub(super) fn is_done<const NQ: usize, const NV: usize>(
+    pub(super) fn has_converged<const NQ: usize, const NV: usize>(
         &mut self,
         change: T,
         q: &SVector<T, NQ>,
@@ -89,7 +89,7 @@ const MANY_ITERATIONS: usize = 24;
 const LEAP: f64 = 0.5;
 
 /// Solution of the constrained midpoint equations of one step.
-pub(super) struct Middle<T, const NV: usize> {
+pub(super) struct MidpointSolution<T, const NV: usize> {
     /// Velocity at the midpoint of the step.
     pub v: SVector<T, NV>,
     /// Displacement over the whole step.
@@ -99,7 +99,7 @@ pub(super) struct Middle<T, const NV: usize> {
     iterations: usize,
 }
 
-/// Whether the configuration at the end of the last step is singular; `None` if unknown.
+/// Whether the configuration at the end of the previous step is singular; `None` if unknown.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Ended(Option<bool>);
 
@@ -110,14 +110,14 @@ pub(super) fn is_crossing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, cons
     system: &D,
     start: &State<T, NQ, NV>,
     h: T,
-    found: &Result<Middle<T, NV>, Error>,
+    found: &Result<MidpointSolution<T, NV>, Error>,
     ended: &mut Ended,
 ) -> bool {
     let is_singular_state = |t: T, q: &SVector<T, NQ>| system.is_nearly_singular(t, q, &SVector::zeros());
     let is_small_change = |v: &SVector<T, NV>| {
         largest_magnitude(&(v - start.v)) <= largest_magnitude(&start.v) * constant(LEAP)
     };
-    let has_few_iterations = |found: &&Middle<T, NV>| {
+    let has_few_iterations = |found: &&MidpointSolution<T, NV>| {
         found.iterations <= if is_small_change(&found.v) { MANY_ITERATIONS } else { FEW_ITERATIONS }
     };
     if let Some(found) = found.as_ref().ok().filter(has_few_iterations) {
@@ -140,15 +140,15 @@ pub(super) fn is_crossing<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, cons
 /// from a singular configuration, iterations with the derivatives at the start converge slowly or overshoot
 /// repeatedly in one direction. Two successive changes determine the factor (Irons and Tuck, *A version of
 /// the Aitken accelerator for computer iteration*, Int. J. Numer. Meth. Eng. 1, 1969).
-struct Pace<T, const NV: usize> {
+struct AitkenRelaxation<T, const NV: usize> {
     last: SVector<T, NV>,
     share: T,
 }
 
-impl<T: Real, const NV: usize> Pace<T, NV> {
+impl<T: Real, const NV: usize> AitkenRelaxation<T, NV> {
     /// Returns the relaxation factor for the next change of an iteration: one while the changes decrease
     /// fast.
-    fn next(&mut self, change: &SVector<T, NV>) -> T {
+    fn next_factor(&mut self, change: &SVector<T, NV>) -> T {
         let (now, before) = (largest_magnitude(change), largest_magnitude(&self.last));
         let slow = before > T::zero() && now > before * constant(0.3) && now < before * constant(1e3);
         // Scaled by their magnitudes, so that the squares neither overflow nor underflow.
@@ -172,25 +172,25 @@ pub(super) fn solve_midpoint<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, c
     p: &SVector<T, NV>,
     h: T,
     mut v: SVector<T, NV>,
-) -> Result<Middle<T, NV>, Error> {
+) -> Result<MidpointSolution<T, NV>, Error> {
     let (half, two) = (h * constant(0.5), constant::<T>(2.0));
     let t = start.t + half;
-    let mut settling = Settling::new(half);
-    let mut pace = Pace { last: SVector::zeros(), share: T::one() };
+    let mut settling = VelocityConvergence::new(half);
+    let mut pace = AitkenRelaxation { last: SVector::zeros(), share: T::one() };
     for iterations in 0..MOST_ITERATIONS {
         let q = system.integrate(&start.q, &displacement_to_midpoint(system, &start.q, &v, half));
         let gain = rate(system, t, &q, &v) * half;
         let own = system.momentum(t, &q, &v);
         let change = system.impulse(start.t, &start.q, &v, h, &(p + gain - own));
-        v += change * pace.next(&change);
+        v += change * pace.next_factor(&change);
         if !is_finite(&v) {
             return Err(divergence_error(start.t, iterations));
         }
-        if settling.is_done(largest_magnitude(&change), &q, &v) {
+        if settling.has_converged(largest_magnitude(&change), &q, &v) {
             let way = displacement_to_midpoint(system, &start.q, &v, half);
             let q = system.integrate(&start.q, &way);
             let p = system.momentum(t, &q, &v) + rate(system, t, &q, &v) * half;
-            return Ok(Middle { v, p, way: way * two, iterations });
+            return Ok(MidpointSolution { v, p, way: way * two, iterations });
         }
     }
     Err(Error::NotConverged { t: to_f64(start.t), iterations: MOST_ITERATIONS })

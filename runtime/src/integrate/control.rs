@@ -1,19 +1,19 @@
 //! Norm of the error, and estimate of the first step.
 
-use super::stages::Rates;
+use super::stages::RungeKuttaRates;
 use super::{Dynamics, State, Step};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
 
 /// Relative and absolute tolerance, and the numbers of coordinates and velocities in use.
-pub(super) struct Scale<T> {
+pub(super) struct ErrorScale<T> {
     pub relative: T,
     pub absolute: T,
     pub dimensions: [usize; 2],
 }
 
-impl<T: Real> Scale<T> {
+impl<T: Real> ErrorScale<T> {
     /// Returns the scale of every coordinate: its magnitude if configuration and tangent space have the same
     /// number of entries, otherwise 1.
     fn scales_of_coordinates<const NQ: usize, const NV: usize>(&self, q: &SVector<T, NQ>) -> SVector<T, NV> {
@@ -33,7 +33,7 @@ impl<T: Real> Scale<T> {
     }
 
     /// Returns the root mean square of displacement and velocity entries, each divided by its tolerance.
-    fn norm<const N: usize>(&self, x: [&SVector<T, N>; 2], sizes: [&SVector<T, N>; 2]) -> T {
+    fn scaled_norm<const N: usize>(&self, x: [&SVector<T, N>; 2], sizes: [&SVector<T, N>; 2]) -> T {
         let ([x, v], [x_size, v_size]) = (x, sizes);
         let sum = self.sum_of_scaled_squares(x, x_size) + self.sum_of_scaled_squares(v, v_size);
         (sum / constant((2 * self.dimensions[1].max(1)) as f64)).sqrt()
@@ -41,11 +41,11 @@ impl<T: Real> Scale<T> {
 
     /// Returns the estimated error of a step relative to the tolerance: acceptable up to one; NaN if the step
     /// is NaN. `error` is the error estimate for displacement and velocity.
-    pub fn error<const NQ: usize, const NV: usize>(
+    pub fn relative_error<const NQ: usize, const NV: usize>(
         &self,
         step: &Step<T, NQ, NV>,
         displacement: &SVector<T, NV>,
-        error: &Rates<T, NV>,
+        error: &RungeKuttaRates<T, NV>,
     ) -> T {
         let (start, end) = (&step.start, &step.end);
         let moved = displacement.abs();
@@ -54,7 +54,7 @@ impl<T: Real> Scale<T> {
             &moved,
         );
         let speed = elementwise_maximum(&start.v.abs(), &end.v.abs());
-        self.norm([&error.displacement, &error.velocity], [&size, &speed])
+        self.scaled_norm([&error.displacement, &error.velocity], [&size, &speed])
     }
 }
 
@@ -67,14 +67,15 @@ fn elementwise_maximum<T: Real, const N: usize>(a: &SVector<T, N>, b: &SVector<T
 /// Nørsett and Wanner, II.4, "Starting step size".
 pub(super) fn first_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
-    scale: &Scale<T>,
+    scale: &ErrorScale<T>,
     start: &State<T, NQ, NV>,
     acceleration: &SVector<T, NV>,
 ) -> T {
     let small = constant::<T>(1e-5);
     let size = scale.scales_of_coordinates(&start.q);
     let speed = start.v.abs();
-    let scaled_state_norm = |x: &SVector<T, NV>, v: &SVector<T, NV>| scale.norm([x, v], [&size, &speed]);
+    let scaled_state_norm =
+        |x: &SVector<T, NV>, v: &SVector<T, NV>| scale.scaled_norm([x, v], [&size, &speed]);
     let (state, rate) = (scaled_state_norm(&size, &start.v), scaled_state_norm(&start.v, acceleration));
     let guess = if state < small || rate < small { constant(1e-6) } else { state / rate * constant(0.01) };
     let v = start.v + acceleration * guess;

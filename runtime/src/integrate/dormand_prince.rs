@@ -1,6 +1,6 @@
 //! The Dormand–Prince pair of orders 5 and 4 with adaptive steps.
 
-use super::adaptive::{AdaptiveMemory, Control, Settings, adaptive};
+use super::adaptive::{AdaptiveMemory, AdaptiveSettings, StepControl, adaptive};
 use super::{Dynamics, Error, Jump, Method, State, Step};
 use crate::Real;
 
@@ -9,7 +9,7 @@ mod stages;
 use stages::step_stages;
 
 /// Constants of the step-size controller of DOPRI5.
-const CONTROL: Control = Control { exponent: 0.2 - 0.75 * 0.04, beta: 0.04, factors: [10.0, 5.0] };
+const CONTROL: StepControl = StepControl { exponent: 0.2 - 0.75 * 0.04, beta: 0.04, factors: [10.0, 5.0] };
 
 /// The Dormand–Prince method of order 5 with an error estimate of order 4, adaptive steps and interpolation
 /// of order 4.
@@ -29,7 +29,7 @@ const CONTROL: Control = Control { exponent: 0.2 - 0.75 * 0.04, beta: 0.04, fact
 /// DOPRI5.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DormandPrince<T> {
-    settings: Settings<T>,
+    settings: AdaptiveSettings<T>,
 }
 
 adaptive!(DormandPrince);

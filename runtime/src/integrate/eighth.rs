@@ -1,7 +1,7 @@
 //! The method of Dormand and Prince of order 8 with adaptive steps.
 
-use super::adaptive::{AdaptiveMemory, Attempt, Control, Settings, Trial, adaptive};
-use super::stages::{Rates, rates_at_stage, weighted_stage_rates};
+use super::adaptive::{AdaptiveMemory, AdaptiveSettings, StepControl, StepTrial, TrialStep, adaptive};
+use super::stages::{RungeKuttaRates, rates_at_stage, weighted_stage_rates};
 use super::{Dynamics, Error, Jump, Method, State, Step};
 use crate::Real;
 use crate::private::constant;
@@ -12,7 +12,7 @@ mod coefficients;
 use coefficients::{FIFTH, STAGES, TERMS, THIRD, TIMES};
 
 /// Constants of the step-size controller of DOP853.
-pub(super) const CONTROL: Control = Control { exponent: 1.0 / 8.0, beta: 0.0, factors: [6.0, 3.0] };
+pub(super) const CONTROL: StepControl = StepControl { exponent: 1.0 / 8.0, beta: 0.0, factors: [6.0, 3.0] };
 
 /// Index of the stage at the end of the step.
 const END: usize = 12;
@@ -35,7 +35,7 @@ const END: usize = 12;
 /// program DOP853.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DormandPrince8<T> {
-    settings: Settings<T>,
+    settings: AdaptiveSettings<T>,
 }
 
 adaptive!(DormandPrince8);
@@ -74,12 +74,12 @@ impl<T: Real> Method<T> for DormandPrince8<T> {
 /// Returns a step, with its interpolating polynomial if `dense`.
 pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
-    attempt: &Attempt<'_, T, NQ, NV>,
+    attempt: &TrialStep<'_, T, NQ, NV>,
     dense: bool,
-) -> Trial<T, NQ, NV> {
-    let Attempt { start, acceleration, scale, h, t } = *attempt;
-    let mut k = [Rates { displacement: start.v, velocity: *acceleration }; 16];
-    let mut reach = |k: &mut [Rates<T, NV>; 16], stages: core::ops::Range<usize>| {
+) -> StepTrial<T, NQ, NV> {
+    let TrialStep { start, acceleration, scale, h, t } = *attempt;
+    let mut k = [RungeKuttaRates { displacement: start.v, velocity: *acceleration }; 16];
+    let mut reach = |k: &mut [RungeKuttaRates<T, NV>; 16], stages: core::ops::Range<usize>| {
         let mut end = *start;
         let weights = STAGES.iter().skip(stages.start - 1);
         for ((index, weights), part) in stages.clone().zip(weights).zip(TIMES.iter().skip(stages.start)) {
@@ -97,8 +97,8 @@ pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
     let end = reach(&mut k, END..END + 1);
     let displacement = change.displacement;
     let mut step = Step::linear(*start, end, displacement);
-    let fifth = scale.error(&step, &displacement, &weighted_stage_rates(h, FIFTH, &k));
-    let third = scale.error(&step, &displacement, &weighted_stage_rates(h, THIRD, &k));
+    let fifth = scale.relative_error(&step, &displacement, &weighted_stage_rates(h, FIFTH, &k));
+    let third = scale.relative_error(&step, &displacement, &weighted_stage_rates(h, THIRD, &k));
     let both = fifth * fifth + third * third * constant(0.01);
     let error = if both == T::zero() { both } else { fifth * fifth / both.sqrt() };
     let after = k[END];
@@ -115,5 +115,5 @@ pub(super) fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
         step.velocity =
             step.velocity.with_terms([square, cube, a.velocity, b.velocity, c.velocity, d.velocity]);
     }
-    Trial { step, acceleration: Some(after.velocity), error }
+    StepTrial { step, acceleration: Some(after.velocity), error }
 }

@@ -1,15 +1,17 @@
 //! Motion with contacts in which every event is located.
 
-use super::adaptive::{AdaptiveMemory, Attempt, Settings, adaptive};
-use super::control::Scale;
+use super::adaptive::{AdaptiveMemory, AdaptiveSettings, TrialStep, adaptive};
+use super::control::ErrorScale;
 use super::eighth::{CONTROL, trial_step};
-use super::local::Local;
+use super::local::ShiftedSystem;
 use super::{
     ContinuousInputs, Dynamics, Error, Inputs, Jump, Method, State, Step, System, TimeStepping,
     project_end_of_step,
 };
 use crate::Real;
-use crate::contact::{Contacts, Phase, Phased, Visitor, Watch, kept, separated};
+use crate::contact::{
+    ContactPhase, Contacts, PhaseState, PhasedMechanism, Visitor, kept, velocity_after_impact,
+};
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::SVector;
 
@@ -62,7 +64,7 @@ use nalgebra::SVector;
 /// Source: Acary and Brogliato, *Numerical Methods for Nonsmooth Dynamical Systems* (2008), ch. 8.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EventDriven<T> {
-    settings: Settings<T>,
+    settings: AdaptiveSettings<T>,
 }
 
 adaptive!(EventDriven);
@@ -76,7 +78,7 @@ pub struct EventMemory<T, const NV: usize> {
     /// Number of consecutive time-stepping steps among the very short steps; each is twice as long as the
     /// previous one.
     stretch: u32,
-    /// Number of further steps for which sliding contacts with indeterminate forces are assumed.
+    /// Number of further steps for which the forces of sliding contacts are assumed to be indeterminate.
     shared: u32,
     /// Whether the previous step was an impact.
     has_struck: bool,
@@ -94,7 +96,8 @@ const SHORT: f64 = 64.0;
 const SHORT_SHARED: f64 = 8192.0;
 /// Weight of a very short step while sliding contacts have indeterminate forces.
 const FEWER: u32 = 8;
-/// Number of steps for which indeterminate forces of sliding contacts are assumed after they last occurred.
+/// Number of steps after the last indeterminate forces of sliding contacts for which such forces are still
+/// assumed.
 const LATELY: u32 = 16;
 /// Maximum number of doublings of the shortest time-stepping step.
 const LONGEST: u32 = 14;
@@ -169,7 +172,7 @@ impl<T: Real> Method<T> for EventDriven<T> {
 /// Arguments of a step: settings, memory, start and latest end.
 #[derive(Debug)]
 pub struct Section<'a, T, const NQ: usize, const NV: usize> {
-    settings: Settings<T>,
+    settings: AdaptiveSettings<T>,
     memory: &'a mut EventMemory<T, NV>,
     start: &'a State<T, NQ, NV>,
     until: Option<T>,
@@ -185,13 +188,13 @@ impl<T: Real, const NQ: usize, const NV: usize> Section<'_, T, NQ, NV> {
 }
 
 /// Event-located step of a mechanism with contacts: arguments of the step, and the inputs.
-pub(super) struct Following<'a, T, I, const NQ: usize, const NV: usize> {
+pub(super) struct LocatedStep<'a, T, I, const NQ: usize, const NV: usize> {
     pub(super) section: Section<'a, T, NQ, NV>,
     pub(super) inputs: &'a mut I,
 }
 
 impl<T, I, const NQ: usize, const NV: usize, const NU: usize> Visitor<T, NQ, NV, NU>
-    for Following<'_, T, I, NQ, NV>
+    for LocatedStep<'_, T, I, NQ, NV>
 where
     T: Real,
     I: Inputs<T, NQ, NV, NU>,
@@ -205,7 +208,7 @@ where
         let Self { section: Section { settings, memory, start, until, origin }, inputs } = self;
         let now = origin + start.t;
         let constraint_error = |reason| Error::Constraint { t: to_f64(start.t), reason };
-        let v = separated(mechanism, now, &start.q, &start.v).map_err(constraint_error)?;
+        let v = velocity_after_impact(mechanism, now, &start.q, &start.v).map_err(constraint_error)?;
         let begin = State { v, ..*start };
         memory.has_struck = v != start.v && !memory.has_struck;
         if memory.has_struck {
@@ -216,11 +219,12 @@ where
         let (mut located, mut shared) = (None, false);
         if memory.is_stuck() {
             // The next step locates events again.
-        } else if let Ok((phase, acceleration)) = Phase::of(mechanism, now, &begin.q, &v, &tau) {
-            shared = phase.is_shared();
-            let phased = Phased { mechanism, phase };
-            let mut within = Within { phased: &phased, inputs: &mut *inputs, origin, begin, acceleration };
-            located = within.step(&settings, &mut memory.adaptive, until);
+        } else if let Ok((phase, acceleration)) = ContactPhase::of_state(mechanism, now, &begin.q, &v, &tau) {
+            shared = phase.has_ambiguous_slip();
+            let phased = PhasedMechanism { mechanism, phase };
+            let mut within =
+                PhaseStepper { phased: &phased, inputs: &mut *inputs, origin, begin, acceleration };
+            located = within.advance_in_phase(&settings, &mut memory.adaptive, until);
         }
         let resolution = epsilon::<T>().sqrt();
         if let Some(Ok(step)) = located {
@@ -233,7 +237,7 @@ where
             let until = until.map_or(start.t + h, |until| until.min(start.t + h));
             let mut system =
                 System::new(mechanism, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
-            let mut local = Local { system: &mut system, origin };
+            let mut local = ShiftedSystem { system: &mut system, origin };
             TimeStepping::step(h).advance(
                 &mut TimeStepping::step(h).memory(),
                 &mut local,
@@ -246,8 +250,8 @@ where
 }
 
 /// Step within a phase of constant contact modes.
-struct Within<'a, M, T, I, const NQ: usize, const NV: usize, const NK: usize, const NR: usize> {
-    phased: &'a Phased<'a, M, T, NK, NR>,
+struct PhaseStepper<'a, M, T, I, const NQ: usize, const NV: usize, const NK: usize, const NR: usize> {
+    phased: &'a PhasedMechanism<'a, M, T, NK, NR>,
     inputs: &'a mut I,
     origin: T,
     begin: State<T, NQ, NV>,
@@ -255,11 +259,12 @@ struct Within<'a, M, T, I, const NQ: usize, const NV: usize, const NK: usize, co
 }
 
 impl<M, T, I, const NQ: usize, const NV: usize, const NK: usize, const NR: usize>
-    Within<'_, M, T, I, NQ, NV, NK, NR>
+    PhaseStepper<'_, M, T, I, NQ, NV, NK, NR>
 where
     T: Real,
 {
-    /// Returns the value of the phase's event function after a step: negative past the first event.
+    /// Returns the value of the event function of a phase with constant contact modes after a step: negative
+    /// past the first event.
     fn event_value<const NU: usize>(&mut self, state: &State<T, NQ, NV>) -> T
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
@@ -268,14 +273,14 @@ where
         let State { t, q, v } = state;
         let (s, t) = (*t - self.begin.t, self.origin + *t);
         let tau = self.phased.mechanism.generalized_forces(t, q, v, &self.inputs.evaluate(t, q, v));
-        Watch { s, t, q, v, tau: &tau }.left(self.phased)
+        PhaseState { s, t, q, v, tau: &tau }.margin_to_event(self.phased)
     }
 
     /// Advances a step that ends at or before the first event. Returns `None` if an event occurs at the start
     /// of the step.
-    fn step<const NU: usize>(
+    fn advance_in_phase<const NU: usize>(
         &mut self,
-        settings: &Settings<T>,
+        settings: &AdaptiveSettings<T>,
         memory: &mut AdaptiveMemory<T, NV>,
         until: Option<T>,
     ) -> Option<Result<Step<T, NQ, NV>, Error>>
@@ -284,7 +289,7 @@ where
         I: Inputs<T, NQ, NV, NU>,
     {
         let Self { phased, origin, begin, .. } = *self;
-        let landing = phased.phase.landing();
+        let landing = phased.phase.time_to_landing();
         let near = landing.map(|s| begin.t + s * constant(1.5));
         let until = match (near, until) {
             (Some(near), Some(until)) => Some(near.min(until)),
@@ -294,7 +299,7 @@ where
             let inputs = &mut *self.inputs;
             let mut system =
                 System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
-            let mut local = Local { system: &mut system, origin };
+            let mut local = ShiftedSystem { system: &mut system, origin };
             memory.acceleration = Some(self.acceleration);
             let made = settings.advance(&CONTROL, memory, &mut local, &begin, until, |system, attempt| {
                 Ok(trial_step(system, attempt, true))
@@ -318,7 +323,7 @@ where
     /// `least`.
     fn step_to_event<const NU: usize>(
         &mut self,
-        settings: &Settings<T>,
+        settings: &AdaptiveSettings<T>,
         h: T,
         least: T,
     ) -> Option<Step<T, NQ, NV>>
@@ -354,7 +359,12 @@ where
     }
 
     /// Returns a trial step of `h` seconds with the current contact modes, without a search for events.
-    fn try_step<const NU: usize>(&mut self, settings: &Settings<T>, h: T, dense: bool) -> Step<T, NQ, NV>
+    fn try_step<const NU: usize>(
+        &mut self,
+        settings: &AdaptiveSettings<T>,
+        h: T,
+        dense: bool,
+    ) -> Step<T, NQ, NV>
     where
         M: Contacts<NQ, NV, NU, NK, NR, Scalar = T>,
         I: Inputs<T, NQ, NV, NU>,
@@ -362,11 +372,11 @@ where
         let Self { phased, origin, begin, .. } = *self;
         let inputs = &mut *self.inputs;
         let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
-        let mut local = Local { system: &mut system, origin };
+        let mut local = ShiftedSystem { system: &mut system, origin };
         let dimensions = phased.mechanism.features().dimensions;
-        let scale = Scale { relative: settings.relative, absolute: settings.absolute, dimensions };
+        let scale = ErrorScale { relative: settings.relative, absolute: settings.absolute, dimensions };
         let attempt =
-            Attempt { start: &begin, acceleration: &self.acceleration, scale: &scale, h, t: begin.t + h };
+            TrialStep { start: &begin, acceleration: &self.acceleration, scale: &scale, h, t: begin.t + h };
         trial_step(&mut local, &attempt, dense).step
     }
 
@@ -384,7 +394,7 @@ where
         let (q, v) = kept(phased, origin + end.t, &end.q, &end.v);
         let inputs = &mut *self.inputs;
         let mut system = System::new(phased, ContinuousInputs(|t, q: &_, v: &_| inputs.evaluate(t, q, v)));
-        let local = Local { system: &mut system, origin };
+        let local = ShiftedSystem { system: &mut system, origin };
         Ok(Step { end: project_end_of_step(&local, State { q, v, ..end }, begin.t)?, ..step })
     }
 }

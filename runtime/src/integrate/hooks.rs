@@ -38,7 +38,8 @@ impl Features {
         }
     }
 
-    /// Whether configurations are a vector space, whose tangent vectors are the rates of the coordinates.
+    /// Whether the configuration is a vector space with the rates of the coordinates as velocities, without
+    /// quaternions or generalized speeds.
     #[must_use]
     pub const fn is_plain(&self) -> bool {
         self.dimensions[0] == self.dimensions[1] && !self.speeds

@@ -1,8 +1,8 @@
 //! Implicit midpoint rule, formulated in generalized momenta.
 
 use super::constrained::{
-    Ended, MOST_ITERATIONS, Middle, Settling, divergence_error, is_crossing, solve_midpoint,
-    step_past_singularity,
+    Ended, MOST_ITERATIONS, MidpointSolution, VelocityConvergence, divergence_error, is_crossing,
+    solve_midpoint, step_past_singularity,
 };
 use super::{
     Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step, is_finite, largest_magnitude,
@@ -50,7 +50,7 @@ pub struct MidpointMemory<T, const NV: usize> {
 }
 
 /// Solution of the midpoint: configuration, then displacement to it, velocity, rate of the momentum.
-type Midpoint<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, [SVector<T, NV>; 3]);
+type SolvedMidpoint<T, const NQ: usize, const NV: usize> = (SVector<T, NQ>, [SVector<T, NV>; 3]);
 
 impl<T: Real> ImplicitMidpoint<T> {
     /// Returns the implicit midpoint rule with steps of `step` seconds. Steps are slightly shorter where they
@@ -60,7 +60,7 @@ impl<T: Real> ImplicitMidpoint<T> {
     }
 
     /// Returns the nominal length of a step, s.
-    pub(crate) fn length(&self) -> T {
+    pub(crate) fn nominal_step_length(&self) -> T {
         self.step
     }
 }
@@ -84,8 +84,8 @@ fn iterate_midpoint_equations<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, 
     p: &SVector<T, NV>,
     half: T,
     mut v: SVector<T, NV>,
-) -> Result<Midpoint<T, NQ, NV>, Error> {
-    let mut settling = Settling::new(half);
+) -> Result<SolvedMidpoint<T, NQ, NV>, Error> {
+    let mut settling = VelocityConvergence::new(half);
     let mut way = v * half;
     for iterations in 0..MOST_ITERATIONS {
         way = improved_displacement(system, &start.q, &way, &v, half);
@@ -97,7 +97,7 @@ fn iterate_midpoint_equations<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, 
         }
         let change = largest_magnitude(&(next - v));
         v = next;
-        if settling.is_done(change, &q, &v) {
+        if settling.has_converged(change, &q, &v) {
             way = improved_displacement(system, &start.q, &way, &v, half);
             let q = system.integrate(&start.q, &way);
             return Ok((q, [way, v, system.momentum_rate(start.t + half, &q, &v)]));
@@ -144,7 +144,7 @@ impl<T: Real> Method<T> for ImplicitMidpoint<T> {
             let (way, end) = match passed {
                 Some(passed) => passed,
                 None => {
-                    let Middle { v, p, way, .. } = found?;
+                    let MidpointSolution { v, p, way, .. } = found?;
                     let q = system.integrate(&start.q, &way);
                     let v1 = system.velocity(t, &q, &p, &(v + v - start.v));
                     (way, project_end_of_step(system, State { t, q, v: v1 }, start.t)?)

@@ -1,4 +1,4 @@
-//! System with time counted from the start of a step.
+//! System of equations of motion with time counted from the start of a step.
 
 use super::event_driven::Section;
 use super::{Dynamics, Error, State, Step};
@@ -7,15 +7,15 @@ use crate::constraint::{ConstraintError, Projected};
 use crate::contact::{Assumed, Touched};
 use nalgebra::{SMatrix, SVector};
 
-/// System with time counted from `origin`. Times that single precision resolves within a step are then
-/// resolved at any time of the run.
-pub(super) struct Local<'a, D, T> {
+/// System of equations of motion with time counted from `origin`, so that single precision resolves times
+/// within a step at any time of the run.
+pub(super) struct ShiftedSystem<'a, D, T> {
     pub(super) system: &'a mut D,
     pub(super) origin: T,
 }
 
 impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics<T, NQ, NV>
-    for Local<'_, D, T>
+    for ShiftedSystem<'_, D, T>
 {
     fn time(&self, t: T) -> T {
         self.origin + t
@@ -142,7 +142,7 @@ impl<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize> Dynamics
 }
 
 impl<T: Real, const NQ: usize, const NV: usize> State<T, NQ, NV> {
-    /// Returns the state at time `t` of another time origin.
+    /// Returns the same state with the time `t`, counted from another origin.
     pub(crate) fn state_with_time(self, t: T) -> Self {
         Self { t, ..self }
     }

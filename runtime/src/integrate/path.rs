@@ -41,12 +41,14 @@ impl<T: Real, const N: usize> Path<T, N> {
         Self { square, cube: line.change - after - square, ..line }
     }
 
-    /// Adds `θ² (1−θ)² r₅`, which does not change values and rates at the ends.
+    /// Returns the polynomial with the additional term `θ² (1−θ)² r₅`, which does not change values and rates
+    /// at the ends of the step.
     pub fn with_fourth(self, fourth: SVector<T, N>) -> Self {
         Self { fourth, ..self }
     }
 
-    /// Sets the coefficients of the polynomial from `r₃` on to `terms`; further coefficients become zero.
+    /// Sets the coefficients of the interpolating polynomial from the third on (`r₃`) to `terms`; further
+    /// coefficients become zero.
     pub(super) fn with_terms<const K: usize>(self, terms: [SVector<T, N>; K]) -> Self {
         let zero = SVector::zeros();
         let term_or_zero = |k: usize| terms.get(k).copied().unwrap_or(zero);
@@ -59,7 +61,8 @@ impl<T: Real, const N: usize> Path<T, N> {
         }
     }
 
-    /// Returns the value at `theta`, 0 at the start and 1 at the end.
+    /// Returns the value of the interpolating polynomial at `theta`: 0 at the start of the step, 1 at its
+    /// end.
     pub fn at(&self, theta: T) -> SVector<T, N> {
         let rest = T::one() - theta;
         let [fifth, sixth, seventh] = &self.higher;
@@ -111,7 +114,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Step<T, NQ, NV> {
         }
     }
 
-    /// Returns the state at `theta`, 0 at the start and 1 at the end.
+    /// Returns the interpolated state at `theta`: 0 at the start of the step, 1 at its end.
     pub fn at<D: Dynamics<T, NQ, NV>>(&self, system: &D, theta: T) -> State<T, NQ, NV> {
         State {
             t: self.start.t + theta * (self.end.t - self.start.t),

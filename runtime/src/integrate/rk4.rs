@@ -1,4 +1,4 @@
-//! Classical Runge–Kutta method of order 4.
+//! Classical Runge–Kutta method of order 4 with fixed steps.
 
 use super::{Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step, project_end_of_step};
 use crate::Real;
@@ -22,21 +22,21 @@ impl<T: Real> Rk4<T> {
     }
 
     /// Returns the nominal length of a step, s.
-    pub(crate) fn length(&self) -> T {
+    pub(crate) fn nominal_step_length(&self) -> T {
         self.step
     }
 }
 
 /// Rates `φ̇` and `v̇` of displacement and velocity at one Runge–Kutta stage.
-type Rates<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
+type StageRates<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
 
-/// Returns the rates at time `h` after `start`, reached with the mean rates `mean`.
+/// Returns the rates of the state at time `h` after `start`, reached with the mean rates `mean`.
 fn rates_after<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     h: T,
-    mean: &Rates<T, NV>,
-) -> Rates<T, NV> {
+    mean: &StageRates<T, NV>,
+) -> StageRates<T, NV> {
     let displacement = mean.0 * h;
     let v = start.v + mean.1 * h;
     let q = system.integrate(&start.q, &displacement);
@@ -52,12 +52,13 @@ pub(super) fn rk4_change<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const
     h: T,
     before: SVector<T, NV>,
     added: Option<&SVector<T, NV>>,
-) -> (Rates<T, NV>, Option<SVector<T, NV>>) {
+) -> (StageRates<T, NV>, Option<SVector<T, NV>>) {
     let half = h * constant(0.5);
     let transported_acceleration = |system: &D, displacement: &SVector<T, NV>| {
         added.map(|added| system.carry(start.t, &start.q, displacement, added))
     };
-    let add_acceleration = |(displacement, acceleration): Rates<T, NV>, added: &Option<SVector<T, NV>>| {
+    let add_acceleration = |(displacement, acceleration): StageRates<T, NV>,
+                            added: &Option<SVector<T, NV>>| {
         (displacement, added.map_or(acceleration, |added| acceleration + added))
     };
     let k1 = add_acceleration((start.v, before), &added.copied());

@@ -1,21 +1,21 @@
 //! A linearly implicit method of order 4 for stiff mechanisms, with adaptive steps.
 
-use super::adaptive::{AdaptiveMemory, Attempt, Control, Settings, Trial, adaptive};
-use super::rosenbrock::{Along, Slopes, elapsed_time, sampling_delay, slopes_at_start};
-use super::stages::Rates;
+use super::adaptive::{AdaptiveMemory, AdaptiveSettings, StepControl, StepTrial, TrialStep, adaptive};
+use super::rosenbrock::{JacobianDirections, Slopes, elapsed_time, sampling_delay, slopes_at_start};
+use super::stages::RungeKuttaRates;
 use super::{Dynamics, Error, Jump, Method, State, Step};
 use crate::Real;
 use crate::private::{constant, epsilon, to_f64};
 use nalgebra::{SMatrix, SVector};
 
 /// Constants of the step-size controller of RODAS.
-const CONTROL: Control = Control { exponent: 0.25, beta: 0.0, factors: [6.0, 5.0] };
+const CONTROL: StepControl = StepControl { exponent: 0.25, beta: 0.0, factors: [6.0, 5.0] };
 /// Diagonal coefficient `γ` of the method, which multiplies the Jacobian in each stage.
 const GAMMA: f64 = 0.25;
 /// Times of the stages, as fractions of the step.
 const TIMES: [f64; 6] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
-/// Weights of the earlier stages in the state at which each stage is evaluated. The last row is also the
-/// result without its own last stages.
+/// Weights of the earlier stages in the state at which each stage of RODAS is evaluated. The last row also
+/// gives the result, without its own last stages.
 const STARTS: [&[f64]; 6] = [
     &[],
     &[1.544],
@@ -24,7 +24,7 @@ const STARTS: [&[f64]; 6] = [
     &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895],
     &[1.221_224_509_226_641, 6.019_134_481_288_629, 12.537_083_329_320_87, -0.687_886_036_105_895, 1.0],
 ];
-/// Weights of the earlier stages that are added to the rates of each stage, divided by the step.
+/// Weights of the earlier stages that RODAS adds to the rates of each stage, divided by the step.
 const ADDED: [&[f64]; 6] = [
     &[],
     &[-5.6688],
@@ -39,9 +39,9 @@ const ADDED: [&[f64]; 6] = [
         -6.058_818_238_834_054,
     ],
 ];
-/// Weights of the time derivative of the rates, times the step.
+/// Weights of the time derivative of the rates in each stage of RODAS, times the step.
 const IN_TIME: [f64; 6] = [0.25, -0.1043, 0.1035, -0.036_200_000_000_000_23, 0.0, 0.0];
-/// Third and fourth coefficient of the interpolating polynomial.
+/// Weights of the stages in the third and fourth coefficient of the interpolating polynomial of RODAS.
 const TERMS: [[f64; 5]; 2] = [
     [
         10.126_235_083_445_86,
@@ -82,7 +82,7 @@ const TERMS: [[f64; 5]; 2] = [
 /// program RODAS.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rodas<T> {
-    settings: Settings<T>,
+    settings: AdaptiveSettings<T>,
 }
 
 adaptive!(Rodas);
@@ -132,14 +132,14 @@ impl<T: Real> Method<T> for Rodas<T> {
                 trial_step(system, attempt, &known)
                     .ok_or(Error::NotConverged { t: to_f64(start.t), iterations: 0 })
             });
-        memory.slopes = found.map(|linear: Linear<T, NV>| linear.slopes).or(before);
+        memory.slopes = found.map(|linear: LinearisedStep<T, NV>| linear.slopes).or(before);
         advanced
     }
 }
 
 /// Equations of motion linearised about the start of a step.
 #[derive(Clone, Copy)]
-struct Linear<T, const NV: usize> {
+struct LinearisedStep<T, const NV: usize> {
     slopes: Slopes<T, NV>,
     /// Derivatives of the displacement's rate with respect to the displacement.
     turn: SMatrix<T, NV, NV>,
@@ -147,12 +147,13 @@ struct Linear<T, const NV: usize> {
 
 fn linearize_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
-    attempt: &Attempt<'_, T, NQ, NV>,
+    attempt: &TrialStep<'_, T, NQ, NV>,
     before: Option<Slopes<T, NV>>,
-) -> Linear<T, NV> {
-    let Attempt { start, acceleration, h, .. } = *attempt;
-    let mut slopes =
-        slopes_at_start(system, start, acceleration, h, Along::All).or(before).unwrap_or(Slopes::zero());
+) -> LinearisedStep<T, NV> {
+    let TrialStep { start, acceleration, h, .. } = *attempt;
+    let mut slopes = slopes_at_start(system, start, acceleration, h, JacobianDirections::All)
+        .or(before)
+        .unwrap_or(Slopes::zero_slopes());
     // Order 4 requires a better time derivative than a forward difference; inputs may jump at the start.
     let later = sampling_delay(system, start.t, h);
     let [first, second] = [later, later * constant(2.0)].map(|later| {
@@ -173,15 +174,15 @@ fn linearize_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: us
             - system.displacement_rate(&start.q, &-direction, &start.v);
         turn.set_column(k, &(rate / (size * constant::<T>(2.0))));
     }
-    Linear { slopes, turn }
+    LinearisedStep { slopes, turn }
 }
 
 /// Returns the weighted sum of the displacement and velocity increments of six stages.
 fn weighted_sum_of_stages<T: Real, const NV: usize>(
     weights: &[f64],
-    stages: &[Rates<T, NV>; 6],
-) -> Rates<T, NV> {
-    let mut total = Rates { displacement: SVector::zeros(), velocity: SVector::zeros() };
+    stages: &[RungeKuttaRates<T, NV>; 6],
+) -> RungeKuttaRates<T, NV> {
+    let mut total = RungeKuttaRates { displacement: SVector::zeros(), velocity: SVector::zeros() };
     for (weight, stage) in weights.iter().zip(stages) {
         total.displacement += stage.displacement * constant::<T>(*weight);
         total.velocity += stage.velocity * constant::<T>(*weight);
@@ -189,20 +190,20 @@ fn weighted_sum_of_stages<T: Real, const NV: usize>(
     total
 }
 
-/// Returns a step; `None` if its matrix is singular.
+/// Returns a trial step of RODAS; `None` if the matrix of the step is singular.
 fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
-    attempt: &Attempt<'_, T, NQ, NV>,
-    linear: &Linear<T, NV>,
-) -> Option<Trial<T, NQ, NV>> {
-    let Attempt { start, acceleration, scale, h, t } = *attempt;
-    let Linear { slopes, turn } = linear;
+    attempt: &TrialStep<'_, T, NQ, NV>,
+    linear: &LinearisedStep<T, NV>,
+) -> Option<StepTrial<T, NQ, NV>> {
+    let TrialStep { start, acceleration, scale, h, t } = *attempt;
+    let LinearisedStep { slopes, turn } = linear;
     // (c − P) a − b = r and (c − Fv) b − Fφ a = s are reduced to one system for a.
     let c = T::one() / (h * constant(GAMMA));
     let scaled = SMatrix::<T, NV, NV>::identity() * c;
     let (of_a, of_b) = (scaled - turn, scaled - slopes.by_v);
-    let matrix = Factored::new(of_b * of_a - slopes.by_q)?;
-    let mut u = [Rates { displacement: SVector::zeros(), velocity: SVector::zeros() }; 6];
+    let matrix = LuFactors::new(of_b * of_a - slopes.by_q)?;
+    let mut u = [RungeKuttaRates { displacement: SVector::zeros(), velocity: SVector::zeros() }; 6];
     let mut change = u[0];
     for (k, part) in TIMES.iter().enumerate() {
         let (Some(starts), Some(added), Some(in_time)) = (STARTS.get(k), ADDED.get(k), IN_TIME.get(k)) else {
@@ -225,7 +226,7 @@ fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>
         let s = force + added.velocity / h + slopes.by_t * (h * constant(*in_time));
         let a = matrix.solve_factorised(s + of_b * r);
         if let Some(place) = u.get_mut(k) {
-            *place = Rates { displacement: a, velocity: of_a * a - r };
+            *place = RungeKuttaRates { displacement: a, velocity: of_a * a - r };
         }
     }
     let error = u[5];
@@ -236,19 +237,19 @@ fn trial_step<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>
     let [square, cube] = TERMS.map(|weights| weighted_sum_of_stages(&weights, &u));
     step.displacement = step.displacement.with_terms([square.displacement, cube.displacement]);
     step.velocity = step.velocity.with_terms([square.velocity, cube.velocity]);
-    let error = scale.error(&step, &displacement, &error);
-    Some(Trial { step, acceleration: None, error })
+    let error = scale.relative_error(&step, &displacement, &error);
+    Some(StepTrial { step, acceleration: None, error })
 }
 
 /// LU factorisation of a matrix with row pivoting.
-struct Factored<T, const N: usize> {
+struct LuFactors<T, const N: usize> {
     /// LU factors in one matrix: the upper triangle, and the elimination multipliers below the diagonal.
     both: SMatrix<T, N, N>,
     /// Index of the row with which each row was exchanged during the pivoting.
     exchanged: [usize; N],
 }
 
-impl<T: Real, const N: usize> Factored<T, N> {
+impl<T: Real, const N: usize> LuFactors<T, N> {
     /// Factorises a matrix; `None` if it is singular or a pivot is not finite.
     fn new(mut both: SMatrix<T, N, N>) -> Option<Self> {
         let mut exchanged = [0; N];

@@ -41,14 +41,14 @@ pub struct Slopes<T, const NV: usize> {
 }
 
 impl<T: Real, const NV: usize> Slopes<T, NV> {
-    pub(super) fn zero() -> Self {
+    pub(super) fn zero_slopes() -> Self {
         Self { by_q: SMatrix::zeros(), by_v: SMatrix::zeros(), by_t: SVector::zeros() }
     }
 }
 
 /// Directions of displacement for which a linearly implicit method differentiates the accelerations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Along {
+pub(super) enum JacobianDirections {
     /// Displacements that the constraints allow: for methods whose order does not depend on the matrix.
     Allowed,
     /// All displacements, including those that constraints forbid: for methods whose order requires the exact
@@ -64,15 +64,15 @@ pub(super) fn slopes_at_start<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, 
     start: &State<T, NQ, NV>,
     acceleration: &SVector<T, NV>,
     h: T,
-    along: Along,
+    along: JacobianDirections,
 ) -> Option<Slopes<T, NV>> {
     let State { t, q, v } = start;
     if system.is_nearly_singular(*t, q, &(v * h)) {
         return None;
     }
-    let mut out = Slopes::<T, NV>::zero();
+    let mut out = Slopes::<T, NV>::zero_slopes();
     let known = system.acceleration_derivatives(*t, q, v);
-    let is_part = along == Along::Allowed && system.is_constrained();
+    let is_part = along == JacobianDirections::Allowed && system.is_constrained();
     if let Some((by_q, by_v)) = known
         && !is_part
     {
@@ -187,8 +187,9 @@ impl<T: Real> Method<T> for Rosenbrock<T> {
     ) -> Result<Step<T, NQ, NV>, Error> {
         let (h, t) = equal_step(self.step, start.t, until)?;
         let before = system.acceleration(start.t, &start.q, &start.v);
-        let mut slopes =
-            slopes_at_start(system, start, &before, h, Along::Allowed).or(*memory).unwrap_or(Slopes::zero());
+        let mut slopes = slopes_at_start(system, start, &before, h, JacobianDirections::Allowed)
+            .or(*memory)
+            .unwrap_or(Slopes::zero_slopes());
         let later = sampling_delay(system, start.t, h);
         let passed = elapsed_time(system, start.t, later);
         if passed > T::zero() {

@@ -1,6 +1,6 @@
 //! Semi-implicit (symplectic) Euler method.
 
-use super::constrained::{Ended, Middle, is_crossing, solve_midpoint, step_past_singularity};
+use super::constrained::{Ended, MidpointSolution, is_crossing, solve_midpoint, step_past_singularity};
 use super::{Dynamics, Error, Jump, Method, State, Step, check_positive, equal_step, project_end_of_step};
 use crate::Real;
 use crate::private::constant;
@@ -36,7 +36,7 @@ impl<T: Real> SemiImplicitEuler<T> {
     }
 
     /// Returns the nominal length of a step, s.
-    pub(crate) fn length(&self) -> T {
+    pub(crate) fn nominal_step_length(&self) -> T {
         self.step
     }
 }
@@ -115,7 +115,7 @@ impl<T: Real> Method<T> for SemiImplicitEuler<T> {
             match passed {
                 Some(passed) => passed,
                 None => {
-                    let Middle { v, p, way, .. } = found?;
+                    let MidpointSolution { v, p, way, .. } = found?;
                     let q = system.integrate(&start.q, &way);
                     (
                         way,

@@ -8,7 +8,7 @@ use nalgebra::SVector;
 
 /// Rates `φ̇` and `v̇` of displacement and velocity at one Runge–Kutta stage.
 #[derive(Clone, Copy)]
-pub(super) struct Rates<T, const NV: usize> {
+pub(super) struct RungeKuttaRates<T, const NV: usize> {
     pub displacement: SVector<T, NV>,
     pub velocity: SVector<T, NV>,
 }
@@ -16,9 +16,9 @@ pub(super) struct Rates<T, const NV: usize> {
 /// Returns the weighted sum `h Σ weight · rates` of the rates of several stages.
 pub(super) fn weighted_sum_of_rates<T: Real, const NV: usize, const N: usize>(
     h: T,
-    terms: [(f64, &Rates<T, NV>); N],
-) -> Rates<T, NV> {
-    let mut total = Rates { displacement: SVector::zeros(), velocity: SVector::zeros() };
+    terms: [(f64, &RungeKuttaRates<T, NV>); N],
+) -> RungeKuttaRates<T, NV> {
+    let mut total = RungeKuttaRates { displacement: SVector::zeros(), velocity: SVector::zeros() };
     for (weight, rates) in terms {
         let weight = h * constant(weight);
         total.displacement += rates.displacement * weight;
@@ -32,22 +32,22 @@ pub(super) fn rates_at_stage<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, c
     system: &mut D,
     start: &State<T, NQ, NV>,
     t: T,
-    change: &Rates<T, NV>,
-) -> (Rates<T, NV>, State<T, NQ, NV>) {
+    change: &RungeKuttaRates<T, NV>,
+) -> (RungeKuttaRates<T, NV>, State<T, NQ, NV>) {
     let v = start.v + change.velocity;
     let q = system.integrate(&start.q, &change.displacement);
     let displacement = system.displacement_rate(&start.q, &change.displacement, &v);
     let velocity = system.acceleration(t, &q, &v);
-    (Rates { displacement, velocity }, State { t, q, v })
+    (RungeKuttaRates { displacement, velocity }, State { t, q, v })
 }
 
 /// Returns `h Σ weight · rates` over the stages with the given indices.
 pub(super) fn weighted_stage_rates<T: Real, const NV: usize, const K: usize>(
     h: T,
     weights: &[(usize, f64)],
-    stages: &[Rates<T, NV>; K],
-) -> Rates<T, NV> {
-    let mut total = Rates { displacement: SVector::zeros(), velocity: SVector::zeros() };
+    stages: &[RungeKuttaRates<T, NV>; K],
+) -> RungeKuttaRates<T, NV> {
+    let mut total = RungeKuttaRates { displacement: SVector::zeros(), velocity: SVector::zeros() };
     for (rates, weight) in weights.iter().filter_map(|(k, weight)| Some((stages.get(*k)?, weight))) {
         let weight = h * constant(*weight);
         total.displacement += rates.displacement * weight;

@@ -1,7 +1,7 @@
 //! A mechanism with its inputs: the ordinary differential equation to be integrated.
 
-use super::event_driven::{Following, Section};
-use super::local::Local;
+use super::event_driven::{LocatedStep, Section};
+use super::local::ShiftedSystem;
 use super::{Error, Method, State, Step};
 use crate::constraint::{ConstraintError, Projected};
 use crate::contact::{Assumed, Touched};
@@ -87,7 +87,7 @@ where
 /// Functions of a mechanism under its inputs that integrators use. Shapes, units and frames as in
 /// [`Mechanism`](crate::Mechanism).
 pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
-    /// Returns the time `t` of the method as time of the run.
+    /// Returns the time of the simulation at the method's time `t`, which may count from another origin.
     fn time(&self, t: T) -> T {
         t
     }
@@ -122,7 +122,7 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
         [NQ, NV]
     }
 
-    /// Returns `v̇` under the inputs at time `t`.
+    /// Returns the acceleration `v̇` under the inputs at time `t`.
     fn acceleration(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
     /// Whether constraints restrict the state of the mechanism.
@@ -143,11 +143,12 @@ pub trait Dynamics<T: Real, const NQ: usize, const NV: usize> {
     /// Returns the generalized momentum `p`; for constraints enforced by feedback, the velocity.
     fn momentum(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// Returns `ṗ` under the inputs at time `t`, without constraint forces, except if friction depends on
-    /// them.
+    /// Returns the rate of the generalized momentum, `ṗ`, under the inputs at time `t`. Constraint forces are
+    /// not included, except if friction depends on them.
     fn momentum_rate(&mut self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
-    /// Returns the contribution of the velocity to `ṗ`, without inputs: inertia and dashpots.
+    /// Returns the part of the momentum rate `ṗ` that depends on the velocity, from inertia and dashpots,
+    /// without inputs.
     fn inertial_rate(&self, t: T, q: &SVector<T, NQ>, v: &SVector<T, NV>) -> SVector<T, NV>;
 
     /// Returns the velocity for the generalized momentum `p`, refined from the estimate `v`: exact up to
@@ -290,7 +291,7 @@ impl<'m, M, I, const NU: usize> System<'m, M, I, NU> {
             );
         }
         self.undetermined = None;
-        let mut local = Local { system: &mut *self, origin };
+        let mut local = ShiftedSystem { system: &mut *self, origin };
         let step = method.advance(memory, &mut local, start, until, dense);
         step.map_err(|error| match (error.shift_time_origin(to_f64(origin)), self.undetermined) {
             (
@@ -453,15 +454,15 @@ where
     }
 
     fn follow(&mut self, section: Section<'_, T, NQ, NV>) -> Option<Result<Step<T, NQ, NV>, Error>> {
-        self.mechanism.visit_contacts(Following { section, inputs: &mut self.inputs })
+        self.mechanism.visit_contacts(LocatedStep { section, inputs: &mut self.inputs })
     }
 
     fn is_nearly_singular(&self, t: T, q: &SVector<T, NQ>, dv: &SVector<T, NV>) -> bool {
         self.mechanism.features().constrained && self.mechanism.is_nearly_singular(t, q, dv)
     }
 
-    /// Returns the derivatives by the chain rule: only the inputs, which may depend on the state, are
-    /// differentiated by finite differences.
+    /// Returns the derivatives of the acceleration by the chain rule: only the inputs, which may depend on
+    /// the state, are differentiated by finite differences.
     fn acceleration_derivatives(
         &mut self,
         t: T,

@@ -3,7 +3,8 @@ use crate::Mechanism;
 use crate::lie::{ball_difference, free_difference};
 use crate::simulate::simulate;
 use crate::testing::{
-    FreeBody, OneDof, Top, oscillator, pendulum, pendulum_period, rotate_vector, symmetric_top,
+    FreeBody, OneDof, SpinningTop, harmonic_oscillator, pendulum_period, rotate_vector, symmetric_top,
+    unit_pendulum,
 };
 use nalgebra::Vector3;
 use std::format;
@@ -17,7 +18,7 @@ fn equal_steps(h: f64) -> DormandPrince<f64> {
     DormandPrince::new().tolerance(1e6, 1e6).initial_step(h).max_step(h)
 }
 
-/// Returns the method of order 8 with equal steps.
+/// Returns the Dormand–Prince method of order 8 whose steps all have the length `h`.
 fn eighth_order_method(h: f64) -> DormandPrince8<f64> {
     DormandPrince8::new().tolerance(1e6, 1e6).initial_step(h).max_step(h)
 }
@@ -30,7 +31,7 @@ fn observed_order(error: impl Fn(f64) -> f64, h: f64) -> f64 {
 /// Returns the error of the driven, damped oscillator `q̈ = −q − v/5 + sin 2t` at t = 3, whose closed-form
 /// solution starts at rest.
 fn driven_error<S: Method<f64>>(method: S) -> f64 {
-    let mechanism = OneDof { damping: 0.2, ..oscillator::<f64>() };
+    let mechanism = OneDof { damping: 0.2, ..harmonic_oscillator::<f64>() };
     let end = simulate(&mechanism)
         .inputs(|t, _, _| SVector::from([(2.0 * t).sin()]))
         .duration(3.0)
@@ -48,7 +49,7 @@ fn driven_error<S: Method<f64>>(method: S) -> f64 {
 
 /// Returns the error of attitude and angular velocity of the free symmetric top at t = 2.
 fn top_error<S: Method<f64>>(method: S) -> f64 {
-    let top = Top { inertia: SYMMETRIC };
+    let top = SpinningTop { inertia: SYMMETRIC };
     let end = simulate(&top).from(top.neutral(), SPIN).duration(2.0).method(method).finish().unwrap();
     let (attitude, w) = symmetric_top(SYMMETRIC, SPIN.into(), 2.0);
     let turn = Vector3::from(ball_difference(attitude, end.q.into()));
@@ -101,7 +102,7 @@ orders! {
     rodas_has_order_four: |h| Rodas::new().tolerance(1e6, 1e6).initial_step(h).max_step(h), 4.0, 2.0 / 32.0;
 }
 
-/// Checks that the order 8 is observed to within one half. Steps that are short enough to show the order
+/// Checks that the observed order is 8 to within one half. Steps that are short enough to show the order
 /// leave little error above rounding.
 #[test]
 fn dormand_prince_8_has_order_eight() {
@@ -120,7 +121,7 @@ fn dormand_prince_8_has_order_eight() {
 fn dense_output_has_order_four() {
     // The error of one interpolated step is of order h⁵.
     let dense_output_error = |h: f64| {
-        let oscillator = oscillator::<f64>();
+        let oscillator = harmonic_oscillator::<f64>();
         let samples = simulate(&oscillator).from([1.0], [0.5]).duration(h).sample_every(h / 7.0);
         samples.method(equal_steps(h)).fold(0.0_f64, |worst, sample| {
             let sample = sample.unwrap();
@@ -135,7 +136,7 @@ fn dense_output_has_order_four() {
 #[test]
 fn dense_output_of_order_eight_has_order_seven() {
     let dense_output_error = |h: f64| {
-        let oscillator = oscillator::<f64>();
+        let oscillator = harmonic_oscillator::<f64>();
         let samples = simulate(&oscillator).from([1.0], [0.5]).duration(h).sample_every(h / 7.0);
         samples.method(eighth_order_method(h)).fold(0.0_f64, |worst, sample| {
             let sample = sample.unwrap();
@@ -147,28 +148,29 @@ fn dense_output_of_order_eight_has_order_seven() {
     assert!((found - 8.0).abs() < 0.5, "{found}");
 }
 
-fn assert_met<S: Method<f64> + Copy>(tolerance: f64, method: S) {
+fn assert_tolerance_met<S: Method<f64> + Copy>(tolerance: f64, method: S) {
     for error in [driven_error(method), top_error(method), thrown_error(method)] {
         assert!(error < 20.0 * tolerance, "{tolerance}: {error}");
     }
 }
 
 #[test]
-fn tolerance_is_met() {
+fn adaptive_methods_meet_tolerances() {
     for tolerance in [1e-6, 1e-8, 1e-10, 1e-12] {
-        assert_met(tolerance, DormandPrince::new().tolerance(tolerance, tolerance));
-        assert_met(tolerance, DormandPrince8::new().tolerance(tolerance, tolerance));
+        assert_tolerance_met(tolerance, DormandPrince::new().tolerance(tolerance, tolerance));
+        assert_tolerance_met(tolerance, DormandPrince8::new().tolerance(tolerance, tolerance));
     }
     for tolerance in [1e-4, 1e-6, 1e-8] {
-        assert_met(tolerance, Rodas::new().tolerance(tolerance, tolerance));
+        assert_tolerance_met(tolerance, Rodas::new().tolerance(tolerance, tolerance));
     }
 }
 
-/// Compares the evaluations of the forces for a pendulum that swings ten times, to 1e-12.
+/// Compares the number of force evaluations of two methods for a pendulum that swings ten times, with a
+/// tolerance of 1e-12.
 #[test]
 fn order_eight_takes_fewer_evaluations_where_tolerances_are_tight() {
     let calls = core::cell::Cell::new(0_u32);
-    let pendulum = pendulum();
+    let pendulum = unit_pendulum();
     let run = simulate(&pendulum).from([2.5], [0.0]).duration(30.0).inputs(|_, _, _| {
         calls.set(calls.get() + 1);
         SVector::from([0.0])
@@ -185,7 +187,7 @@ fn order_eight_takes_fewer_evaluations_where_tolerances_are_tight() {
 #[test]
 fn rodas_follows_a_stiff_oscillator() {
     let calls = core::cell::Cell::new(0_u32);
-    let mechanism = OneDof { force: |q: f64| -q, ..oscillator() };
+    let mechanism = OneDof { force: |q: f64| -q, ..harmonic_oscillator() };
     let run = simulate(&mechanism).from([2.0], [0.0]).duration(2000.0).inputs(|_, q, v| {
         calls.set(calls.get() + 1);
         SVector::from([1e3 * (1.0 - q[0] * q[0]) * v[0]])
@@ -200,19 +202,23 @@ fn rodas_follows_a_stiff_oscillator() {
 fn pendulum_swings_with_the_elliptic_period() {
     let period = pendulum_period(2.5);
     let method = DormandPrince::new().tolerance(1e-13, 1e-13);
-    let end =
-        simulate(&pendulum()).from([2.5], [0.0]).duration(10.0 * period).method(method).finish().unwrap();
+    let end = simulate(&unit_pendulum())
+        .from([2.5], [0.0])
+        .duration(10.0 * period)
+        .method(method)
+        .finish()
+        .unwrap();
     assert!((end.q[0] - 2.5).abs() < 1e-10 && end.v[0].abs() < 1e-10, "{end:?}");
 }
 
 /// Returns momentum in the ground frame and kinetic energy of a free top.
-fn invariants_of_top(top: &Top<f64>, q: SVector<f64, 4>, v: SVector<f64, 3>) -> (Vector3<f64>, f64) {
+fn invariants_of_top(top: &SpinningTop<f64>, q: SVector<f64, 4>, v: SVector<f64, 3>) -> (Vector3<f64>, f64) {
     (rotate_vector(q.into(), top.generalized_momentum(0.0, &q, &v)), top.kinetic_energy(0.0, &q, &v))
 }
 
 #[test]
-fn tumbling_body_keeps_momentum_and_energy() {
-    let top = Top { inertia: TUMBLING };
+fn tumbling_body_conserves_momentum_and_energy() {
+    let top = SpinningTop { inertia: TUMBLING };
     let start = invariants_of_top(&top, top.neutral(), SPIN.into());
     let run = simulate(&top).from(top.neutral(), SPIN);
     let tight = DormandPrince::new().tolerance(1e-13, 1e-13);
@@ -224,8 +230,8 @@ fn tumbling_body_keeps_momentum_and_energy() {
 }
 
 #[test]
-fn midpoint_rule_keeps_the_invariants_of_the_top() {
-    let top = Top { inertia: TUMBLING };
+fn midpoint_rule_preserves_top_invariants() {
+    let top = SpinningTop { inertia: TUMBLING };
     let start = invariants_of_top(&top, top.neutral(), SPIN.into());
     let run = simulate(&top).from(top.neutral(), SPIN).method(ImplicitMidpoint::step(0.05));
     let end = run.duration(500.0).finish().unwrap();
@@ -236,8 +242,8 @@ fn midpoint_rule_keeps_the_invariants_of_the_top() {
 }
 
 #[test]
-fn midpoint_rule_keeps_the_energy_of_the_pendulum_bounded() {
-    let pendulum = pendulum();
+fn midpoint_rule_bounds_pendulum_energy_error() {
+    let pendulum = unit_pendulum();
     let run = simulate(&pendulum).from([2.0], [0.0]).method(ImplicitMidpoint::step(0.05)).duration(5000.0);
     let mut worst = [0.0_f64; 2];
     for sample in run {
@@ -252,7 +258,7 @@ fn midpoint_rule_keeps_the_energy_of_the_pendulum_bounded() {
 
 #[test]
 fn midpoint_rule_is_reversible() {
-    let top = Top { inertia: TUMBLING };
+    let top = SpinningTop { inertia: TUMBLING };
     let there = simulate(&top).from(top.neutral(), SPIN).method(ImplicitMidpoint::step(0.1)).duration(20.0);
     let there = there.finish().unwrap();
     let back = simulate(&top).from(there.q, -there.v).method(ImplicitMidpoint::step(0.1)).duration(20.0);
@@ -262,7 +268,7 @@ fn midpoint_rule_is_reversible() {
 
 #[test]
 fn midpoint_rule_rests_in_equilibrium() {
-    let held = OneDof { force: |_| -9.81, ..oscillator::<f64>() };
+    let held = OneDof { force: |_| -9.81, ..harmonic_oscillator::<f64>() };
     let run = simulate(&held).inputs(|_, q, v| SVector::from([9.81 - 1e3 * q[0] - v[0]])).duration(10.0);
     let end = run.from([1e-3], [0.0]).method(ImplicitMidpoint::step(1e-3)).finish().unwrap();
     assert!(end.q[0].abs() < 1e-3 && end.q[0].is_finite());
@@ -270,7 +276,7 @@ fn midpoint_rule_rests_in_equilibrium() {
 
 #[test]
 fn quaternions_stay_unit_over_many_steps() {
-    let top = Top { inertia: TUMBLING };
+    let top = SpinningTop { inertia: TUMBLING };
     let run = simulate(&top).from(top.neutral(), SPIN).duration(100.0);
     let norms = [
         run.clone().method(Rk4::step(1e-3)).finish().unwrap().q.norm(),
@@ -281,8 +287,8 @@ fn quaternions_stay_unit_over_many_steps() {
 }
 
 #[test]
-fn single_precision_runs() {
-    let oscillator = oscillator::<f32>();
+fn simulation_runs_in_single_precision() {
+    let oscillator = harmonic_oscillator::<f32>();
     let run = simulate(&oscillator).from([1.0], [0.0]).duration(10.0);
     let ends = [
         run.clone().finish().unwrap().q[0],
@@ -293,8 +299,8 @@ fn single_precision_runs() {
 }
 
 #[test]
-fn settings_that_make_no_sense_are_refused() {
-    let oscillator = oscillator::<f64>();
+fn invalid_settings_are_rejected() {
+    let oscillator = harmonic_oscillator::<f64>();
     let run = simulate(&oscillator).duration(1.0);
     let is_invalid_step =
         |result: Result<_, Error>| matches!(result.map(|_| ()), Err(Error::InvalidStep { .. }));
@@ -314,18 +320,18 @@ fn settings_that_make_no_sense_are_refused() {
 }
 
 #[test]
-fn failures_are_errors() {
-    let broken = OneDof { force: |_| f64::NAN, ..oscillator::<f64>() };
+fn failed_runs_return_errors() {
+    let broken = OneDof { force: |_| f64::NAN, ..harmonic_oscillator::<f64>() };
     let run = simulate(&broken).duration(1.0);
     let lost = Err(Error::NotFinite { t: 0.0 });
     assert_eq!(run.clone().finish(), lost);
     assert_eq!(run.clone().method(Rk4::step(0.1)).finish(), lost);
     assert_eq!(run.clone().method(SemiImplicitEuler::step(0.1)).finish(), lost);
     assert_eq!(run.method(ImplicitMidpoint::step(0.1)).finish(), lost);
-    assert_eq!(simulate(&oscillator::<f64>()).from([f64::NAN], [0.0]).duration(1.0).finish(), lost);
+    assert_eq!(simulate(&harmonic_oscillator::<f64>()).from([f64::NAN], [0.0]).duration(1.0).finish(), lost);
 
     // The solution of q̈ = 2 q³ from q = v = 1 is 1/(1 − t), which diverges at t = 1.
-    let escaping = OneDof { force: |q: f64| 2.0 * q.powi(3), ..oscillator::<f64>() };
+    let escaping = OneDof { force: |q: f64| 2.0 * q.powi(3), ..harmonic_oscillator::<f64>() };
     let end = simulate(&escaping).from([1.0], [1.0]).duration(2.0).finish();
     let is_singular_time = |t: f64| (t - 1.0).abs() < 1e-3;
     assert!(
@@ -333,7 +339,7 @@ fn failures_are_errors() {
         "{end:?}"
     );
 
-    let stiff = OneDof { force: |q: f64| -1e6 * q, ..oscillator::<f64>() };
+    let stiff = OneDof { force: |q: f64| -1e6 * q, ..harmonic_oscillator::<f64>() };
     let run = simulate(&stiff).from([1.0], [0.0]).duration(1.0);
     let end = run.clone().method(ImplicitMidpoint::step(0.1)).finish();
     assert!(matches!(end, Err(Error::NotConverged { .. })), "{end:?}");
@@ -348,7 +354,7 @@ fn failures_are_errors() {
 /// force, with steps a thousand times longer than the stability limit of an explicit method.
 #[test]
 fn rosenbrock_is_stable_where_springs_are_stiff() {
-    let mechanism = OneDof { damping: 2e3, force: |q: f64| -1e8 * q, ..oscillator() };
+    let mechanism = OneDof { damping: 2e3, force: |q: f64| -1e8 * q, ..harmonic_oscillator() };
     let run = simulate(&mechanism)
         .from([1e-3], [0.0])
         .inputs(|t: f64, _, _| SVector::from([t.sin()]))
@@ -361,7 +367,7 @@ fn rosenbrock_is_stable_where_springs_are_stiff() {
 
 #[test]
 fn rodas_is_stable_where_springs_are_stiff() {
-    let mechanism = OneDof { damping: 2e3, force: |q: f64| -1e8 * q, ..oscillator() };
+    let mechanism = OneDof { damping: 2e3, force: |q: f64| -1e8 * q, ..harmonic_oscillator() };
     let run = simulate(&mechanism)
         .from([0.0], [1e-4])
         .inputs(|t: f64, _, _| SVector::from([1e4 * t.sin()]))

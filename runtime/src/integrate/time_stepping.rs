@@ -63,12 +63,12 @@ use nalgebra::SVector;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeStepping<T> {
     step: T,
-    stages: Stages,
+    stages: StageVariant,
 }
 
 /// Variants of a time step: four or two evaluations of the dynamics, or leapfrog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stages {
+enum StageVariant {
     RungeKutta,
     Midpoint,
     Leapfrog,
@@ -78,7 +78,7 @@ impl<T: Real> TimeStepping<T> {
     /// Returns the time-stepping method with steps of `step` seconds. Steps are slightly shorter where they
     /// must end on a sample time.
     pub const fn step(step: T) -> Self {
-        Self { step, stages: Stages::RungeKutta }
+        Self { step, stages: StageVariant::RungeKutta }
     }
 
     /// Selects steps with two evaluations of the dynamics instead of four. As in Moreau's own scheme, half a
@@ -120,7 +120,7 @@ impl<T: Real> TimeStepping<T> {
     /// assert!((end.q[0] - 0.25).abs() < 1e-3);
     /// ```
     pub const fn midpoint(self) -> Self {
-        Self { stages: Stages::Midpoint, ..self }
+        Self { stages: StageVariant::Midpoint, ..self }
     }
 
     /// Selects steps with one evaluation of the dynamics, and a second one where contact modes have changed.
@@ -151,27 +151,28 @@ impl<T: Real> TimeStepping<T> {
     /// assert!(end.q[0].abs() < 1e-9 && end.v[0].abs() < 1e-12);
     /// ```
     pub const fn leapfrog(self) -> Self {
-        Self { stages: Stages::Leapfrog, ..self }
+        Self { stages: StageVariant::Leapfrog, ..self }
     }
 
     /// Returns the length of a step, s.
-    pub(crate) fn length(&self) -> T {
+    pub(crate) fn nominal_step_length(&self) -> T {
         self.step
     }
 
     /// Whether steps have the four stages of [`Rk4`](super::Rk4), instead of a midpoint.
     pub(crate) fn has_four_stages(&self) -> bool {
-        self.stages == Stages::RungeKutta
+        self.stages == StageVariant::RungeKutta
     }
 }
 
-/// Contribution of the contacts to the velocity in the last step, per second.
+/// Contribution of the contacts to the velocity in the last step, per second, with the data that the next
+/// step uses.
 #[derive(Clone, Copy, Debug)]
 pub struct TouchMemory<T, const NV: usize> {
     rate: SVector<T, NV>,
     /// Impulses of the contacts in the last step.
     impulses: Impulses<T, NV>,
-    /// Whether the contribution is about that of the previous step.
+    /// Whether the contribution of the contacts is about that of the previous step.
     steady: bool,
     /// Largest violation of the contact conditions that is not reported yet.
     violation: T,
@@ -246,8 +247,8 @@ impl<T: Real> Method<T> for TimeStepping<T> {
         let before = earlier.unwrap_or_else(|| {
             let acceleration = system.acceleration(start.t, &start.q, &start.v);
             match self.stages {
-                Stages::RungeKutta => acceleration,
-                Stages::Midpoint | Stages::Leapfrog => {
+                StageVariant::RungeKutta => acceleration,
+                StageVariant::Midpoint | StageVariant::Leapfrog => {
                     acceleration_in_space(system, (start.t, &start.v), acceleration)
                 }
             }
@@ -258,10 +259,11 @@ impl<T: Real> Method<T> for TimeStepping<T> {
                 .map_err(constraint_error)?,
         };
         let (free, given) = match self.stages {
-            Stages::RungeKutta => rk4_step_with_contacts(system, start, (&before, &rate), h, t),
-            Stages::Midpoint | Stages::Leapfrog => {
-                let (free, given, at_middle) = through_middle(system, start, (&before, &rate), h, t);
-                memory.acceleration = matches!(self.stages, Stages::Leapfrog).then_some(at_middle);
+            StageVariant::RungeKutta => rk4_step_with_contacts(system, start, (&before, &rate), h, t),
+            StageVariant::Midpoint | StageVariant::Leapfrog => {
+                let (free, given, at_middle) =
+                    midpoint_step_with_contacts(system, start, (&before, &rate), h, t);
+                memory.acceleration = matches!(self.stages, StageVariant::Leapfrog).then_some(at_middle);
                 (free, given)
             }
         };
@@ -315,7 +317,7 @@ pub(crate) fn rk4_step_with_contacts<T: Real, D: Dynamics<T, NQ, NV>, const NQ: 
 /// at its start, under impulses that add `rate` to the velocity per second, their total contribution to the
 /// velocity, and the acceleration without them at the midpoint, in the axes at the end of the step. Both
 /// accelerations are [in space](acceleration_in_space).
-fn through_middle<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
+fn midpoint_step_with_contacts<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
     start: &State<T, NQ, NV>,
     (before, rate): (&SVector<T, NV>, &SVector<T, NV>),

@@ -1,19 +1,19 @@
-//! Sines and cosines of many angles in lanes.
+//! Sines and cosines of many angles in SIMD lanes.
 
 use super::registers::Registers;
 use crate::Real;
 use crate::arithmetic::Vector;
-use crate::trigonometry::{Aligned, reduced_sine_and_cosine, same_type_reference};
+use crate::trigonometry::{CacheAligned, reduced_sine_and_cosine, same_type_reference};
 use core::any::Any;
 
-/// Returns sines and cosines of angles that are within the range of the fast argument reduction.
+/// Returns sines and cosines of angles, rad, that are within the range of the fast argument reduction.
 #[inline(always)]
-pub(super) fn of_small<A: Registers, const L: usize>(x: &[f64; L]) -> [[f64; L]; 2] {
+pub(super) fn sin_cos_of_small<A: Registers, const L: usize>(x: &[f64; L]) -> [[f64; L]; 2] {
     let (s, c, shifted) = reduced_sine_and_cosine::<A, _>(Vector::<A, f64, L>::from_array(*x));
     A::rotate_quadrants(s.numbers_of_lanes(), c.numbers_of_lanes(), shifted.numbers_of_lanes())
 }
 
-/// Replaces the angles by their sines and returns the cosines.
+/// Replaces the angles, rad, by their sines and returns the cosines.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn replace_by_sines<A: Registers, const L: usize, const N: usize>(
@@ -23,7 +23,7 @@ fn replace_by_sines<A: Registers, const L: usize, const N: usize>(
     if !A::are_small(&x.map(|x| *x.numbers_of_lanes())) {
         for (x, c) in x.iter_mut().zip(&mut c) {
             // A copy, so that the angles themselves need not be stored in memory.
-            let angles = Aligned(*x.numbers_of_lanes());
+            let angles = CacheAligned(*x.numbers_of_lanes());
             let (sines, cosines) = A::sin_cos_of_large(&angles.0);
             (*x, *c) = (Vector::from_array(sines), Vector::from_array(cosines));
         }
@@ -37,14 +37,14 @@ fn replace_by_sines<A: Registers, const L: usize, const N: usize>(
 }
 
 /// Sines and cosines of the same angles.
-type Both<X> = (X, X);
+type SinesAndCosines<X> = (X, X);
 
-/// Returns sines and cosines if the lanes fill a register, otherwise `None`.
+/// Returns sines and cosines of angles, rad, if the lanes fill a register, otherwise `None`.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn sin_cos_all<A: Registers, T: Real, const L: usize, const N: usize>(
     mut x: [Vector<A, T, L>; N],
-) -> Option<Both<[Vector<A, T, L>; N]>> {
+) -> Option<SinesAndCosines<[Vector<A, T, L>; N]>> {
     macro_rules! case {
         ($lanes:literal) => {
             if let Some(s) = (&mut x as &mut dyn Any).downcast_mut::<[Vector<A, f64, $lanes>; N]>() {
@@ -59,11 +59,13 @@ pub(crate) fn sin_cos_all<A: Registers, T: Real, const L: usize, const N: usize>
     None
 }
 
-/// Returns sines and cosines of numbers that are SIMD lanes themselves, if these lanes fill a register;
-/// otherwise `None`.
+/// Returns sines and cosines of angles, rad, whose scalar type is itself SIMD lanes, if these lanes fill a
+/// register; otherwise `None`.
 #[cfg_attr(debug_assertions, inline)]
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn of_lanes<A: Registers, T: Real, const N: usize>(x: &[T; N]) -> Option<Both<[T; N]>> {
+pub(crate) fn sin_cos_of_lanes<A: Registers, T: Real, const N: usize>(
+    x: &[T; N],
+) -> Option<SinesAndCosines<[T; N]>> {
     macro_rules! case {
         ($lanes:literal) => {
             if let Some(x) = same_type_reference::<_, [crate::Lanes<f64, $lanes>; N]>(x)

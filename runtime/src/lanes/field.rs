@@ -134,13 +134,14 @@ impl<T: Real, const N: usize> ComplexField for Lanes<T, N> {
         self.map(|x| x.powi(n))
     }
 
-    /// Whether any lane is finite: lanes that are not finite must not stop the others.
+    /// Whether any lane is finite. Computations continue while one lane is finite, so that a failed lane does
+    /// not stop the others.
     #[inline(always)]
     fn is_finite(&self) -> bool {
         self.0.iter().any(T::is_finite)
     }
 
-    /// Returns `None` if any lane has no square root.
+    /// Returns the square root of each lane; `None` if any lane is negative.
     #[inline(always)]
     fn try_sqrt(self) -> Option<Self> {
         self.0.iter().all(|x| *x >= T::zero()).then(|| self.sqrt())

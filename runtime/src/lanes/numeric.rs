@@ -9,7 +9,7 @@ use nalgebra::{Field, SimdValue};
 use num_traits::{FromPrimitive, Num, One, Signed, Zero};
 use simba::scalar::SubsetOf;
 
-/// Compares lanes: less, equal or greater if this is true in every lane.
+/// Compares lanes: the result is less, equal or greater if that holds in every lane, otherwise `None`.
 impl<T: PartialOrd, const N: usize> PartialOrd for Lanes<T, N> {
     #[inline(always)]
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
@@ -174,7 +174,7 @@ impl<T: Real, const N: usize> SimdValue for Lanes<T, N> {
     }
 }
 
-/// Implements conversions to lanes, and from lanes that all contain the same kind of number.
+/// Implements conversions from numbers to lanes, and back from lanes that all contain the same number.
 macro_rules! numbers_in_lanes {
     ($($number:ty)+) => {$(
         impl<T: Real, const N: usize> SubsetOf<Lanes<T, N>> for $number {

@@ -1,4 +1,4 @@
-//! Arithmetic of lanes in vector registers.
+//! Arithmetic of SIMD lanes in vector registers.
 //!
 //! The compiler's automatic vectorisation covers isolated loops, but not the vectors of a long straight-line
 //! program. The crate `wide`, on which nalgebra depends with the standard library, provides the registers of
@@ -15,12 +15,12 @@ pub trait VectorLoop {
     /// Whether the loop fills several registers of eight numbers at a time.
     const IS_LONG: bool;
 
-    /// Runs the loop with the instructions `A`. The function and all its callees are inlined into a function
-    /// with target features, which thus apply to them.
+    /// Runs the loop with the instruction set `A`. The function and all its callees are inlined into a
+    /// function with the target features of `A`.
     fn run<A: Arithmetic>(self);
 }
 
-/// Available instructions, for single numbers and for several lanes at once.
+/// Instruction set for arithmetic on single numbers and on several lanes at once.
 pub trait Registers: Copy + 'static {
     /// Whether the processor has a fused multiply-add instruction; otherwise `mul_add` would be a slow
     /// library call. False with the feature `reproducible`, because other processors lack the instruction.
@@ -28,18 +28,18 @@ pub trait Registers: Copy + 'static {
     /// Whether there are 32 registers of eight double-precision numbers; otherwise there are 16 of four.
     const WIDE: bool;
 
-    /// Runs a loop in a function that has the instructions.
+    /// Runs a loop inside a function that enables the target features of the instruction set.
     fn run_loop<L: VectorLoop>(body: L);
 
     /// Returns the sums `a + b` of corresponding lanes.
     fn add<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
-    /// Returns the differences `a - b` of corresponding lanes.
+    /// Returns the differences `a − b` of corresponding lanes.
     fn sub<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
     /// Returns the products `a b` of corresponding lanes.
     fn mul<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
     /// Returns the quotients `a / b` of corresponding lanes.
     fn div<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N];
-    /// Returns the negative `-a` of each lane.
+    /// Returns the negative `−a` of each lane.
     fn neg<T: Real, const N: usize>(a: &[T; N]) -> [T; N];
     /// Returns the absolute value of each lane.
     fn magnitude<T: Real, const N: usize>(a: &[T; N]) -> [T; N];
@@ -49,20 +49,22 @@ pub trait Registers: Copy + 'static {
     fn fused<T: Real, const N: usize>(a: &[T; N], b: &[T; N], c: &[T; N]) -> [T; N];
 
     /// Returns sines and cosines of angles from those of the angles reduced modulo π/2. The last bits of
-    /// `shifted` are the quadrants.
+    /// `shifted` are the quadrants of the angles.
     #[cfg(feature = "std")]
     fn rotate_quadrants<const L: usize>(s: &[f64; L], c: &[f64; L], shifted: &[f64; L]) -> [[f64; L]; 2];
-    /// Returns sines and cosines of angles within the range of the reduction.
+    /// Returns sines and cosines of angles, rad, within the range of the fast argument reduction.
     #[cfg(feature = "std")]
     fn sin_cos_of_small<const L: usize>(x: &[f64; L]) -> [[f64; L]; 2];
-    /// Whether all angles are within the range of the reduction.
+    /// Whether all angles are within the range of the fast argument reduction.
     #[cfg(feature = "std")]
     fn are_small<const L: usize, const N: usize>(x: &[[f64; L]; N]) -> bool;
-    /// Returns sines and cosines of angles of which some are outside the range of the reduction.
+    /// Returns sines and cosines of angles, rad, of which some are outside the range of the fast argument
+    /// reduction.
     fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]);
 }
 
-/// Returns from the enclosing function with the result, if the lanes fill this register.
+/// Returns from the enclosing function with the result of an operation, if the lanes fill a register of this
+/// type.
 #[cfg(not(feature = "std"))]
 macro_rules! register {
     ($($anything:tt)*) => {};
@@ -169,7 +171,7 @@ impl Registers for Compiled {
     #[cfg(feature = "std")]
     #[inline]
     fn sin_cos_of_small<const L: usize>(x: &[f64; L]) -> [[f64; L]; 2] {
-        super::angles::of_small::<Self, L>(x)
+        super::angles::sin_cos_of_small::<Self, L>(x)
     }
 
     #[cfg(feature = "std")]
@@ -200,11 +202,11 @@ impl Registers for Compiled {
     #[cold]
     #[inline(never)]
     fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
-        trigonometry::with_large::<Self, N>(x)
+        trigonometry::sin_cos_with_large_angles::<Self, N>(x)
     }
 }
 
-/// Returns the remainder, for which there are no instructions.
+/// Returns the remainders of divisions lane by lane, for which processors have no instruction.
 #[inline]
 pub(super) fn rem<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N] {
     core::array::from_fn(|k| a[k] % b[k])

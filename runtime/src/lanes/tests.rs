@@ -5,7 +5,7 @@ use core::cmp::Ordering;
 use nalgebra::{ComplexField, Matrix3, RealField, SVector, Vector3};
 use std::format;
 
-/// Returns numbers in (0.05, 0.95), negated in odd lanes.
+/// Returns lanes with numbers in (0.05, 0.95), negated in odd lanes.
 fn sample_lanes<const N: usize>(seed: u64) -> Lanes<f64, N> {
     let mut state = seed;
     Lanes::from_fn(|k| {
@@ -15,7 +15,8 @@ fn sample_lanes<const N: usize>(seed: u64) -> Lanes<f64, N> {
     })
 }
 
-/// Checks that every lane equals the function of that lane, bit for bit.
+/// Checks that every lane of a result equals the result of the function for the numbers in that lane, bit for
+/// bit.
 fn check_lanes<const N: usize>(
     wide: impl Fn(Lanes<f64, N>, Lanes<f64, N>, Lanes<f64, N>) -> Lanes<f64, N>,
     narrow: impl Fn(f64, f64, f64) -> f64,
@@ -58,7 +59,7 @@ fn check_arithmetic<const N: usize>() {
 }
 
 #[test]
-fn arithmetic_is_that_of_every_lane() {
+fn lane_arithmetic_matches_scalars() {
     check_arithmetic::<1>();
     check_arithmetic::<2>();
     check_arithmetic::<3>();
@@ -68,7 +69,7 @@ fn arithmetic_is_that_of_every_lane() {
 }
 
 #[test]
-fn functions_are_those_of_every_lane() {
+fn lane_functions_match_scalars() {
     type Twice = (fn(f64x8) -> f64x8, fn(f64) -> f64);
     let functions: [Twice; 16] = [
         (|a| ComplexField::sqrt(a * a), |a| ComplexField::sqrt(a * a)),
@@ -98,7 +99,7 @@ fn functions_are_those_of_every_lane() {
 }
 
 #[test]
-fn a_large_angle_does_not_disturb_its_neighbours() {
+fn large_angle_does_not_affect_other_lanes() {
     let x = Lanes([0.3, 1e9, -2.0, f64::INFINITY, 1e5, -1e6, f64::NAN, 0.0]);
     let (s, c) = x.sin_cos();
     for k in 0..8 {
@@ -120,7 +121,7 @@ fn sums_have_a_fixed_order() {
 }
 
 #[test]
-fn comparisons_ask_for_all_lanes() {
+fn comparisons_require_all_lanes() {
     let [low, high, mixed] = [Lanes([1.0, 2.0]), Lanes([3.0, 4.0]), Lanes([0.0, 9.0])];
     assert_eq!(low.partial_cmp(&high), Some(Ordering::Less));
     assert_eq!(high.partial_cmp(&low), Some(Ordering::Greater));
@@ -133,7 +134,7 @@ fn comparisons_ask_for_all_lanes() {
 }
 
 #[test]
-fn lanes_hold_one_number_or_many() {
+fn lanes_convert_from_numbers() {
     assert_eq!(constant::<f64x4>(0.5), Lanes([0.5; 4]));
     assert_eq!(constant::<f32x8>(0.1), Lanes([0.1_f32; 8]));
     assert_eq!(nalgebra::try_convert::<f64x4, f64>(Lanes([2.0; 4])), Some(2.0));
@@ -157,7 +158,7 @@ fn nalgebra_computes_with_lanes() {
 }
 
 #[test]
-fn lanes_of_lanes() {
+fn lanes_contain_lanes() {
     let x = Lanes([sample_lanes::<4>(1), sample_lanes::<4>(2)]);
     let y = A::mul_add(x, x, constant(1.0));
     assert_eq!(y[1][2], A::mul_add(x[1][2], x[1][2], 1.0));
@@ -165,19 +166,19 @@ fn lanes_of_lanes() {
     assert_eq!(ComplexField::sin_cos(x).0[0][3], A::sin_cos(x[0][3]).0);
 }
 
-/// Checks that in the arithmetic of `R` every lane of a vector equals the result of its numbers alone, bit
-/// for bit.
-fn vectors_are_their_lanes<R: Registers, const N: usize>() {
+/// Checks that in the arithmetic of `R` every lane of a result equals the result of the numbers in that lane
+/// alone, bit for bit.
+fn check_vector_operations<R: Registers, const N: usize>() {
     fn several_operations<R: Registers, X: Elementary<R>>(a: X, b: X, c: X) -> X {
         let (s, c) = R::sin_cos(R::mul_add(a, X::constant(9.0), c));
         let (large, _) = R::sin_cos(b * X::constant(1e6));
         let sum = R::mul_sub(s, c, R::neg_mul_add(a, large, -b)) / (R::abs(b) + X::constant(0.1));
         R::sqrt(R::mul_add(sum, sum, a * a)) - R::atan2(a, b)
     }
-    let several_in_lanes = |a: Lanes<f64, N>, b: Lanes<f64, N>, c: Lanes<f64, N>| {
+    let several_operations_in_lanes = |a: Lanes<f64, N>, b: Lanes<f64, N>, c: Lanes<f64, N>| {
         several_operations::<R, _>(R::lanes(a.0), R::lanes(b.0), R::lanes(c.0)).lanes()
     };
-    check_lanes::<N>(several_in_lanes, several_operations::<R, f64>);
+    check_lanes::<N>(several_operations_in_lanes, several_operations::<R, f64>);
     let several_in_single_precision = |a, b, c| several_operations::<R, f32>(a, b, c);
     let [a, b, c] = [3, 4, 5].map(|seed| sample_lanes::<N>(seed).map(|x| x as f32));
     let found = several_operations::<R, _>(R::lanes(a.0), R::lanes(b.0), R::lanes(c.0)).lanes();
@@ -190,18 +191,18 @@ fn vectors_are_their_lanes<R: Registers, const N: usize>() {
     }
 }
 
-fn vectors_of_any_length<R: Registers>() {
-    vectors_are_their_lanes::<R, 1>();
-    vectors_are_their_lanes::<R, 2>();
-    vectors_are_their_lanes::<R, 3>();
-    vectors_are_their_lanes::<R, 4>();
-    vectors_are_their_lanes::<R, 8>();
-    vectors_are_their_lanes::<R, 16>();
+fn check_vectors_of_any_length<R: Registers>() {
+    check_vector_operations::<R, 1>();
+    check_vector_operations::<R, 2>();
+    check_vector_operations::<R, 3>();
+    check_vector_operations::<R, 4>();
+    check_vector_operations::<R, 8>();
+    check_vector_operations::<R, 16>();
 }
 
 #[test]
 fn vectors_compute_lane_by_lane() {
-    vectors_of_any_length::<A>();
+    check_vectors_of_any_length::<A>();
     #[cfg(all(
         feature = "std",
         target_arch = "x86_64",
@@ -213,10 +214,10 @@ fn vectors_compute_lane_by_lane() {
             && avx2::has_faster_instructions::<f64>()
             && avx2::has_faster_instructions::<f32>()
         {
-            vectors_of_any_length::<avx2::Avx2>();
+            check_vectors_of_any_length::<avx2::Avx2>();
         }
         if avx512::is_available() {
-            vectors_of_any_length::<avx512::Avx512>();
+            check_vectors_of_any_length::<avx512::Avx512>();
         }
     }
 }

@@ -1,20 +1,21 @@
 //! Second derivatives of `tangent_rate(dv, v)` of ball and free joints, contracted with factors. Blocks are
 //! lists of columns.
 
-use super::jacobians::{ball_tangent_rate_derivatives, even_slopes, free_tangent_rate_derivatives};
+use super::jacobians::{ball_tangent_rate_derivatives, even_factor_slopes, free_tangent_rate_derivatives};
 use super::{
-    SERIES_ANGLE, bernoulli_series, choose_by_limit, cross, dot, even_brackets, lie_bracket, second_bracket,
+    SERIES_ANGLE, bernoulli_series, choose_by_limit, cross, dot, even_bracket_factors, lie_bracket,
+    second_bracket_factor,
 };
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};
 use crate::private::constant;
 
 /// Square matrix as an array of columns.
-type Block<T, const N: usize> = [[T; N]; N];
+type SquareBlock<T, const N: usize> = [[T; N]; N];
 
 /// Returns the second derivatives with respect to `θ²` of the factors of `ad²` and `ad⁴` in the inverse
 /// Jacobian of SE(3).
-fn even_curvatures<T: Real>(square: T) -> [T; 2] {
+fn even_factor_curvatures<T: Real>(square: T) -> [T; 2] {
     choose_by_limit(
         square,
         constant(SERIES_ANGLE),
@@ -45,18 +46,18 @@ fn even_curvatures<T: Real>(square: T) -> [T; 2] {
     )
 }
 
-/// Value, first and second derivative of a factor of a power of `ad`, as a function of `θ²`.
-type Factor<T> = [T; 3];
+/// Value, first and second derivative of a factor that multiplies a power of `ad`, as functions of `θ²`.
+type FactorDerivatives<T> = [T; 3];
 
 /// Returns the second derivatives with respect to `dv` of `λᵀ (f ad² v + g ad⁴ v)`, with `ad` the bracket
 /// with `dv`. The last three numbers of `dv` are the rotation vector.
-fn of_brackets<T: Real, const N: usize>(
+fn bracket_curvature<T: Real, const N: usize>(
     dv: [T; N],
     v: [T; N],
     lambda: [T; N],
     bracket: impl Fn([T; N], [T; N]) -> [T; N],
-    factors: [Factor<T>; 2],
-) -> Block<T, N> {
+    factors: [FactorDerivatives<T>; 2],
+) -> SquareBlock<T, N> {
     let two = constant::<T>(2.0);
     let weighted_sum = |x: &[T; N]| lambda.iter().zip(x).fold(T::zero(), |sum, (l, x)| sum + *l * *x);
     let unit_vector = |j: usize| core::array::from_fn(|i| if i == j { T::one() } else { T::zero() });
@@ -72,7 +73,7 @@ fn of_brackets<T: Real, const N: usize>(
         }
     }
     // The derivative of θ² along a direction of the rotation vector is 2 dvⱼ.
-    let by_square = |j: usize| if j + 3 < N { T::zero() } else { two * dv[j] };
+    let square_derivative = |j: usize| if j + 3 < N { T::zero() } else { two * dv[j] };
     let entry_of_curvature = |i: usize, j: usize| {
         let mut second = [T::zero(); N];
         let mut total = T::zero();
@@ -90,9 +91,9 @@ fn of_brackets<T: Real, const N: usize>(
             total = total
                 + value * weighted_sum(&second)
                 + slope
-                    * (by_square(i) * weighted_sum(&changes[k][j])
-                        + by_square(j) * weighted_sum(&changes[k][i]))
-                + (curvature * by_square(i) * by_square(j) + bent) * weighted_sum(&powers[k]);
+                    * (square_derivative(i) * weighted_sum(&changes[k][j])
+                        + square_derivative(j) * weighted_sum(&changes[k][i]))
+                + (curvature * square_derivative(i) * square_derivative(j) + bent) * weighted_sum(&powers[k]);
         }
         total
     };
@@ -106,11 +107,12 @@ fn of_brackets<T: Real, const N: usize>(
     block
 }
 
-/// Returns `λᵀ` times the derivatives with respect to `dv`, for every unit vector of `v`.
+/// Returns `λᵀ` times the derivatives of a function with respect to `dv`, for each unit vector as the
+/// velocity `v`.
 fn contracted_derivatives<T: Real, const N: usize>(
     lambda: [T; N],
-    by_dv: impl Fn([T; N]) -> Block<T, N>,
-) -> Block<T, N> {
+    by_dv: impl Fn([T; N]) -> SquareBlock<T, N>,
+) -> SquareBlock<T, N> {
     core::array::from_fn(|j| {
         let columns = by_dv(core::array::from_fn(|i| if i == j { T::one() } else { T::zero() }));
         columns.map(|column| column.iter().zip(&lambda).fold(T::zero(), |sum, (x, l)| sum + *x * *l))
@@ -123,13 +125,13 @@ pub fn ball_tangent_rate_second_derivatives<T: Real>(
     dv: [T; 3],
     v: [T; 3],
     lambda: [T; 3],
-) -> (Block<T, 3>, Block<T, 3>) {
+) -> (SquareBlock<T, 3>, SquareBlock<T, 3>) {
     let square = dot(dv, dv);
     // The derivative of the factor with respect to θ² is the negative factor of the fourth bracket of SE(3).
-    let ([_, fall], [_, slope]) = (even_brackets(square), even_slopes(square));
-    let factors = [[second_bracket(square), -fall, -slope], [T::zero(); 3]];
+    let ([_, fall], [_, slope]) = (even_bracket_factors(square), even_factor_slopes(square));
+    let factors = [[second_bracket_factor(square), -fall, -slope], [T::zero(); 3]];
     (
-        of_brackets(dv, v, lambda, cross, factors),
+        bracket_curvature(dv, v, lambda, cross, factors),
         contracted_derivatives(lambda, |e| ball_tangent_rate_derivatives(dv, e).0),
     )
 }
@@ -140,12 +142,13 @@ pub fn free_tangent_rate_second_derivatives<T: Real>(
     dv: [T; 6],
     v: [T; 6],
     lambda: [T; 6],
-) -> (Block<T, 6>, Block<T, 6>) {
+) -> (SquareBlock<T, 6>, SquareBlock<T, 6>) {
     let [_, _, _, x, y, z] = dv;
     let square = dot([x, y, z], [x, y, z]);
-    let ([f, g], [f1, g1], [f2, g2]) = (even_brackets(square), even_slopes(square), even_curvatures(square));
+    let ([f, g], [f1, g1], [f2, g2]) =
+        (even_bracket_factors(square), even_factor_slopes(square), even_factor_curvatures(square));
     (
-        of_brackets(dv, v, lambda, lie_bracket, [[f, f1, f2], [g, g1, g2]]),
+        bracket_curvature(dv, v, lambda, lie_bracket, [[f, f1, f2], [g, g1, g2]]),
         contracted_derivatives(lambda, |e| free_tangent_rate_derivatives(dv, e).0),
     )
 }
@@ -159,11 +162,12 @@ mod tests {
         core::array::from_fn(|k| size * (12.9898 * (seed * N + k + 1) as f64).sin())
     }
 
-    /// Returns central differences of fourth order, column by column, of `λᵀ` times a block of columns.
+    /// Returns derivatives of `λᵀ` times a block of columns, by central differences of fourth order, column
+    /// by column.
     fn difference_columns<const N: usize>(
         lambda: [f64; N],
-        f: impl Fn([f64; N]) -> Block<f64, N>,
-    ) -> Block<f64, N> {
+        f: impl Fn([f64; N]) -> SquareBlock<f64, N>,
+    ) -> SquareBlock<f64, N> {
         let h = 1e-3;
         core::array::from_fn(|j| {
             let columns_times_lambda = |x: f64| {
@@ -184,7 +188,11 @@ mod tests {
         core::array::from_fn(|k| a[k] + b[k])
     }
 
-    fn assert_same<const N: usize>(found: Block<f64, N>, expected: Block<f64, N>, what: &str) {
+    fn assert_blocks_agree<const N: usize>(
+        found: SquareBlock<f64, N>,
+        expected: SquareBlock<f64, N>,
+        what: &str,
+    ) {
         for (a, b) in found.iter().flatten().zip(expected.iter().flatten()) {
             assert!((a - b).abs() < 1e-9, "{what}: {found:?} instead of {expected:?}");
         }
@@ -193,7 +201,7 @@ mod tests {
     const SIZES: [f64; 9] = [0.0, 1e-9, 1e-3, 0.1, 0.3, 0.57, 0.6, 1.0, 1.7];
 
     #[test]
-    fn rates_of_balls_curve_as_their_derivatives_change() {
+    fn ball_second_derivatives_match_differences() {
         for (seed, size) in SIZES.into_iter().enumerate() {
             let (dv, v, lambda): ([f64; 3], _, _) = (
                 pseudorandom_numbers(seed, size),
@@ -201,12 +209,12 @@ mod tests {
                 pseudorandom_numbers(seed + 90, 1.0),
             );
             let (twice, mixed) = ball_tangent_rate_second_derivatives(dv, v, lambda);
-            assert_same(
+            assert_blocks_agree(
                 twice,
                 difference_columns(lambda, |e| ball_tangent_rate_derivatives(sum_of_vectors(dv, e), v).0),
                 "twice",
             );
-            assert_same(
+            assert_blocks_agree(
                 mixed,
                 difference_columns(lambda, |e| ball_tangent_rate_derivatives(dv, sum_of_vectors(v, e)).0),
                 "mixed",
@@ -215,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn rates_of_free_bodies_curve_as_their_derivatives_change() {
+    fn free_second_derivatives_match_differences() {
         for (seed, size) in SIZES.into_iter().enumerate() {
             let (dv, v, lambda): ([f64; 6], _, _) = (
                 pseudorandom_numbers(seed, size),
@@ -223,12 +231,12 @@ mod tests {
                 pseudorandom_numbers(seed + 90, 1.0),
             );
             let (twice, mixed) = free_tangent_rate_second_derivatives(dv, v, lambda);
-            assert_same(
+            assert_blocks_agree(
                 twice,
                 difference_columns(lambda, |e| free_tangent_rate_derivatives(sum_of_vectors(dv, e), v).0),
                 "twice",
             );
-            assert_same(
+            assert_blocks_agree(
                 mixed,
                 difference_columns(lambda, |e| free_tangent_rate_derivatives(dv, sum_of_vectors(v, e)).0),
                 "mixed",
@@ -238,8 +246,8 @@ mod tests {
 
     /// Checks that series and closed form agree at the angle at which the code switches between them.
     #[test]
-    fn the_series_meets_the_closed_form() {
-        let [below, above] = [1.0 - 1e-12, 1.0 + 1e-12].map(|x| even_curvatures(SERIES_ANGLE * x));
+    fn series_meets_closed_form() {
+        let [below, above] = [1.0 - 1e-12, 1.0 + 1e-12].map(|x| even_factor_curvatures(SERIES_ANGLE * x));
         for (a, b) in below.iter().zip(&above) {
             assert!((a - b).abs() < 1e-12, "{a} {b}");
         }

@@ -2,21 +2,21 @@
 //! of ball and free joints. Blocks are lists of columns; displacements are expressed in body axes.
 
 use super::{
-    add, ball_tangent_rate, bernoulli_series, choose_by_limit, cross, dot, even_brackets, free_integrate,
-    free_tangent_rate, left_jacobian, lie_bracket, plus_scaled, quaternion_exponential, rotated_vector,
-    scaled_vector, second_bracket,
+    ball_tangent_rate, bernoulli_series, choose_by_limit, cross, dot, even_bracket_factors, free_integrate,
+    free_tangent_rate, left_jacobian_factors, lie_bracket, plus_scaled, quaternion_exponential,
+    rotated_vector, scaled_vector, second_bracket_factor, vector_sum,
 };
 use crate::Real;
 use crate::arithmetic::{Arithmetic, Compiled};
 use crate::private::constant;
 
 /// Square matrix as an array of columns.
-type Block<T, const N: usize> = [[T; N]; N];
+type SquareBlock<T, const N: usize> = [[T; N]; N];
 
-/// Returns the columns of a linear function. The standard library's `map` is not used, because it is not
-/// always inlined.
+/// Returns the matrix of a linear function as columns. The standard library's `map` is not used, because it
+/// is not always inlined.
 #[inline(always)]
-fn columns_of_function<T: Real, const N: usize>(f: impl Fn([T; N]) -> [T; N]) -> Block<T, N> {
+fn columns_of_function<T: Real, const N: usize>(f: impl Fn([T; N]) -> [T; N]) -> SquareBlock<T, N> {
     let mut all = [[T::zero(); N]; N];
     for (j, column) in all.iter_mut().enumerate() {
         let mut unit = [T::zero(); N];
@@ -30,7 +30,7 @@ fn columns_of_function<T: Real, const N: usize>(f: impl Fn([T; N]) -> [T; N]) ->
 /// columns follow from the angular ones, because motions of SE(3) are rotations with dual numbers (Selig,
 /// *Geometric Fundamentals of Robotics*, § 7.5).
 #[inline(always)]
-fn dual_columns<T: Real>(f: impl Fn([T; 6]) -> [T; 6]) -> Block<T, 6> {
+fn dual_columns<T: Real>(f: impl Fn([T; 6]) -> [T; 6]) -> SquareBlock<T, 6> {
     let mut all = [[T::zero(); 6]; 6];
     let (linear, angular) = all.split_at_mut(3);
     for (j, (linear, angular)) in linear.iter_mut().zip(angular).enumerate() {
@@ -46,30 +46,33 @@ fn dual_columns<T: Real>(f: impl Fn([T; 6]) -> [T; 6]) -> Block<T, 6> {
 /// Returns the derivatives of `q ⊕ dv` of a ball joint, in body axes, with respect to displacements of `q`
 /// and to `dv`: `exp(−dv)` and the right Jacobian of SO(3) (Chirikjian, *Stochastic Models, Information
 /// Theory, and Lie Groups*, vol. 2, 2012, § 10.6).
-pub fn ball_integrate_derivatives<T: Real>(dv: [T; 3]) -> (Block<T, 3>, Block<T, 3>) {
+pub fn ball_integrate_derivatives<T: Real>(dv: [T; 3]) -> (SquareBlock<T, 3>, SquareBlock<T, 3>) {
     let back = quaternion_exponential(dv.map(|x| -x));
-    let [a, b] = left_jacobian(dot(dv, dv));
+    let [a, b] = left_jacobian_factors(dot(dv, dv));
     let right_jacobian_column = |e: [T; 3]| {
         let first = cross(dv, e);
-        add(add(e, scaled_vector(first, -a)), scaled_vector(cross(dv, first), b))
+        vector_sum(vector_sum(e, scaled_vector(first, -a)), scaled_vector(cross(dv, first), b))
     };
     (columns_of_function(|e| rotated_vector(back, e)), columns_of_function(right_jacobian_column))
 }
 
 /// Returns the derivatives of `tangent_rate(dv, v)` of a ball joint with respect to `dv` and to `v`.
-pub fn ball_tangent_rate_derivatives<T: Real>(dv: [T; 3], v: [T; 3]) -> (Block<T, 3>, Block<T, 3>) {
+pub fn ball_tangent_rate_derivatives<T: Real>(
+    dv: [T; 3],
+    v: [T; 3],
+) -> (SquareBlock<T, 3>, SquareBlock<T, 3>) {
     let square = dot(dv, dv);
-    let second = second_bracket(square);
+    let second = second_bracket_factor(square);
     // The derivative of the second bracket's factor with respect to θ² is the negative factor of the fourth.
-    let [_, slope] = even_brackets(square);
+    let [_, slope] = even_bracket_factors(square);
     let first = cross(dv, v);
     let twice = cross(dv, first);
     let rate_derivative_column = |e: [T; 3]| {
         let changed = cross(e, v);
-        let brackets = add(cross(e, first), cross(dv, changed));
+        let brackets = vector_sum(cross(e, first), cross(dv, changed));
         let factor = constant::<T>(-2.0) * slope * dot(dv, e);
-        add(
-            add(scaled_vector(changed, constant(0.5)), scaled_vector(brackets, second)),
+        vector_sum(
+            vector_sum(scaled_vector(changed, constant(0.5)), scaled_vector(brackets, second)),
             scaled_vector(twice, factor),
         )
     };
@@ -122,14 +125,14 @@ fn jacobian_factors<T: Real>(square: T) -> [T; 4] {
 
 /// Returns the derivatives of `q ⊕ dv` of a free joint, in body axes, with respect to displacements of `q`
 /// and to `dv`: the adjoint of `exp(−dv)` and the right Jacobian of SE(3); linear parts first.
-pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (Block<T, 6>, Block<T, 6>) {
+pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (SquareBlock<T, 6>, SquareBlock<T, 6>) {
     let [_, _, _, rx, ry, rz] = dv;
     let turn = [rx, ry, rz];
     let (o, i) = (T::zero(), T::one());
     let [px, py, pz, ..] = free_integrate([o, o, o, o, o, o, i], dv);
     let back = quaternion_exponential(turn.map(|x| -x));
     let adjoint_column = |[x, y, z, a, b, c]: [T; 6]| {
-        let [x, y, z] = rotated_vector(back, add([x, y, z], cross([a, b, c], [px, py, pz])));
+        let [x, y, z] = rotated_vector(back, vector_sum([x, y, z], cross([a, b, c], [px, py, pz])));
         let [a, b, c] = rotated_vector(back, [a, b, c]);
         [x, y, z, a, b, c]
     };
@@ -149,7 +152,7 @@ pub fn free_integrate_derivatives<T: Real>(dv: [T; 6]) -> (Block<T, 6>, Block<T,
 
 /// Returns the derivatives with respect to `θ²` of the factors of `ad²` and `ad⁴` in the inverse Jacobian of
 /// SE(3).
-pub(super) fn even_slopes<T: Real>(square: T) -> [T; 2] {
+pub(super) fn even_factor_slopes<T: Real>(square: T) -> [T; 2] {
     choose_by_limit(
         square,
         constant(super::SERIES_ANGLE),
@@ -178,12 +181,15 @@ pub(super) fn even_slopes<T: Real>(square: T) -> [T; 2] {
 
 /// Returns the derivatives of `tangent_rate(dv, v)` of a free joint with respect to `dv` and to `v`; linear
 /// parts first.
-pub fn free_tangent_rate_derivatives<T: Real>(dv: [T; 6], v: [T; 6]) -> (Block<T, 6>, Block<T, 6>) {
+pub fn free_tangent_rate_derivatives<T: Real>(
+    dv: [T; 6],
+    v: [T; 6],
+) -> (SquareBlock<T, 6>, SquareBlock<T, 6>) {
     let [_, _, _, rx, ry, rz] = dv;
     let turn = [rx, ry, rz];
     let square = dot(turn, turn);
-    let [second, fourth] = even_brackets(square);
-    let [second_slope, fourth_slope] = even_slopes(square);
+    let [second, fourth] = even_bracket_factors(square);
+    let [second_slope, fourth_slope] = even_factor_slopes(square);
     let b1 = lie_bracket(dv, v);
     let b2 = lie_bracket(dv, b1);
     let b3 = lie_bracket(dv, b2);
@@ -213,7 +219,7 @@ mod tests {
         core::array::from_fn(|k| size * (12.9898 * (seed * N + k + 1) as f64).sin())
     }
 
-    /// Returns central differences of fourth order, column by column.
+    /// Returns derivatives by central differences of fourth order, column by column.
     fn difference_columns<const N: usize, const M: usize>(f: impl Fn([f64; N]) -> [f64; M]) -> [[f64; M]; N] {
         let h = 1e-3;
         core::array::from_fn(|j| {
@@ -232,37 +238,37 @@ mod tests {
         core::array::from_fn(|k| a[k] + b[k])
     }
 
-    fn assert_same<const N: usize>(found: [[f64; N]; N], expected: [[f64; N]; N], what: &str) {
+    fn assert_blocks_agree<const N: usize>(found: [[f64; N]; N], expected: [[f64; N]; N], what: &str) {
         for (a, b) in found.iter().flatten().zip(expected.iter().flatten()) {
             assert!((a - b).abs() < 1e-9, "{what}: {found:?} instead of {expected:?}");
         }
     }
 
     #[test]
-    fn balls_move_as_their_derivatives_say() {
+    fn ball_derivatives_match_differences() {
         for (seed, size) in [0.0, 1e-9, 1e-3, 0.1, 0.49, 0.51, 1.0, 1.7].into_iter().enumerate() {
             let (dv, v): ([f64; 3], [f64; 3]) =
                 (pseudorandom_numbers(seed, size), pseudorandom_numbers(seed + 50, 1.0));
             let q = [0.1, -0.5, 0.3, 0.8];
             let end = ball_integrate(q, dv);
             let (by_q, by_dv) = ball_integrate_derivatives(dv);
-            assert_same(
+            assert_blocks_agree(
                 by_q,
                 difference_columns(|e| ball_difference(end, ball_integrate(ball_integrate(q, e), dv))),
                 "by q",
             );
-            assert_same(
+            assert_blocks_agree(
                 by_dv,
                 difference_columns(|e| ball_difference(end, ball_integrate(q, sum_of_vectors(dv, e)))),
                 "by dv",
             );
             let (by_dv, by_v) = ball_tangent_rate_derivatives(dv, v);
-            assert_same(
+            assert_blocks_agree(
                 by_dv,
                 difference_columns(|e| ball_tangent_rate(sum_of_vectors(dv, e), v)),
                 "rate by dv",
             );
-            assert_same(
+            assert_blocks_agree(
                 by_v,
                 difference_columns(|e| ball_tangent_rate(dv, sum_of_vectors(v, e))),
                 "rate by v",
@@ -271,30 +277,30 @@ mod tests {
     }
 
     #[test]
-    fn free_bodies_move_as_their_derivatives_say() {
+    fn free_derivatives_match_differences() {
         for (seed, size) in [0.0, 1e-9, 1e-3, 0.1, 0.3, 0.57, 0.6, 1.0, 1.7].into_iter().enumerate() {
             let (dv, v): ([f64; 6], [f64; 6]) =
                 (pseudorandom_numbers(seed, size), pseudorandom_numbers(seed + 50, 1.0));
             let q = [0.3, 0.2, -0.7, 0.1, -0.5, 0.5, 0.7];
             let end = free_integrate(q, dv);
             let (by_q, by_dv) = free_integrate_derivatives(dv);
-            assert_same(
+            assert_blocks_agree(
                 by_q,
                 difference_columns(|e| free_difference(end, free_integrate(free_integrate(q, e), dv))),
                 "by q",
             );
-            assert_same(
+            assert_blocks_agree(
                 by_dv,
                 difference_columns(|e| free_difference(end, free_integrate(q, sum_of_vectors(dv, e)))),
                 "by dv",
             );
             let (by_dv, by_v) = free_tangent_rate_derivatives(dv, v);
-            assert_same(
+            assert_blocks_agree(
                 by_dv,
                 difference_columns(|e| free_tangent_rate(sum_of_vectors(dv, e), v)),
                 "rate by dv",
             );
-            assert_same(
+            assert_blocks_agree(
                 by_v,
                 difference_columns(|e| free_tangent_rate(dv, sum_of_vectors(v, e))),
                 "rate by v",
@@ -312,7 +318,7 @@ mod tests {
                 .zip(&above)
                 .for_each(|(a, b)| assert!((a - b).abs() < 1e-13 + 1e-11 * a.abs(), "{a} {b}"));
         };
-        assert_continuous(even_slopes, super::super::SERIES_ANGLE);
+        assert_continuous(even_factor_slopes, super::super::SERIES_ANGLE);
         assert_continuous(|x| [jacobian_factors(x)[0], jacobian_factors(x)[1]], 1.0);
         assert_continuous(|x| [jacobian_factors(x)[2], jacobian_factors(x)[3]], 1.0);
     }

@@ -10,7 +10,8 @@ pub const fn registers_of_eight(numbers: usize, wide: bool) -> usize {
     if !wide || numbers < 8 { 0 } else { numbers / 8 + (numbers % 8 > 4) as usize }
 }
 
-/// Returns the number of registers of four numbers for the remainder of the column.
+/// Returns the number of registers of four numbers for the rest of a column that registers of eight do not
+/// hold.
 #[must_use]
 pub const fn registers_of_four(numbers: usize, wide: bool) -> usize {
     numbers.saturating_sub(8 * registers_of_eight(numbers, wide)).div_ceil(4)
@@ -53,7 +54,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const K: usize> Sou
     const COUNT: usize = K;
 
     #[inline(always)]
-    fn column(&self, k: usize) -> Column<A, T, E, F> {
+    fn column_in_registers(&self, k: usize) -> Column<A, T, E, F> {
         match (self.eights.get(k), self.fours.get(k)) {
             (Some(eights), Some(fours)) => Column { eights: *eights, fours: *fours },
             _ => Column::zero(),
@@ -76,7 +77,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
         Self { eights: [A::splat(x); E], fours: [A::splat(x); F] }
     }
 
-    /// Returns the column with the entries `1 − x` for each entry `x` of this column.
+    /// Returns the column with the entries `1 − x`, for each entry `x` of this column.
     #[inline(always)]
     pub fn complement(&self) -> Self {
         let mut rest = Self::all(T::one());
@@ -95,7 +96,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
         }
     }
 
-    /// Adds a multiple of another column, or subtracts it.
+    /// Adds a multiple of another column to this one, or subtracts it.
     #[inline(always)]
     pub fn add_multiple<const MINUS: bool>(&mut self, factor: T, other: &Self) {
         add_multiples::<A, T, 8, MINUS>(&mut self.eights, factor, &other.eights);
@@ -110,7 +111,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
         all
     }
 
-    /// Writes to a column of as many rows as it was read from.
+    /// Writes the column to memory, with the number of rows that were read.
     #[inline(always)]
     pub fn write(&self, column: &mut [T]) {
         for (k, register) in self.eights.iter().enumerate() {
@@ -122,7 +123,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize> Column<A, T, E, F> 
     }
 }
 
-/// Adds multiples of other columns, or subtracts them.
+/// Adds multiples of other columns to columns, or subtracts them.
 #[inline(always)]
 fn add_multiples<A: Arithmetic, T: Real, const W: usize, const MINUS: bool>(
     sums: &mut [Vector<A, T, W>],
@@ -150,7 +151,7 @@ fn read_column<A: Arithmetic, T: Real, const E: usize, const F: usize>(
     }
 }
 
-/// Reads `W` numbers from index `from` on, or the last `W` numbers if fewer remain.
+/// Reads `W` numbers of a column from index `from` on, or its last `W` numbers if fewer remain.
 #[inline(always)]
 pub fn part<A: Arithmetic, T: Real, const W: usize>(column: &[T], from: usize) -> Vector<A, T, W> {
     let rest = column.get(from.min(column.len().saturating_sub(W))..).unwrap_or(&[]);
@@ -165,7 +166,7 @@ pub fn part<A: Arithmetic, T: Real, const W: usize>(column: &[T], from: usize) -
     A::lanes(numbers)
 }
 
-/// Writes `W` numbers from index `from` on, or to the last `W` entries if fewer remain.
+/// Writes `W` numbers to a column from index `from` on, or to its last `W` entries if fewer remain.
 #[inline(always)]
 pub fn write_entries<A: Arithmetic, T: Real, const W: usize>(
     register: &Vector<A, T, W>,
@@ -189,7 +190,7 @@ pub trait Source<A, T, const E: usize, const F: usize> {
     const COUNT: usize;
 
     /// Returns column `k` of the list, in registers; zeros if `k` is out of range.
-    fn column(&self, k: usize) -> Column<A, T, E, F>;
+    fn column_in_registers(&self, k: usize) -> Column<A, T, E, F>;
 }
 
 impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const N: usize, const W: usize>
@@ -198,7 +199,7 @@ impl<A: Arithmetic, T: Real, const E: usize, const F: usize, const N: usize, con
     const COUNT: usize = W;
 
     #[inline(always)]
-    fn column(&self, k: usize) -> Column<A, T, E, F> {
+    fn column_in_registers(&self, k: usize) -> Column<A, T, E, F> {
         match self.get(k) {
             Some(column) => Column::read(column),
             None => Column::zero(),

@@ -3,7 +3,7 @@
 //! rate.
 
 use super::column::Column;
-use super::{Range, Run, Tiling, is_long};
+use super::{IndexRange, Run, Tiling, is_long};
 use crate::Real;
 use crate::arithmetic::Arithmetic;
 use crate::lanes::VectorLoop;
@@ -11,9 +11,9 @@ use core::marker::PhantomData;
 use core::slice::from_ref;
 use nalgebra::SMatrix;
 
-/// Completes `M⁻¹ = [0 0; 0 C⁻¹] + H Gᵀ`: on entry, the matrix contains `H` in the columns of the trunk and
-/// `C⁻¹` in the others, whose `factors` are columns of `Gᵀ`. Columns are read in tiles as for
-/// [`minus_products`](super::minus_products), but with all rows together.
+/// Completes the inverse mass matrix `M⁻¹ = [0 0; 0 C⁻¹] + H Gᵀ`. On entry, the matrix contains `H` in the
+/// columns of the trunk and `C⁻¹` in the others, whose `factors` are columns of `Gᵀ`. Columns are read in
+/// tiles as for [`minus_products`](super::minus_products), but with all rows together.
 #[inline]
 pub fn complete<A: Arithmetic, T: Real, P: Tiling<T, N>, const N: usize, const K: usize, const M: usize>(
     matrix: &mut SMatrix<T, N, N>,
@@ -21,10 +21,10 @@ pub fn complete<A: Arithmetic, T: Real, P: Tiling<T, N>, const N: usize, const K
     factors: &[[T; K]; M],
     runs: &[Run],
 ) {
-    A::run_loop(Completion::<T, P, N, K, M> { matrix, trunk, factors, runs, parts: PhantomData });
+    A::run_loop(CompletionLoop::<T, P, N, K, M> { matrix, trunk, factors, runs, parts: PhantomData });
 }
 
-struct Completion<'a, T, P, const N: usize, const K: usize, const M: usize> {
+struct CompletionLoop<'a, T, P, const N: usize, const K: usize, const M: usize> {
     matrix: &'a mut SMatrix<T, N, N>,
     trunk: [usize; K],
     factors: &'a [[T; K]; M],
@@ -33,23 +33,23 @@ struct Completion<'a, T, P, const N: usize, const K: usize, const M: usize> {
 }
 
 impl<T: Real, P: Tiling<T, N>, const N: usize, const K: usize, const M: usize> VectorLoop
-    for Completion<'_, T, P, N, K, M>
+    for CompletionLoop<'_, T, P, N, K, M>
 {
     const IS_LONG: bool = is_long(N);
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
-        P::complete::<A, K, K>(self.matrix, self.trunk, self.factors, self.runs);
+        P::complete_inverse::<A, K, K>(self.matrix, self.trunk, self.factors, self.runs);
     }
 }
 
-/// Buffer of columns that is aligned to cache lines. Registers that are loaded soon after they were stored
-/// must not cross a cache line.
+/// Buffer of matrix columns that is aligned to cache lines. Registers that are loaded soon after they were
+/// stored must not cross a cache line.
 #[repr(align(64))]
-struct Lines<X>(X);
+struct AlignedColumns<X>(X);
 
 /// Half-open ranges of the velocities that belong to one limb.
-pub type Limb<'a> = &'a [Range];
+pub type Limb<'a> = &'a [IndexRange];
 
 /// Inverts a mass matrix `M = [A B; Bᵀ C]`. On entry, the matrix contains `C⁻¹` in the columns of the limbs;
 /// those of the trunk are ignored. `borders` are the rows of the trunk in `M` by column, padded with zeros;
@@ -74,10 +74,10 @@ pub fn invert<
     solved: &mut [[T; N]; S],
 ) {
     let parts = PhantomData;
-    A::run_loop(Inversion::<T, P, Q, N, K, L, S> { matrix, trunk, borders, limbs, runs, solved, parts });
+    A::run_loop(InversionLoop::<T, P, Q, N, K, L, S> { matrix, trunk, borders, limbs, runs, solved, parts });
 }
 
-struct Inversion<'a, T, P, Q, const N: usize, const K: usize, const L: usize, const S: usize> {
+struct InversionLoop<'a, T, P, Q, const N: usize, const K: usize, const L: usize, const S: usize> {
     matrix: &'a mut SMatrix<T, N, N>,
     trunk: [usize; K],
     borders: &'a [[T; L]; N],
@@ -95,16 +95,16 @@ impl<
     const K: usize,
     const L: usize,
     const S: usize,
-> VectorLoop for Inversion<'_, T, P, Q, N, K, L, S>
+> VectorLoop for InversionLoop<'_, T, P, Q, N, K, L, S>
 {
     const IS_LONG: bool = is_long(N);
 
     #[inline(always)]
     fn run<A: Arithmetic>(self) {
-        let Inversion { matrix, trunk, borders, limbs, runs, solved, .. } = self;
+        let InversionLoop { matrix, trunk, borders, limbs, runs, solved, .. } = self;
         // Gᵀ = −B C⁻¹ by columns, and the Schur complement S = A + B G, which is initialised with A.
-        let mut g = Lines([[T::zero(); L]; N]);
-        let mut inner = Lines([[T::zero(); L]; L]);
+        let mut g = AlignedColumns([[T::zero(); L]; N]);
+        let mut inner = AlignedColumns([[T::zero(); L]; L]);
         for (column, k) in inner.0.iter_mut().zip(trunk) {
             if let Some(border) = borders.get(k) {
                 *column = *border;
@@ -120,7 +120,7 @@ impl<
                 Q::add_products::<A, N>(&mut inner.0, borders, &g.0, (*first, *end));
             }
         }
-        Q::invert::<A, K>(&mut inner.0);
+        Q::invert_leading_block::<A, K>(&mut inner.0);
         // H = G S⁻¹, with the identity in the rows of the trunk.
         let mut outer = [[T::zero(); N]; K];
         if limbs.is_empty() {
@@ -141,7 +141,7 @@ impl<
                 *place = *column;
             }
         }
-        P::complete::<A, K, L>(matrix, trunk, &g.0, runs);
+        P::complete_inverse::<A, K, L>(matrix, trunk, &g.0, runs);
         for column in solved {
             let mut x = [[T::zero(); N]];
             P::add_multiples::<A, N, N, false>(&mut x, &matrix.data.0, from_ref(column), (0, N));
@@ -237,7 +237,7 @@ pub(super) fn eliminate_leading_columns<
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{everywhere, numbers, rows_of};
+    use super::super::testing::{everywhere, pseudorandom_matrix, rows_of};
     use super::super::{Tile, registers_of_eight, registers_of_four};
     use super::*;
     use crate::arithmetic::Compiled;
@@ -256,8 +256,8 @@ mod tests {
             assert!((found - expected).amax() < 1e-13);
         }
         const TRUNK: [usize; 3] = [9, 1, 7];
-        let start = numbers::<N, N>(4.0);
-        let all: SMatrix<f64, 3, N> = numbers(5.0);
+        let start = pseudorandom_matrix::<N, N>(4.0);
+        let all: SMatrix<f64, 3, N> = pseudorandom_matrix(5.0);
         let runs = [((2, 7), (0, 3), 0), ((10, 13), (1, 3), 5)];
         let (first, last) = ([2, 3, 4, 5, 6], [10, 11, 12]);
         let factors: [[f64; 3]; 8] =
@@ -271,7 +271,7 @@ mod tests {
         everywhere!(check_completed_inverse by N, (&start, &factors, &runs, &expected));
     }
 
-    /// Returns the rows of a trunk in a mass matrix, by column.
+    /// Returns the rows of a mass matrix that belong to the trunk, one list for each column.
     fn trunk_rows_by_column<const N: usize, const K: usize, const L: usize>(
         mass: &SMatrix<f64, N, N>,
         trunk: [usize; K],
@@ -280,10 +280,10 @@ mod tests {
         core::array::from_fn(|k| core::array::from_fn(|t| trunk_mass_entry(t, k)))
     }
 
-    /// Returns a mass matrix of two limbs with a trunk.
+    /// Returns a mass matrix of two limbs that a trunk connects.
     fn branched_mass_matrix<const N: usize>(trunk: [usize; 3], limbs: &[&[usize]]) -> SMatrix<f64, N, N> {
         let limb_of_index = |k: usize| limbs.iter().position(|limb| limb.contains(&k));
-        let a = numbers::<N, N>(6.0);
+        let a = pseudorandom_matrix::<N, N>(6.0);
         SMatrix::from_fn(|i, j| match (limb_of_index(i), limb_of_index(j)) {
             _ if i == j => 10.0 + a[(i, i)],
             (Some(one), Some(other)) if one != other => 0.0,
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mass_matrix_is_inverted_in_parts() {
+    fn mass_matrix_is_inverted_by_blocks() {
         const N: usize = 14;
         const TRUNK: [usize; 3] = [9, 1, 7];
         // The second limb is not contiguous.
@@ -304,7 +304,7 @@ mod tests {
             mass: &SMatrix<f64, N, N>,
             right: &SMatrix<f64, N, M>,
         ) {
-            let mut found = numbers::<N, N>(7.0);
+            let mut found = pseudorandom_matrix::<N, N>(7.0);
             for limb in LIMBS {
                 let mut block = SMatrix::<f64, N, N>::identity();
                 limb.iter().for_each(|&i| limb.iter().for_each(|&j| block[(i, j)] = mass[(i, j)]));
@@ -317,7 +317,7 @@ mod tests {
             let runs =
                 [((2, 7), (0, 2), 2), ((0, 1), (0, 3), 0), ((8, 9), (0, 3), 8), ((10, 14), (0, 3), 10)];
             let mut solved = right.data.0;
-            invert::<A, f64, P, Inner, N, 3, 4, M>(
+            invert::<A, f64, P, InnerTile, N, 3, 4, M>(
                 &mut found,
                 TRUNK,
                 &trunk_rows_by_column(mass, TRUNK),
@@ -329,13 +329,13 @@ mod tests {
             let solved = SMatrix::<f64, N, M>::from_array_storage(nalgebra::ArrayStorage(solved));
             assert!((mass * solved - right).amax() < 1e-12);
         }
-        type Inner = (rows_of!(4, true), rows_of!(4, false));
+        type InnerTile = (rows_of!(4, true), rows_of!(4, false));
         let mass = branched_mass_matrix(TRUNK, &LIMBS);
-        everywhere!(check_branched_inverse by N, (&mass, &numbers::<N, 2>(8.0)));
+        everywhere!(check_branched_inverse by N, (&mass, &pseudorandom_matrix::<N, 2>(8.0)));
     }
 
     #[test]
-    fn without_limbs_all_rows_are_swept() {
+    fn inverse_without_limbs_uses_all_rows() {
         const N: usize = 13;
         fn check_scaled_inverse<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
             mass: &SMatrix<f64, N, N>,
@@ -344,7 +344,7 @@ mod tests {
             let scaled: SMatrix<f64, N, N> = SMatrix::from_fn(|i, j| scale[i] * mass[(i, j)] * scale[j]);
             let trunk: [usize; N] = core::array::from_fn(|k| (5 * k + 2) % N);
             let mut found = SMatrix::zeros();
-            invert::<A, f64, P, Inner, N, N, 16, 0>(
+            invert::<A, f64, P, InnerTile, N, N, 16, 0>(
                 &mut found,
                 trunk,
                 &trunk_rows_by_column(&scaled, trunk),
@@ -355,8 +355,8 @@ mod tests {
             let found: SMatrix<f64, N, N> = SMatrix::from_fn(|i, j| scale[i] * found[(i, j)] * scale[j]);
             assert!((found * mass - SMatrix::<f64, N, N>::identity()).amax() < 1e-12);
         }
-        type Inner = (rows_of!(16, true), rows_of!(16, false));
-        let factor = numbers::<N, N>(9.0);
+        type InnerTile = (rows_of!(16, true), rows_of!(16, false));
+        let factor = pseudorandom_matrix::<N, N>(9.0);
         let mass = factor * factor.transpose() + SMatrix::identity();
         // Pivots whose magnitudes differ by orders of magnitude.
         let scale = SMatrix::<f64, N, 1>::from_fn(|k, _| 4.0_f64.powi(k as i32 - 6));
@@ -364,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn an_ill_conditioned_matrix_solves_its_equations() {
+    fn ill_conditioned_inverse_solves_equations() {
         const N: usize = 13;
         fn check_solved_columns<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
             mass: &SMatrix<f64, N, N>,
@@ -372,7 +372,7 @@ mod tests {
         ) {
             let trunk: [usize; N] = core::array::from_fn(|k| k);
             let (mut inverse, mut solved) = (SMatrix::zeros(), right.data.0);
-            invert::<A, f64, P, Inner, N, N, 16, M>(
+            invert::<A, f64, P, InnerTile, N, N, 16, M>(
                 &mut inverse,
                 trunk,
                 &trunk_rows_by_column(mass, trunk),
@@ -384,10 +384,10 @@ mod tests {
             let error = (mass * x - right).amax() / (mass.abs() * x.abs()).amax();
             assert!(error < 1e-13);
         }
-        type Inner = (rows_of!(16, true), rows_of!(16, false));
+        type InnerTile = (rows_of!(16, true), rows_of!(16, false));
         // Rank two, except for small numbers on the diagonal.
-        let factor = numbers::<N, N>(9.0);
+        let factor = pseudorandom_matrix::<N, N>(9.0);
         let mass = factor * factor.transpose() + SMatrix::identity() * 1e-8;
-        everywhere!(check_solved_columns by N, (&mass, &numbers::<N, 2>(10.0)));
+        everywhere!(check_solved_columns by N, (&mass, &pseudorandom_matrix::<N, 2>(10.0)));
     }
 }

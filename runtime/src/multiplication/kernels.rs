@@ -1,6 +1,6 @@
 //! Sums of products over the rows of a tile, for several columns at a time.
 
-use super::Range;
+use super::IndexRange;
 use super::column::{Column, Source};
 use crate::Real;
 use crate::arithmetic::Arithmetic;
@@ -11,7 +11,7 @@ const fn sum_register_count(wide: bool) -> usize {
     if wide { 24 } else { 12 }
 }
 
-/// Replaces columns by minus their products with a matrix, `C` at a time if there are enough registers;
+/// Replaces columns by minus their products with a matrix, `C` at a time if there are enough registers, and
 /// returns the remaining columns. Several sums at a time hide the latency of the additions.
 #[inline(always)]
 pub fn multiply<
@@ -34,14 +34,14 @@ pub fn multiply<
     let (some, rest) = columns.as_chunks_mut::<C>();
     for some in some {
         if R >= N {
-            let sums = minus_sums::<A, T, R, E, F, N, C>(matrix, some, rows, 0);
+            let sums = negative_products::<A, T, R, E, F, N, C>(matrix, some, rows, 0);
             write::<A, T, E, F, N, C, R>(&sums, some, 0);
             continue;
         }
         let given = *some;
         for block in 0..N.div_ceil(R) {
             let first = (block * R).min(N - R);
-            let sums = minus_sums::<A, T, R, E, F, N, C>(matrix, &given, rows, first);
+            let sums = negative_products::<A, T, R, E, F, N, C>(matrix, &given, rows, first);
             write::<A, T, E, F, N, C, R>(&sums, some, first);
         }
     }
@@ -51,7 +51,7 @@ pub fn multiply<
 /// Returns the negative products of a matrix with `C` columns, for `R` rows of the result from row `first`
 /// on.
 #[inline(always)]
-pub fn minus_sums<
+pub fn negative_products<
     A: Arithmetic,
     T: Real,
     const R: usize,
@@ -80,7 +80,14 @@ pub fn minus_sums<
 
 /// Loads `C` columns of a matrix into registers.
 #[inline(always)]
-pub fn read_each<A: Arithmetic, T: Real, const E: usize, const F: usize, const N: usize, const C: usize>(
+pub fn read_columns<
+    A: Arithmetic,
+    T: Real,
+    const E: usize,
+    const F: usize,
+    const N: usize,
+    const C: usize,
+>(
     columns: &[[T; N]; C],
 ) -> [Column<A, T, E, F>; C] {
     let mut all = [Column::zero(); C];
@@ -90,7 +97,7 @@ pub fn read_each<A: Arithmetic, T: Real, const E: usize, const F: usize, const N
     all
 }
 
-/// Writes sums to the rows of columns from a given row on.
+/// Writes sums to the rows of columns, from row `first` on.
 #[inline(always)]
 pub fn write<
     A: Arithmetic,
@@ -112,9 +119,10 @@ pub fn write<
     }
 }
 
-/// Adds multiples to columns, or subtracts them, `C` at a time if there are enough registers.
+/// Adds multiples of the `source` columns to columns of a matrix, or subtracts them, `C` at a time if there
+/// are enough registers.
 #[inline(always)]
-pub fn add_all<
+pub fn add_all_multiples<
     A: Arithmetic,
     T: Real,
     S: Source<A, T, E, F>,
@@ -127,18 +135,21 @@ pub fn add_all<
     sums: &mut [[T; N]],
     source: &S,
     factors: &[[T; V]],
-    range: Range,
+    range: IndexRange,
 ) {
-    let (sums, factors) = add::<A, T, S, E, F, N, V, MINUS, 4>(sums, source, factors, range);
-    let (sums, factors) = add::<A, T, S, E, F, N, V, MINUS, 3>(sums, source, factors, range);
-    let (sums, factors) = add::<A, T, S, E, F, N, V, MINUS, 2>(sums, source, factors, range);
-    add::<A, T, S, E, F, N, V, MINUS, 1>(sums, source, factors, range);
+    let (sums, factors) =
+        add_multiples_to_columns::<A, T, S, E, F, N, V, MINUS, 4>(sums, source, factors, range);
+    let (sums, factors) =
+        add_multiples_to_columns::<A, T, S, E, F, N, V, MINUS, 3>(sums, source, factors, range);
+    let (sums, factors) =
+        add_multiples_to_columns::<A, T, S, E, F, N, V, MINUS, 2>(sums, source, factors, range);
+    add_multiples_to_columns::<A, T, S, E, F, N, V, MINUS, 1>(sums, source, factors, range);
 }
 
 /// Adds multiples of the `source` columns to columns of a matrix, `C` at a time. Returns the columns that
 /// remain, with their factors.
 #[inline(always)]
-pub fn add<
+pub fn add_multiples_to_columns<
     'a,
     'b,
     A: Arithmetic,
@@ -154,7 +165,7 @@ pub fn add<
     columns: &'a mut [[T; N]],
     source: &S,
     factors: &'b [[T; V]],
-    (first, end): Range,
+    (first, end): IndexRange,
 ) -> (&'a mut [[T; N]], &'b [[T; V]]) {
     if C > 1 && C * (E + F) > sum_register_count(A::WIDE) {
         return (columns, factors);
@@ -164,9 +175,9 @@ pub fn add<
     for columns in columns {
         let Some((factors, left)) = factors_left.split_first_chunk::<C>() else { break };
         factors_left = left;
-        let mut sums = read_each::<A, T, E, F, N, C>(columns);
+        let mut sums = read_columns::<A, T, E, F, N, C>(columns);
         for k in first..end.min(V).min(S::COUNT) {
-            let from = source.column(k);
+            let from = source.column_in_registers(k);
             for (sums, factors) in sums.iter_mut().zip(factors) {
                 let Some(factor) = factors.get(k) else { continue };
                 sums.add_multiple::<MINUS>(*factor, &from);
@@ -177,7 +188,7 @@ pub fn add<
     (columns_left, factors_left)
 }
 
-/// Adds products of columns and rows, to `C` columns at a time.
+/// Adds products of columns and rows to a matrix, `C` of its columns at a time.
 #[inline(always)]
 pub fn add_products<
     A: Arithmetic,
@@ -191,10 +202,10 @@ pub fn add_products<
     sums: &mut [[T; N]; N],
     vectors: &[[T; N]; W],
     factors: &[[T; N]; W],
-    (first, end): Range,
+    (first, end): IndexRange,
 ) {
     for (place, columns) in sums.as_chunks_mut::<C>().0.iter_mut().enumerate() {
-        let mut sums = read_each::<A, T, E, F, N, C>(columns);
+        let mut sums = read_columns::<A, T, E, F, N, C>(columns);
         for k in first..end.min(W) {
             let Some(factors) = factors[k].as_chunks::<C>().0.get(place) else { continue };
             let from = Column::read(&vectors[k]);

@@ -2,18 +2,18 @@
 
 use nalgebra::SMatrix;
 
-pub fn numbers<const N: usize, const M: usize>(seed: f64) -> SMatrix<f64, N, M> {
+pub fn pseudorandom_matrix<const N: usize, const M: usize>(seed: f64) -> SMatrix<f64, N, M> {
     SMatrix::from_fn(|i, j| (seed + (i * 7 + 5 * j) as f64).sin())
 }
 
-/// Expands to the tile of a given number of rows, in registers of eight numbers or of four.
+/// Expands to the tile type for a given number of rows, in registers of eight numbers or of four.
 macro_rules! rows_of {
     ($rows:expr, $wide:literal) => {
         Tile<{ $rows }, { registers_of_eight($rows, $wide) }, { registers_of_four($rows, $wide) }>
     };
 }
 
-/// Calls a function for the compilation target with both tilings, and for the instruction sets of the
+/// Calls a test function with both tilings for the compilation target, and with the instruction sets of the
 /// processor.
 macro_rules! everywhere {
     ($function:ident by $rows:expr, $arguments:tt) => {

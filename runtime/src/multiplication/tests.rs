@@ -1,14 +1,14 @@
-//! Products compared with nalgebra's, for all register widths.
+//! Tests that compare matrix products with those of nalgebra, for all register widths.
 
-use super::testing::{everywhere, numbers, rows_of};
+use super::testing::{everywhere, pseudorandom_matrix, rows_of};
 use super::*;
 use crate::arithmetic::Compiled;
 
-/// Compares minus the product of two matrices with nalgebra's.
+/// Checks that the negative product of two matrices equals that of nalgebra.
 fn check_negated_product<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const M: usize>(
     a: &SMatrix<f64, N, N>,
     b: &SMatrix<f64, N, M>,
-    groups: &[(Range, &[usize])],
+    groups: &[(IndexRange, &[usize])],
     expected: &SMatrix<f64, N, M>,
 ) {
     let (mut found, mut other) = (*b, *b);
@@ -18,17 +18,17 @@ fn check_negated_product<A: Arithmetic, P: Tiling<f64, N>, const N: usize, const
 }
 
 #[test]
-fn the_product_is_nalgebras() {
+fn product_matches_nalgebra() {
     const N: usize = 19;
-    let (a, b) = (numbers::<N, N>(0.0), numbers::<N, 10>(1.0));
+    let (a, b) = (pseudorandom_matrix::<N, N>(0.0), pseudorandom_matrix::<N, 10>(1.0));
     let rows: [usize; N] = core::array::from_fn(|k| k);
     everywhere!(check_negated_product by N, (&a, &b, &[((0, 3), &rows), ((3, 10), &rows)], &(a * b)));
 }
 
 #[test]
-fn rows_are_taken_in_parts() {
+fn product_of_row_groups() {
     const N: usize = 29;
-    let (a, b) = (numbers::<N, N>(0.0), numbers::<N, 7>(1.0));
+    let (a, b) = (pseudorandom_matrix::<N, N>(0.0), pseudorandom_matrix::<N, 7>(1.0));
     let rows: [usize; N] = core::array::from_fn(|k| k);
     everywhere!(check_negated_product by 12, (&a, &b, &[((0, 7), &rows)], &(a * b)));
     for n in 1..300 {
@@ -39,14 +39,14 @@ fn rows_are_taken_in_parts() {
 }
 
 #[test]
-fn small_matrices_do_not_fill_a_register() {
-    let (a, b) = (numbers::<3, 3>(0.0), numbers::<3, 7>(1.0));
+fn product_smaller_than_register() {
+    let (a, b) = (pseudorandom_matrix::<3, 3>(0.0), pseudorandom_matrix::<3, 7>(1.0));
     everywhere!(check_negated_product by 3, (&a, &b, &[((0, 7), &[0, 1, 2])], &(a * b)));
 }
 
 #[test]
-fn rows_that_are_not_named_are_skipped() {
-    let (a, mut b) = (numbers::<7, 7>(2.0), numbers::<7, 3>(3.0));
+fn unlisted_rows_are_skipped() {
+    let (a, mut b) = (pseudorandom_matrix::<7, 7>(2.0), pseudorandom_matrix::<7, 3>(3.0));
     let mut given = b;
     given.column_mut(1).fill(0.0);
     b.view_mut((2, 0), (2, 1)).fill(0.0);
@@ -56,10 +56,10 @@ fn rows_that_are_not_named_are_skipped() {
 }
 
 #[test]
-fn entries_are_made_zero() {
-    let (a, b) = (numbers::<7, 7>(2.0), numbers::<7, 3>(3.0));
+fn listed_entries_become_zero() {
+    let (a, b) = (pseudorandom_matrix::<7, 7>(2.0), pseudorandom_matrix::<7, 3>(3.0));
     let (mut found, mut given) = (b, b);
-    let groups: [(Range, &[usize]); 1] = [((0, 3), &[0, 1, 2, 3, 4, 5, 6])];
+    let groups: [(IndexRange, &[usize]); 1] = [((0, 3), &[0, 1, 2, 3, 4, 5, 6])];
     minus_products::<Compiled, _, (rows_of!(7, true), rows_of!(7, false)), 7, 3, 1>(
         &a,
         [(&mut found, &[(1, 4), (2, 0)], &groups)],

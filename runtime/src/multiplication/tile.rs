@@ -1,24 +1,25 @@
 //! Tiles of a matrix: numbers of rows that are computed together, and the registers that hold them.
 
 use super::column::Columns;
-use super::kernels::{add_all, add_products, multiply};
-use super::{Range, Run, inverse};
+use super::kernels::{add_all_multiples, add_products, multiply};
+use super::{IndexRange, Run, inverse};
 use crate::Real;
 use crate::arithmetic::Arithmetic;
 use nalgebra::SMatrix;
 
 /// Linear algebra on the columns of a matrix, divided into tiles that fit in registers.
 pub trait Tiling<T: Real, const N: usize> {
-    /// Replaces columns by minus their products with a matrix; the columns are zero outside the given rows.
-    fn multiply<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]);
+    /// Replaces columns by their negative products with a matrix. The columns are zero outside the given
+    /// rows.
+    fn negate_products<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]);
 
-    /// Adds multiples of vectors to columns, or subtracts them; only the vectors and factors in `range` are
+    /// Adds multiples of vectors to columns, or subtracts them. Only the vectors and factors in `range` are
     /// used.
     fn add_multiples<A: Arithmetic, const V: usize, const W: usize, const MINUS: bool>(
         sums: &mut [[T; N]],
         vectors: &[[T; N]; W],
         factors: &[[T; V]],
-        range: Range,
+        range: IndexRange,
     );
 
     /// Adds the products of the columns `vectors` and the rows `factors` in `range`. `N` is a multiple of
@@ -27,11 +28,11 @@ pub trait Tiling<T: Real, const N: usize> {
         sums: &mut [[T; N]; N],
         vectors: &[[T; N]; W],
         factors: &[[T; N]; W],
-        range: Range,
+        range: IndexRange,
     );
 
     /// Completes the inverse of a block-structured mass matrix for this tiling, as [`complete`] does.
-    fn complete<A: Arithmetic, const K: usize, const V: usize>(
+    fn complete_inverse<A: Arithmetic, const K: usize, const V: usize>(
         matrix: &mut SMatrix<T, N, N>,
         trunk: [usize; K],
         factors: &[[T; V]],
@@ -39,16 +40,16 @@ pub trait Tiling<T: Real, const N: usize> {
     );
 
     /// Inverts in place the symmetric positive definite matrix of `K` rows in the leading columns.
-    fn invert<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]);
+    fn invert_leading_block<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]);
 }
 
-/// Tile of `R` rows, in `E` registers of eight numbers and `F` of four.
+/// Tile of `R` matrix rows, in `E` registers of eight numbers and `F` of four.
 #[derive(Clone, Copy, Debug)]
 pub struct Tile<const R: usize, const E: usize, const F: usize>;
 
 impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Tiling<T, N> for Tile<R, E, F> {
     #[inline(always)]
-    fn multiply<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]) {
+    fn negate_products<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]) {
         let some = multiply::<A, T, R, E, F, N, 4>(matrix, columns, rows);
         let some = multiply::<A, T, R, E, F, N, 3>(matrix, some, rows);
         let some = multiply::<A, T, R, E, F, N, 2>(matrix, some, rows);
@@ -60,9 +61,9 @@ impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Ti
         sums: &mut [[T; N]],
         vectors: &[[T; N]; W],
         factors: &[[T; V]],
-        range: Range,
+        range: IndexRange,
     ) {
-        add_all::<A, T, _, E, F, N, V, MINUS>(sums, vectors, factors, range);
+        add_all_multiples::<A, T, _, E, F, N, V, MINUS>(sums, vectors, factors, range);
     }
 
     #[inline(always)]
@@ -70,13 +71,13 @@ impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Ti
         sums: &mut [[T; N]; N],
         vectors: &[[T; N]; W],
         factors: &[[T; N]; W],
-        range: Range,
+        range: IndexRange,
     ) {
         add_products::<A, T, E, F, N, W, 4>(sums, vectors, factors, range);
     }
 
     #[inline(always)]
-    fn complete<A: Arithmetic, const K: usize, const V: usize>(
+    fn complete_inverse<A: Arithmetic, const K: usize, const V: usize>(
         matrix: &mut SMatrix<T, N, N>,
         trunk: [usize; K],
         factors: &[[T; V]],
@@ -91,12 +92,12 @@ impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Ti
         for ((first, end), range, place) in runs {
             let columns = matrix.data.0.get_mut(*first..*end).unwrap_or(&mut []);
             let factors = factors.get(*place..).unwrap_or(&[]);
-            add_all::<A, T, _, E, F, N, V, false>(columns, &known, factors, *range);
+            add_all_multiples::<A, T, _, E, F, N, V, false>(columns, &known, factors, *range);
         }
     }
 
     #[inline(always)]
-    fn invert<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]) {
+    fn invert_leading_block<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]) {
         inverse::eliminate_leading_columns::<A, T, E, F, N, K>(columns);
     }
 }
@@ -104,11 +105,11 @@ impl<T: Real, const R: usize, const E: usize, const F: usize, const N: usize> Ti
 /// Selects the first tiling if registers hold eight numbers, otherwise the second.
 impl<T: Real, Wide: Tiling<T, N>, Narrow: Tiling<T, N>, const N: usize> Tiling<T, N> for (Wide, Narrow) {
     #[inline(always)]
-    fn multiply<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]) {
+    fn negate_products<A: Arithmetic>(matrix: &SMatrix<T, N, N>, columns: &mut [[T; N]], rows: &[usize]) {
         if A::WIDE {
-            Wide::multiply::<A>(matrix, columns, rows);
+            Wide::negate_products::<A>(matrix, columns, rows);
         } else {
-            Narrow::multiply::<A>(matrix, columns, rows);
+            Narrow::negate_products::<A>(matrix, columns, rows);
         }
     }
 
@@ -117,7 +118,7 @@ impl<T: Real, Wide: Tiling<T, N>, Narrow: Tiling<T, N>, const N: usize> Tiling<T
         sums: &mut [[T; N]],
         vectors: &[[T; N]; W],
         factors: &[[T; V]],
-        range: Range,
+        range: IndexRange,
     ) {
         if A::WIDE {
             Wide::add_multiples::<A, V, W, MINUS>(sums, vectors, factors, range);
@@ -131,7 +132,7 @@ impl<T: Real, Wide: Tiling<T, N>, Narrow: Tiling<T, N>, const N: usize> Tiling<T
         sums: &mut [[T; N]; N],
         vectors: &[[T; N]; W],
         factors: &[[T; N]; W],
-        range: Range,
+        range: IndexRange,
     ) {
         if A::WIDE {
             Wide::add_products::<A, W>(sums, vectors, factors, range);
@@ -141,25 +142,25 @@ impl<T: Real, Wide: Tiling<T, N>, Narrow: Tiling<T, N>, const N: usize> Tiling<T
     }
 
     #[inline(always)]
-    fn complete<A: Arithmetic, const K: usize, const V: usize>(
+    fn complete_inverse<A: Arithmetic, const K: usize, const V: usize>(
         matrix: &mut SMatrix<T, N, N>,
         trunk: [usize; K],
         factors: &[[T; V]],
         runs: &[Run],
     ) {
         if A::WIDE {
-            Wide::complete::<A, K, V>(matrix, trunk, factors, runs);
+            Wide::complete_inverse::<A, K, V>(matrix, trunk, factors, runs);
         } else {
-            Narrow::complete::<A, K, V>(matrix, trunk, factors, runs);
+            Narrow::complete_inverse::<A, K, V>(matrix, trunk, factors, runs);
         }
     }
 
     #[inline(always)]
-    fn invert<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]) {
+    fn invert_leading_block<A: Arithmetic, const K: usize>(columns: &mut [[T; N]; N]) {
         if A::WIDE {
-            Wide::invert::<A, K>(columns);
+            Wide::invert_leading_block::<A, K>(columns);
         } else {
-            Narrow::invert::<A, K>(columns);
+            Narrow::invert_leading_block::<A, K>(columns);
         }
     }
 }

@@ -14,7 +14,7 @@ const HALVINGS: usize = 30;
 /// Part of the decrease of a linear model of the costs that a step must reach.
 const DECREASE: f64 = 0.1;
 
-/// InputLimits of the changes of the inputs at an instant of a trajectory.
+/// Limits of the changes of the inputs at an instant of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputLimits<T, const NU: usize> {
     lower: SVector<T, NU>,
@@ -71,7 +71,7 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
         }
     }
 
-    /// Returns the nearest change of the inputs within the limits.
+    /// Returns the change of the inputs that is nearest to `change` within the limits.
     pub fn clamp(&self, change: &SVector<T, NU>) -> SVector<T, NU> {
         let mut clamped = *change;
         for (x, (lower, upper)) in clamped.iter_mut().zip(self.lower.iter().zip(&self.upper)) {
@@ -99,10 +99,10 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
         start: &SVector<T, NU>,
     ) -> Result<(SVector<T, NU>, [bool; NU]), Indefinite> {
         let mut x = self.clamp(start);
-        let slope_at = |x: &SVector<T, NU>| gradient + product(hessian, x);
+        let cost_slope_at = |x: &SVector<T, NU>| gradient + product(hessian, x);
         let quadratic_cost =
             |x: &SVector<T, NU>| gradient.dot(x) + x.dot(&product(hessian, x)) * constant(0.5);
-        let mut slope = slope_at(&x);
+        let mut slope = cost_slope_at(&x);
         let mut free = self.free_inputs(&x, &slope);
         for _ in 0..ITERATIONS[0] * NU + ITERATIONS[1] {
             let reach = gradient.amax() + product(&hessian.abs(), &x.abs()).amax();
@@ -128,21 +128,21 @@ impl<T: Real, const NU: usize> InputLimits<T, NU> {
                 break;
             }
             x = next;
-            slope = slope_at(&x);
+            slope = cost_slope_at(&x);
             free = self.free_inputs(&x, &slope);
         }
         Ok((x, free))
     }
 }
 
-/// Returns a vector with zeros where inputs are not free.
+/// Returns the vector with zeros at the inputs that are not free.
 fn masked_vector<T: Real, const NU: usize>(vector: &SVector<T, NU>, free: &[bool; NU]) -> SVector<T, NU> {
     let mut masked = *vector;
     masked.iter_mut().zip(free).filter(|(_, free)| !**free).for_each(|(x, _)| *x = T::zero());
     masked
 }
 
-/// Returns a matrix with the rows and columns of the unit matrix where inputs are not free.
+/// Returns the matrix with the rows and columns of the identity at the inputs that are not free.
 fn masked_square<T: Real, const NU: usize>(
     matrix: &SMatrix<T, NU, NU>,
     free: &[bool; NU],

@@ -1,7 +1,7 @@
 //! Conversions between Euler angles and rotations.
 
 use super::sequence::EulerSequence;
-use super::standard::{Standard, parallel_axes_threshold};
+use super::standard::{StandardSequence, parallel_axes_threshold};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::{ArrayStorage, Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
@@ -17,8 +17,8 @@ pub struct Angles<T> {
 }
 
 impl EulerSequence {
-    pub(super) fn standard_sequence(self) -> Standard {
-        Standard::new(self)
+    pub(super) fn standard_sequence(self) -> StandardSequence {
+        StandardSequence::new(self)
     }
 
     /// Returns the rotation matrix of Euler angles `[t₁, t₂, t₃]`, rad, of any magnitude.

@@ -110,8 +110,8 @@ impl EulerSequence {
     }
 }
 
-/// Returns the sine of the angle between the first and the third axis, unless it is zero to the rounding of
-/// the middle angle.
+/// Returns `sine`, the sine of the angle between the first and the third axis of Euler angles, or an error if
+/// it is zero to the rounding of the middle angle.
 fn check_sine<T: Real>(sine: T, middle: T) -> Result<T, Singular> {
     // NaN passes this test: it comes from the caller and is not a singularity.
     if sine.abs() <= parallel_axes_threshold::<T>() * middle.abs().max(T::one()) {

@@ -39,19 +39,20 @@ impl<T: Real> Mrp<T> {
         UnitQuaternion::new_unchecked(q)
     }
 
-    /// Returns the vector of a rotation matrix, inside or on the unit ball. Never singular.
+    /// Returns the modified Rodrigues vector of a rotation matrix, inside or on the unit ball. Never
+    /// singular.
     pub fn from_rotation(rotation: &Rotation3<T>) -> Self {
         Self::from_quaternion(&quaternion_of_rotation(rotation))
     }
 
-    /// Returns the vector of Euler parameters, inside or on the unit ball. It is the same for `q` and `−q`,
-    /// except for rotations by π. Never singular.
+    /// Returns the modified Rodrigues vector of Euler parameters, inside or on the unit ball. It is the same
+    /// for `q` and `−q`, except for rotations by π. Never singular.
     pub fn from_quaternion(q: &UnitQuaternion<T>) -> Self {
         let q = shorter(q);
         Self(q.imag() / (T::one() + q.w))
     }
 
-    /// Returns the other vector of the same rotation, `−σ / σ²`.
+    /// Returns the other modified Rodrigues vector of the same rotation, `−σ / σ²`.
     ///
     /// # Errors
     ///
@@ -63,8 +64,8 @@ impl<T: Real> Mrp<T> {
         if shadow.iter().all(|x| x.is_finite()) { Ok(Self(shadow)) } else { Err(Singular::FullTurn) }
     }
 
-    /// Returns the rate of the shadow, 1/s, given the rate `σ̇` of this vector, 1/s: `(2 σ (σ · σ̇) / σ² −
-    /// σ̇) / σ²`.
+    /// Returns the rate of the shadow vector, 1/s, given the rate `σ̇` of this vector, 1/s:
+    /// `(2 σ (σ · σ̇) / σ² − σ̇) / σ²`.
     ///
     /// # Errors
     ///
@@ -79,15 +80,16 @@ impl<T: Real> Mrp<T> {
         Ok(shadow * (constant::<T>(2.0) * shadow.dot(rate)) - rate * square)
     }
 
-    /// Returns the shorter of the vector and its shadow: the vector itself up to `|σ| = 1`.
+    /// Returns the shorter of this vector and its shadow: the vector itself up to `|σ| = 1`.
     pub fn switched(&self) -> Self {
         if self.0.norm_squared() > T::one() { self.shadow().unwrap_or(*self) } else { *self }
     }
 
-    /// Returns the vector, inside or on the unit ball, of the product `R R'` of the rotation of `self` and
-    /// that of `other`: `((1 − σ'²) σ + (1 − σ²) σ' + 2 σ × σ') / (1 + σ² σ'² − 2 σ · σ')` or its shadow,
-    /// which has the denominator `|σ + σ'|²` and the opposite sign. Never singular: the larger denominator is
-    /// used, which is at least `½ (1 + σ²)(1 + σ'²)`.
+    /// Returns the modified Rodrigues vector, inside or on the unit ball, of the product `R R'` of the
+    /// rotation of `self` and that of `other`:
+    /// `((1 − σ'²) σ + (1 − σ²) σ' + 2 σ × σ') / (1 + σ² σ'² − 2 σ · σ')` or its shadow, which has the
+    /// denominator `|σ + σ'|²` and the opposite sign. Never singular: the larger denominator is used, which
+    /// is at least `½ (1 + σ²)(1 + σ'²)`.
     pub fn compose(&self, other: &Self) -> Self {
         let (a, b) = (self.switched().0, other.switched().0);
         let (square, other_square) = (a.norm_squared(), b.norm_squared());

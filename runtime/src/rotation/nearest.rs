@@ -65,8 +65,8 @@ fn dominant_eigenvector<T: Real>(mut form: [[T; 4]; 4]) -> ([T; 4], T) {
     (vector, best - next)
 }
 
-/// Rotates rows and columns `P` and `Q` so that their common off-diagonal entry vanishes; the eigenvectors
-/// are the rows of `vectors`.
+/// Rotates the rows and columns `P` and `Q` of a symmetric matrix so that their common off-diagonal entry
+/// vanishes. The eigenvectors are the rows of `vectors`.
 ///
 /// Golub and Van Loan, *Matrix Computations* (2013), §8.5.
 fn annihilate_off_diagonal<T: Real, const P: usize, const Q: usize>(

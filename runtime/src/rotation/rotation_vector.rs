@@ -4,7 +4,7 @@ use super::euler_parameters::quaternion_of_rotation;
 use super::singular::Singular;
 use super::standard::parallel_axes_threshold;
 use crate::Real;
-use crate::lie::{ball_tangent_rate, left_jacobian, quaternion_exponential, quaternion_logarithm};
+use crate::lie::{ball_tangent_rate, left_jacobian_factors, quaternion_exponential, quaternion_logarithm};
 use crate::private::constant;
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion, Vector3};
 
@@ -87,7 +87,8 @@ impl<T: Real> RotationVector<T> {
         Ok(ball_tangent_rate(self.0.into(), (*omega).into()).into())
     }
 
-    /// Returns the rate `φ̇ = ω − ½ φ × ω + …`, rad/s, for an angular velocity in space axes, rad/s.
+    /// Returns the rate of the rotation vector, `φ̇ = ω − ½ φ × ω + …` (as in body axes with the opposite
+    /// sign of the second term), rad/s, for an angular velocity in space axes, rad/s.
     ///
     /// # Errors
     ///
@@ -106,7 +107,7 @@ impl<T: Real> RotationVector<T> {
     /// Returns the angular velocity in space axes, rad/s: `ω = φ̇ + ((1 − cos θ) / θ²) φ × φ̇ + ((θ − sin θ)
     /// / θ³) φ × (φ × φ̇)`. Never singular.
     pub fn omega_space(&self, rate: &Vector3<T>) -> Vector3<T> {
-        let [versine, cubic] = left_jacobian(self.0.norm_squared());
+        let [versine, cubic] = left_jacobian_factors(self.0.norm_squared());
         let first = self.0.cross(rate);
         rate + first * versine + self.0.cross(&first) * cubic
     }

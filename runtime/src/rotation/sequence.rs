@@ -35,7 +35,7 @@ impl Axis {
 /// Frame in which the rotation axes of a sequence are fixed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum FixedIn {
-    /// Axes fixed in the body, rotated by the previous rotations.
+    /// The rotation axes are fixed in the body, which the previous rotations have rotated.
     Body,
     /// The rotation axes are fixed in space.
     Space,
@@ -129,7 +129,7 @@ impl EulerSequence {
 }
 
 impl fmt::Display for EulerSequence {
-    /// Writes the name of the Euler-angle sequence, such as `body-zyx`.
+    /// Writes the name of the sequence of Euler angles, such as `body-zyx`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self.fixed_in {
             FixedIn::Body => "body-",

@@ -12,8 +12,8 @@ pub enum Singular {
     ParallelAxes,
     /// A rotation by π, or an odd multiple, to rounding: the Gibbs vector is infinite.
     HalfTurn,
-    /// A rotation by a nonzero multiple of 2π, to rounding: the rotation vector has no rate for most angular
-    /// velocities, and the modified Rodrigues vector is infinite.
+    /// A rotation by a nonzero multiple of 2π, to rounding: for most angular velocities the rotation vector
+    /// has no rate, and the modified Rodrigues vector is infinite.
     FullTurn,
 }
 

@@ -7,20 +7,20 @@ use crate::private::{constant, epsilon};
 use core::ops::Neg;
 use nalgebra::{Matrix3, Vector3};
 
-/// Sequence as body-xyz (asymmetric) or body-xyx (symmetric) in its own axes: the first and the second axis
-/// of the body-fixed sequence, and their cross product.
+/// Sequence of Euler angles, expressed as body-xyz (asymmetric) or body-xyx (symmetric) in its own axes: the
+/// first and the second axis of the body-fixed sequence, and their cross product.
 ///
 /// Space-fixed sequences are body-fixed ones in reverse order. If the third axis is opposite to the cross
 /// product, the third angle changes sign.
 #[derive(Clone, Copy)]
-pub(super) struct Standard {
+pub(super) struct StandardSequence {
     first: Axis,
     second: Axis,
     pub(super) symmetric: bool,
     pub(super) reversed: bool,
 }
 
-impl Standard {
+impl StandardSequence {
     pub(super) fn new(sequence: EulerSequence) -> Self {
         let reversed = sequence.fixed_in() == FixedIn::Space;
         let [a, second, c] = sequence.axes();
@@ -33,7 +33,7 @@ impl Standard {
         matches!((self.first, self.second), (Axis::X, Axis::Y) | (Axis::Y, Axis::Z) | (Axis::Z, Axis::X))
     }
 
-    /// Negates the third value if the third axis is opposite to the third own axis.
+    /// Negates the third value if the third rotation axis is opposite to the cross product of the first two.
     fn with_sign_of_third_axis<V: Neg<Output = V>>(self, [a, b, c]: [V; 3]) -> [V; 3] {
         if self.symmetric || self.is_cyclic() { [a, b, c] } else { [a, b, -c] }
     }
@@ -50,7 +50,8 @@ impl Standard {
         if self.reversed { [c, b, a] } else { [a, b, c] }
     }
 
-    /// Returns the own axes as columns: a right-handed signed permutation, so products with it are exact.
+    /// Returns the axes of the standard sequence as columns: a right-handed signed permutation, so products
+    /// with it are exact.
     pub(super) fn own_axes<T: Real>(self) -> Matrix3<T> {
         let [first, second] = [self.first, self.second].map(|axis| match axis {
             Axis::X => Vector3::new(T::one(), T::zero(), T::zero()),

@@ -10,9 +10,9 @@ use crate::Real;
 use nalgebra::{Matrix3, Quaternion, Rotation3, SMatrix, UnitQuaternion, Vector3};
 
 /// SplitMix64 generator (Steele, Lea and Flood), with the same numbers on every run.
-struct Random(u64);
+struct RandomNumbers(u64);
 
-impl Random {
+impl RandomNumbers {
     /// Returns a pseudorandom number uniform in [−1, 1).
     fn random_number(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -50,18 +50,21 @@ impl Random {
 
 /// Returns the largest magnitude of the differences between the entries of two matrices; infinite if an entry
 /// is NaN.
-fn difference<const N: usize, const M: usize>(a: &SMatrix<f64, N, M>, b: &SMatrix<f64, N, M>) -> f64 {
+fn largest_entry_difference<const N: usize, const M: usize>(
+    a: &SMatrix<f64, N, M>,
+    b: &SMatrix<f64, N, M>,
+) -> f64 {
     (a - b).iter().fold(0.0, |far: f64, x| if x.is_nan() { f64::INFINITY } else { far.max(x.abs()) })
 }
 
-/// Returns the largest magnitude of the differences between three angles and three others, rad.
+/// Returns the largest difference between three angles and three others, rad, modulo 2π.
 fn angle_difference(a: [f64; 3], b: [f64; 3]) -> f64 {
-    difference(&Vector3::from(a), &Vector3::from(b))
+    largest_entry_difference(&Vector3::from(a), &Vector3::from(b))
 }
 
-/// Returns the largest entry of `Rᵀ R − 1`.
+/// Returns the largest magnitude of the entries of `Rᵀ R − 1`, which is zero for a rotation matrix `R`.
 fn orthogonality_error(rotation: &Rotation3<f64>) -> f64 {
-    difference(&(rotation.matrix().transpose() * rotation.matrix()), &Matrix3::identity())
+    largest_entry_difference(&(rotation.matrix().transpose() * rotation.matrix()), &Matrix3::identity())
 }
 
 /// Returns the derivative of `f` at zero by central differences of order eight. The error is about 1e-13 if

@@ -12,11 +12,12 @@ const MOST_PARTS: u32 = 64;
 
 /// Times of samples and control instants of a run, in seconds after its start.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Clock {
+pub(super) struct RunTimes {
     end: Option<f64>,
     every: Option<f64>,
     period: Option<f64>,
-    /// Indices of the sample and of the control instant that coincide with the end.
+    /// Indices of the sample and of the control instant that coincide with the end of the run; `None` if none
+    /// does.
     last: [Option<u64>; 2],
     /// Ratio `period / every` of control period to sample interval, as numerator and denominator, if it is a
     /// ratio of small integers.
@@ -26,7 +27,7 @@ pub(super) struct Clock {
 /// Returns the quotient `a / b` as numerator and denominator, if it equals a ratio of small integers up to
 /// rounding; otherwise `None`.
 fn integer_ratio(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
-    let small_ratio = |x: f64| {
+    let small_integer_ratio = |x: f64| {
         (1..=MOST_PARTS).find_map(|parts| {
             let scaled = x * f64::from(parts);
             // Rounded to the nearest integer; for very large values, neighbouring integers cannot be
@@ -36,10 +37,14 @@ fn integer_ratio(a: f64, b: f64, rounding: f64) -> Option<[u64; 2]> {
             exact.then_some([whole, u64::from(parts)])
         })
     };
-    if a >= b { small_ratio(a / b) } else { small_ratio(b / a).map(|[whole, parts]| [parts, whole]) }
+    if a >= b {
+        small_integer_ratio(a / b)
+    } else {
+        small_integer_ratio(b / a).map(|[whole, parts]| [parts, whole])
+    }
 }
 
-impl Clock {
+impl RunTimes {
     /// Creates the clock of a run with this duration and these intervals of samples and control instants.
     pub(super) fn new<T: Real>(duration: Option<T>, every: Option<T>, period: Option<T>) -> Self {
         let rounding = 8.0 * to_f64(epsilon::<T>());
@@ -58,14 +63,15 @@ impl Clock {
         self.end
     }
 
-    /// Returns the instant of a sample, limited to the end; `None` if every step is a sample.
+    /// Returns the instant of a sample, at most the end of the run; `None` if every step is a sample.
     pub(super) fn sample_instant(&self, count: u64) -> Option<f64> {
         // Counts are exact up to 2⁵³.
         let due = self.every? * count as f64;
         Some(self.end.filter(|end| due > *end || self.last[0] == Some(count)).unwrap_or(due))
     }
 
-    /// Returns a control instant. If it coincides with a sample or the end, both are exactly equal.
+    /// Returns the instant of a control period. If it coincides with a sample or the end of the run, both are
+    /// exactly equal.
     pub(super) fn control_instant(&self, count: u64) -> Option<f64> {
         let plain = self.period? * count as f64;
         if self.last[1] == Some(count) {
@@ -83,7 +89,7 @@ impl Clock {
     }
 }
 
-/// Returns the time `elapsed` seconds after the start.
+/// Returns the time of the run `elapsed` seconds after its start.
 pub(super) fn time_after<T: Real>(start: T, elapsed: f64) -> T {
     start + constant::<T>(elapsed)
 }
@@ -92,10 +98,11 @@ pub(super) fn time_after<T: Real>(start: T, elapsed: f64) -> T {
 mod tests {
     use super::*;
 
-    /// Ten million samples at intervals of a millisecond in single precision: none is missing or repeated.
+    /// Checks ten million sample instants at intervals of a millisecond in single precision: none is missing
+    /// or repeated.
     #[test]
-    fn instants_are_counted() {
-        let clock = Clock::new::<f32>(Some(10_000.0), Some(1e-3), Some(1e-3));
+    fn sample_instants_are_complete() {
+        let clock = RunTimes::new::<f32>(Some(10_000.0), Some(1e-3), Some(1e-3));
         let mut last = -1.0;
         let mut count = 0;
         loop {
@@ -111,19 +118,19 @@ mod tests {
     }
 
     #[test]
-    fn instants_that_coincide_are_the_same() {
-        let clock = Clock::new(Some(0.9), Some(0.1), Some(0.3));
+    fn coinciding_instants_are_equal() {
+        let clock = RunTimes::new(Some(0.9), Some(0.1), Some(0.3));
         assert_eq!(
             [clock.control_instant(1), clock.control_instant(2), clock.control_instant(3)],
             [clock.sample_instant(3), clock.sample_instant(6), Some(0.9)]
         );
-        let clock = Clock::new(Some(10.0), Some(0.05), Some(0.02));
+        let clock = RunTimes::new(Some(10.0), Some(0.05), Some(0.02));
         assert_eq!(
             (clock.control_instant(5), clock.control_instant(1)),
             (clock.sample_instant(2), Some(0.02))
         );
         // Periods without a rational ratio are not adjusted.
-        let clock = Clock::new(None, Some(1.0), Some(core::f64::consts::SQRT_2));
+        let clock = RunTimes::new(None, Some(1.0), Some(core::f64::consts::SQRT_2));
         assert_eq!(clock.control_instant(3), Some(3.0 * core::f64::consts::SQRT_2));
     }
 }

@@ -30,7 +30,7 @@ impl Crossing {
 
 /// Event that was found on a step: its position and its index.
 #[derive(Clone, Copy, Debug)]
-pub struct Hit<T> {
+pub struct EventHit<T> {
     /// Position on the step at or just after the crossing, 0 at the start and 1 at the end.
     pub theta: T,
     /// Index of the event, in the order of declaration.
@@ -39,7 +39,7 @@ pub struct Hit<T> {
 
 /// Reason why the search for events on a step failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Undefined {
+pub enum EventSearchError {
     /// The function of the event with this index is NaN.
     Value(usize),
     /// The motion continues through the surface of the event with this index, although its impact should
@@ -49,7 +49,7 @@ pub enum Undefined {
 
 /// Effect that an event has on the continuation of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Flow {
+pub enum EventOutcome {
     /// The event ends the run.
     Stop,
     /// The run continues with unchanged velocity.
@@ -60,38 +60,39 @@ pub enum Flow {
 
 /// Effect of an event on the velocity and the run.
 pub trait Action<T, const NQ: usize, const NV: usize> {
-    /// Whether an event with this effect ends the run.
+    /// Whether an event with this effect ends the run of a simulation.
     const STOPS: bool;
 
-    /// Applies the effect of the event to the state and tells how the run continues.
-    fn act(&mut self, state: &mut State<T, NQ, NV>) -> Flow;
+    /// Applies the effect of an event to the state, and returns how the run continues.
+    fn act(&mut self, state: &mut State<T, NQ, NV>) -> EventOutcome;
 }
 
-/// Effect of an event: the run ends.
+/// Effect of an event that ends the run.
 #[derive(Clone, Copy, Debug)]
 pub struct Stop;
 
 impl<T, const NQ: usize, const NV: usize> Action<T, NQ, NV> for Stop {
     const STOPS: bool = true;
 
-    fn act(&mut self, _state: &mut State<T, NQ, NV>) -> Flow {
-        Flow::Stop
+    fn act(&mut self, _state: &mut State<T, NQ, NV>) -> EventOutcome {
+        EventOutcome::Stop
     }
 }
 
-/// Effect of an event: a sample is emitted and the run continues.
+/// Effect of an event that only emits a sample; the run continues.
 #[derive(Clone, Copy, Debug)]
 pub struct Report;
 
 impl<T, const NQ: usize, const NV: usize> Action<T, NQ, NV> for Report {
     const STOPS: bool = false;
 
-    fn act(&mut self, _state: &mut State<T, NQ, NV>) -> Flow {
-        Flow::Go
+    fn act(&mut self, _state: &mut State<T, NQ, NV>) -> EventOutcome {
+        EventOutcome::Go
     }
 }
 
-/// Effect that emits a sample and changes the velocity to the result of a function `(t, q, v) → v`.
+/// Effect of an event that emits a sample and changes the velocity to the result of a function
+/// `(t, q, v) → v`.
 #[derive(Clone, Copy, Debug)]
 pub struct Impact<F>(pub F);
 
@@ -102,13 +103,13 @@ where
 {
     const STOPS: bool = false;
 
-    fn act(&mut self, state: &mut State<T, NQ, NV>) -> Flow {
+    fn act(&mut self, state: &mut State<T, NQ, NV>) -> EventOutcome {
         state.v = (self.0)(state.t, &state.q, &state.v);
-        Flow::Jump
+        EventOutcome::Jump
     }
 }
 
-/// Events of a run: a list of types, `((NoEvents, Event), Event)`, which requires no allocation.
+/// Events of a run, as a list of nested types `((NoEvents, Event), Event)` that requires no allocation.
 pub trait Events<T: Real, const NQ: usize, const NV: usize> {
     /// Number of events in the list.
     const COUNT: usize;
@@ -119,23 +120,24 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
     ///
     /// # Errors
     ///
-    /// [`Undefined::Value`] if a function is NaN.
-    fn begin(&mut self, state: &State<T, NQ, NV>) -> Result<(), Undefined>;
+    /// [`EventSearchError::Value`] if a function is NaN.
+    fn begin(&mut self, state: &State<T, NQ, NV>) -> Result<(), EventSearchError>;
 
     /// Returns the first event between `from` and `to` on a step. Every event that is not later than the
     /// first one, up to rounding, stores its own position.
     ///
     /// # Errors
     ///
-    /// [`Undefined`] if a function is NaN, or if an impact has not separated the colliding bodies.
+    /// [`EventSearchError`] if a function is NaN, or if an impact has not separated the colliding bodies.
     fn locate<P: Fn(T) -> State<T, NQ, NV>>(
         &mut self,
         path: &P,
         from: T,
         to: T,
-    ) -> Result<Option<Hit<T>>, Undefined>;
+    ) -> Result<Option<EventHit<T>>, EventSearchError>;
 
-    /// Adopts the signs at the end of the last range without an event.
+    /// Adopts the signs of the event functions at the end of the last searched range, which contained no
+    /// event.
     fn pass(&mut self);
 
     /// Returns the index of the first event, from the index `from` on, that is not later than `limit` on the
@@ -149,7 +151,7 @@ pub trait Events<T: Real, const NQ: usize, const NV: usize> {
         index: usize,
         state: &mut State<T, NQ, NV>,
         later: &P,
-    ) -> Flow;
+    ) -> EventOutcome;
 
     /// Marks the signs of event functions as unknown for events up to the position `limit`, because the
     /// velocity has changed.
@@ -161,7 +163,7 @@ pub(super) fn coincidence_threshold<T: Real>() -> T {
     epsilon::<T>() * constant(8.0)
 }
 
-/// List without events.
+/// Empty list of events.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoEvents;
 
@@ -169,7 +171,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Events<T, NQ, NV> for NoEvents {
     const COUNT: usize = 0;
     const STOPS: bool = false;
 
-    fn begin(&mut self, _state: &State<T, NQ, NV>) -> Result<(), Undefined> {
+    fn begin(&mut self, _state: &State<T, NQ, NV>) -> Result<(), EventSearchError> {
         Ok(())
     }
 
@@ -178,7 +180,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Events<T, NQ, NV> for NoEvents {
         _path: &P,
         _from: T,
         _to: T,
-    ) -> Result<Option<Hit<T>>, Undefined> {
+    ) -> Result<Option<EventHit<T>>, EventSearchError> {
         Ok(None)
     }
 
@@ -193,8 +195,8 @@ impl<T: Real, const NQ: usize, const NV: usize> Events<T, NQ, NV> for NoEvents {
         _index: usize,
         _state: &mut State<T, NQ, NV>,
         _later: &P,
-    ) -> Flow {
-        Flow::Go
+    ) -> EventOutcome {
+        EventOutcome::Go
     }
 
     fn rebound(&mut self, _limit: T) {}
@@ -206,11 +208,11 @@ pub struct Event<T, G, A> {
     function: G,
     crossing: Crossing,
     action: A,
-    /// Sign of the function at the current position of the search. `ahead` is the sign at the end of the
-    /// range searched last.
+    /// Sign of the event function at the current position of the search. The field `ahead` is the sign at the
+    /// end of the range searched last.
     side: Ordering,
     ahead: Ordering,
-    /// Position on the step at which the event was found.
+    /// Position of the event on the step, if it was found.
     found: Option<T>,
     /// Sign of the event function that the motion must not have after an impact.
     closed: Ordering,
@@ -250,11 +252,11 @@ where
     const COUNT: usize = E::COUNT + 1;
     const STOPS: bool = E::STOPS || A::STOPS;
 
-    fn begin(&mut self, state: &State<T, NQ, NV>) -> Result<(), Undefined> {
+    fn begin(&mut self, state: &State<T, NQ, NV>) -> Result<(), EventSearchError> {
         self.0.begin(state)?;
         let value = self.1.value_of_function(state);
         if value.partial_cmp(&value).is_none() {
-            return Err(Undefined::Value(E::COUNT));
+            return Err(EventSearchError::Value(E::COUNT));
         }
         self.1.side = sign_of_value(value);
         Ok(())
@@ -265,7 +267,7 @@ where
         path: &P,
         mut from: T,
         to: T,
-    ) -> Result<Option<Hit<T>>, Undefined> {
+    ) -> Result<Option<EventHit<T>>, EventSearchError> {
         let earlier = self.0.locate(path, from, to)?;
         // Slightly farther, so that coincident events are found in any order.
         let to = earlier.map_or(to, |hit| (hit.theta + coincidence_threshold()).min(to));
@@ -273,16 +275,16 @@ where
         event.found = None;
         let end = event.value_of_function(&path(to));
         if end.partial_cmp(&end).is_none() {
-            return Err(Undefined::Value(E::COUNT));
+            return Err(EventSearchError::Value(E::COUNT));
         }
         event.ahead = sign_of_value(end);
         if event.side == Ordering::Equal {
             (from, event.side) =
-                side_after_zero(&mut |theta| event.value_of_function(&path(theta)), [from, to]);
+                sign_after_zero(&mut |theta| event.value_of_function(&path(theta)), [from, to]);
             match event.side {
                 // Still on the surface.
                 Ordering::Equal => event.ahead = Ordering::Equal,
-                side if side == event.closed => return Err(Undefined::Through(E::COUNT)),
+                side if side == event.closed => return Err(EventSearchError::Through(E::COUNT)),
                 _ => event.closed = Ordering::Equal,
             }
         }
@@ -296,7 +298,7 @@ where
         if earlier.is_some_and(|hit| hit.theta <= theta) {
             return Ok(earlier);
         }
-        Ok(Some(Hit { theta, index: E::COUNT }))
+        Ok(Some(EventHit { theta, index: E::COUNT }))
     }
 
     fn pass(&mut self) {
@@ -316,7 +318,7 @@ where
         index: usize,
         state: &mut State<T, NQ, NV>,
         later: &P,
-    ) -> Flow {
+    ) -> EventOutcome {
         if index != E::COUNT {
             return self.0.act(index, state, later);
         }
@@ -325,7 +327,7 @@ where
         let flow = event.action.act(state);
         let beyond = event.side.reverse();
         event.side = beyond;
-        if flow == Flow::Jump {
+        if flow == EventOutcome::Jump {
             let after = event.value_of_function(&later(state)) - event.value_of_function(state);
             // Motion in the same direction passes the surface; any other motion has been stopped or reversed
             // by it.
@@ -343,9 +345,9 @@ where
     }
 }
 
-/// Returns a position after `a`, towards `b`, at which `f` differs from zero by more than rounding, and the
-/// sign of `f` there. `f` is zero at `a` up to rounding, and may be zero again before `b`.
-fn side_after_zero<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T; 2]) -> (T, Ordering) {
+/// Returns a position between `a` and `b` at which the function `f` differs from zero by more than rounding,
+/// and the sign of `f` there. The function is zero at `a` up to rounding, and may be zero again before `b`.
+fn sign_after_zero<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T; 2]) -> (T, Ordering) {
     let rounding = f(a).abs() * constant(4.0);
     for part in [1.5e-8, 1e-6, 6e-5, 4e-3, 0.1, 1.0] {
         let x = a + (b - a) * constant(part);
@@ -357,10 +359,10 @@ fn side_after_zero<T: Real>(f: &mut impl FnMut(T) -> T, [a, b]: [T; 2]) -> (T, O
     (a, Ordering::Equal)
 }
 
-/// Returns the position where `f` changes from negative to `end`, its non-negative value at `b`. The position
-/// is bracketed to rounding error, and the result is the non-negative end of the bracket. The ITP method
-/// takes at most one evaluation more than bisection, and much fewer for smooth functions (Oliveira and
-/// Takahashi, ACM Trans. Math. Softw. 47, 2020).
+/// Returns the position of the sign change of the function `f`, from negative to the non-negative value `end`
+/// at `b`. The position is bracketed to rounding error, and the result is the non-negative end of the
+/// bracket. The ITP method takes at most one evaluation more than bisection, and much fewer for smooth
+/// functions (Oliveira and Takahashi, ACM Trans. Math. Softw. 47, 2020).
 fn first_sign_change<T: Real>(mut f: impl FnMut(T) -> T, [mut a, mut b]: [T; 2], end: T) -> T {
     let zero = T::zero();
     let (half, two) = (constant::<T>(0.5), constant::<T>(2.0));
@@ -398,7 +400,7 @@ fn first_sign_change<T: Real>(mut f: impl FnMut(T) -> T, [mut a, mut b]: [T; 2],
 mod tests {
     use super::*;
 
-    /// Returns the sign change of `f` between 0 and 1, and the number of evaluations.
+    /// Returns the position of the sign change of `f` between 0 and 1, and the number of evaluations of `f`.
     fn find_sign_change(f: impl Fn(f64) -> f64) -> (f64, usize) {
         let mut count = 0;
         let count_evaluation = |x| {

@@ -1,9 +1,10 @@
 //! Execution of a run: steps of the integrator, samples, control instants and events in the order of time.
 
-use super::clock::{Clock, time_after};
+use super::clock::{RunTimes, time_after};
 use super::event::coincidence_threshold;
 use super::{
-    Events, Flow, Hit, Overlaps, Sample, Samples, Simulation, Undefined, check_positive, not_negative,
+    EventHit, EventOutcome, EventSearchError, Events, Overlaps, Sample, SampleTimes, Simulation,
+    check_not_negative, check_positive,
 };
 use crate::integrate::{Error, Inputs, Jump, Method, State, Step, project_end_of_step};
 use crate::private::{constant, epsilon, to_f64};
@@ -57,13 +58,13 @@ fn farthest_entry<T: Real, const N: usize>(
 
 /// Simultaneous events, whose effects are applied one after another.
 #[derive(Clone, Debug)]
-struct Firing<T, const NQ: usize, const NV: usize> {
+struct SimultaneousEvents<T, const NQ: usize, const NV: usize> {
     state: State<T, NQ, NV>,
     /// Time of the simultaneous events after the start of the run, s.
     elapsed: f64,
-    /// Position on the step up to which events belong to the instant.
+    /// Position on the step up to which events belong to the same instant.
     limit: T,
-    /// Event with a change of velocity whose second sample has not been emitted yet.
+    /// Position on the step up to which events belong to the same instant.
     jump: Option<usize>,
     /// Index of the first event whose effect has not been applied yet.
     next: usize,
@@ -75,8 +76,8 @@ struct Firing<T, const NQ: usize, const NV: usize> {
 
 /// Progress of a simulation between two samples.
 #[derive(Clone, Debug)]
-pub(super) struct Progress<T, Memory, const NQ: usize, const NV: usize> {
-    clock: Clock,
+pub(super) struct RunProgress<T, Memory, const NQ: usize, const NV: usize> {
+    clock: RunTimes,
     /// State at the start of the current step, or of the next one if no step is current. The field `elapsed`
     /// is its time after the start of the run, s.
     node: State<T, NQ, NV>,
@@ -84,7 +85,7 @@ pub(super) struct Progress<T, Memory, const NQ: usize, const NV: usize> {
     /// End of the current step: time after the start, s, and time of the run.
     ahead: (f64, T),
     /// Simultaneous events whose effects are being applied, if any.
-    firing: Option<Firing<T, NQ, NV>>,
+    firing: Option<SimultaneousEvents<T, NQ, NV>>,
     memory: Memory,
     /// Step whose samples and events are being emitted, with times relative to its start; `None` if the next
     /// step has not been computed yet.
@@ -92,8 +93,8 @@ pub(super) struct Progress<T, Memory, const NQ: usize, const NV: usize> {
     /// Position on the current step up to which events have been searched and handled.
     cursor: T,
     /// Next event that was found on the current step, if any.
-    hit: Option<Hit<T>>,
-    /// Index of the next sample. `control` is the index of the next control instant.
+    hit: Option<EventHit<T>>,
+    /// Index of the next sample. The field `control` is the index of the next control instant.
     sample: u64,
     control: u64,
     /// Whether the sample at the start of the step has been emitted.
@@ -107,17 +108,18 @@ pub(super) struct Progress<T, Memory, const NQ: usize, const NV: usize> {
 }
 
 /// Returns the error for a failed search for events.
-fn event_search_error(reason: Undefined, t: f64) -> Error {
+fn event_search_error(reason: EventSearchError, t: f64) -> Error {
     match reason {
-        Undefined::Value(event) => Error::Event { t, event },
-        Undefined::Through(event) => Error::Impacts { t, event },
+        EventSearchError::Value(event) => Error::Event { t, event },
+        EventSearchError::Through(event) => Error::Impacts { t, event },
     }
 }
 
 type Memory<T, S, const NV: usize> = <S as Method<T>>::Memory<NV>;
 
 /// Result of advancing a simulation: a sample if one is due, or an error.
-type Due<T, const NQ: usize, const NV: usize, const NU: usize> = Result<Option<Sample<T, NQ, NV, NU>>, Error>;
+type DueSample<T, const NQ: usize, const NV: usize, const NU: usize> =
+    Result<Option<Sample<T, NQ, NV, NU>>, Error>;
 
 impl<M, T, I, S, E, const NQ: usize, const NV: usize, const NU: usize>
     Simulation<'_, M, T, I, S, E, NQ, NV, NU>
@@ -130,12 +132,12 @@ where
 {
     /// Returns the progress with which a simulation continues: that of an interrupted run, otherwise the
     /// initial progress, after checks of all settings.
-    pub(super) fn begin_run(&mut self) -> Result<Progress<T, Memory<T, S, NV>, NQ, NV>, Error> {
+    pub(super) fn begin_run(&mut self) -> Result<RunProgress<T, Memory<T, S, NV>, NQ, NV>, Error> {
         if let Some(run) = self.progress.take() {
             return Ok(run);
         }
         self.method.check()?;
-        self.duration.map_or(Ok(()), |duration| not_negative("the duration", duration))?;
+        self.duration.map_or(Ok(()), |duration| check_not_negative("the duration", duration))?;
         self.check_samples()?;
         self.system.inputs.period().map_or(Ok(()), |period| check_positive("the control period", period))?;
         let start = self.start.check_finite()?;
@@ -147,7 +149,7 @@ where
         }
         check_quaternions::<M, T, NQ, NV, NU>(&start.q, &unit)?;
         let start = self.separate_surfaces(start)?;
-        let node = self.on_constraints(start)?;
+        let node = self.project_on_constraints(start)?;
         let t = to_f64(node.t);
         if let Some((entry, by)) = farthest_entry(&node.q, &start.q, M::CONFIGURATION)
             .or_else(|| farthest_entry(&node.v, &start.v, M::VELOCITIES))
@@ -155,7 +157,7 @@ where
             return Err(Error::OffConstraints { t, entry, by });
         }
         self.events.begin(&node).map_err(|reason| event_search_error(reason, t))?;
-        Ok(Progress {
+        Ok(RunProgress {
             clock: self.clock_of_run(),
             node,
             elapsed: 0.0,
@@ -187,20 +189,20 @@ where
             return Ok(start);
         }
         let v = mechanism.carry(t, &q, &mechanism.difference(&q, &parted), &v);
-        self.on_constraints(State { t, q: parted, v })
+        self.project_on_constraints(State { t, q: parted, v })
     }
 
     /// Returns the next sample; `None` at the end of the run.
     pub(super) fn next_sample(
         &mut self,
-        run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
-    ) -> Due<T, NQ, NV, NU> {
+        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
+    ) -> DueSample<T, NQ, NV, NU> {
         loop {
             let sample = match (run.step, run.firing.is_some()) {
                 (Some(step), true) => self.fire_next_event(run, &step)?,
                 (Some(step), false) => self.advance_within(run, &step)?,
-                _ if self.at_end(run) && run.shown => return Ok(None),
-                _ => self.at_node(run)?,
+                _ if self.has_reached_end(run) && run.shown => return Ok(None),
+                _ => self.continue_at_node(run)?,
             };
             if sample.is_some() {
                 return Ok(sample);
@@ -208,53 +210,53 @@ where
         }
     }
 
-    fn at_end(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> bool {
+    fn has_reached_end(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>) -> bool {
         run.stopped || run.clock.end_time().is_some_and(|end| run.elapsed >= end)
     }
 
     fn check_samples(&self) -> Result<(), Error> {
         match self.samples {
-            Samples::Steps => Ok(()),
-            Samples::Every(interval) => check_positive("the sampling interval", interval),
-            Samples::At(times) => {
+            SampleTimes::Steps => Ok(()),
+            SampleTimes::Every(interval) => check_positive("the sampling interval", interval),
+            SampleTimes::At(times) => {
                 let Some(first) = times.first() else {
                     return self.duration.map_or(Err(Error::Endless), |_| Ok(()));
                 };
-                not_negative("the time from the start to the first sample", *first - self.start.t)?;
+                check_not_negative("the time from the start to the first sample", *first - self.start.t)?;
                 let mut pairs = times.iter().zip(times.iter().skip(1));
                 pairs.try_for_each(|(a, b)| check_positive("the time between samples", *b - *a))
             }
         }
     }
 
-    fn clock_of_run(&self) -> Clock {
+    fn clock_of_run(&self) -> RunTimes {
         let (every, last) = match self.samples {
-            Samples::Steps => (None, None),
-            Samples::Every(interval) => (Some(interval), None),
-            Samples::At(times) => (None, times.last().map(|last| *last - self.start.t)),
+            SampleTimes::Steps => (None, None),
+            SampleTimes::Every(interval) => (Some(interval), None),
+            SampleTimes::At(times) => (None, times.last().map(|last| *last - self.start.t)),
         };
-        Clock::new(self.duration.or(last), every, self.system.inputs.period())
+        RunTimes::new(self.duration.or(last), every, self.system.inputs.period())
     }
 
-    /// Returns the time from the start to a requested time, s.
-    fn since_start(&self, t: &T) -> f64 {
+    /// Returns the time between the start of the run and a requested sample time, s.
+    fn time_since_start(&self, t: &T) -> f64 {
         to_f64(*t) - to_f64(self.start.t)
     }
 
     /// Returns the instant of the next sample; `None` if every step is a sample. After the last requested
     /// time, the instant is the end of the run.
-    fn next_due(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
-        let Samples::At(times) = self.samples else { return run.clock.sample_instant(run.sample) };
+    fn next_sample_instant(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
+        let SampleTimes::At(times) = self.samples else { return run.clock.sample_instant(run.sample) };
         let end = run.clock.end_time().unwrap_or(f64::INFINITY);
         let due = usize::try_from(run.sample).ok().and_then(|k| times.get(k));
-        Some(due.map_or(end, |t| self.since_start(t).min(end)))
+        Some(due.map_or(end, |t| self.time_since_start(t).min(end)))
     }
 
     /// Returns the time of the run at an instant.
-    fn run_time_at(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>, elapsed: f64) -> T {
-        if let Samples::At(times) = self.samples
+    fn run_time_at(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>, elapsed: f64) -> T {
+        if let SampleTimes::At(times) = self.samples
             && let Some(asked) = usize::try_from(run.sample).ok().and_then(|k| times.get(k))
-            && self.since_start(asked) == elapsed
+            && self.time_since_start(asked) == elapsed
         {
             return *asked;
         }
@@ -263,28 +265,31 @@ where
     }
 
     /// Returns the latest instant at which the next step must end.
-    fn next_stop(&self, run: &Progress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
-        let sample = self.next_due(run).filter(|_| S::FIXED);
+    fn next_step_limit(&self, run: &RunProgress<T, Memory<T, S, NV>, NQ, NV>) -> Option<f64> {
+        let sample = self.next_sample_instant(run).filter(|_| S::FIXED);
         let stops = [run.clock.end_time(), run.clock.control_instant(run.control), sample];
         stops.into_iter().flatten().reduce(f64::min)
     }
 
     /// Continues at a node between two steps: updates the inputs, emits the node if it is a sample, otherwise
     /// takes a step.
-    fn at_node(&mut self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>) -> Due<T, NQ, NV, NU> {
+    fn continue_at_node(
+        &mut self,
+        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
+    ) -> DueSample<T, NQ, NV, NU> {
         self.renew_control_period(run);
-        let due = self.next_due(run).map_or(!run.shown, |sample| run.elapsed >= sample);
+        let due = self.next_sample_instant(run).map_or(!run.shown, |sample| run.elapsed >= sample);
         if due {
             run.sample += 1;
             run.shown = true;
-            if !run.quiet || self.at_end(run) {
+            if !run.quiet || self.has_reached_end(run) {
                 return Ok(Some(self.make_sample(run, run.node, None)));
             }
         }
-        let stop = self.next_stop(run);
+        let stop = self.next_step_limit(run);
         let until = stop.map(|stop| constant(stop - run.elapsed));
         // Samples between the ends of steps are interpolated.
-        let sample = self.next_due(run).filter(|_| !S::FIXED);
+        let sample = self.next_sample_instant(run).filter(|_| !S::FIXED);
         let within = sample.is_some_and(|sample| stop.is_none_or(|stop| sample < stop));
         let dense = E::COUNT > 0;
         let (origin, start) = (run.node.t, run.node.state_with_time(T::zero()));
@@ -299,21 +304,21 @@ where
         let arrived = stop.filter(|_| until == Some(step.end.t));
         let elapsed = arrived.unwrap_or_else(|| run.elapsed + to_f64(step.end.t));
         run.ahead = (elapsed, self.run_time_at(run, elapsed));
-        if dense || self.next_due(run).is_some_and(|sample| sample < elapsed) {
+        if dense || self.next_sample_instant(run).is_some_and(|sample| sample < elapsed) {
             (run.step, run.cursor, run.hit) = (Some(step), T::zero(), None);
         } else {
-            self.go_ahead(run, &step);
+            self.move_to_step_end(run, &step);
         }
         Ok(None)
     }
 
-    /// Sets the progress of the run to the end of the step.
-    fn go_ahead(&self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>, step: &Step<T, NQ, NV>) {
+    /// Moves the progress of the run to the end of the step.
+    fn move_to_step_end(&self, run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>, step: &Step<T, NQ, NV>) {
         let (elapsed, t) = run.ahead;
         (run.node, run.elapsed, run.step, run.shown) = (step.end.state_with_time(t), elapsed, None, false);
     }
 
-    /// Returns a state on a step, with the time of the run.
+    /// Returns the state at position `theta` on a step, with the time of the run.
     fn state_on_step(&self, origin: T, step: &Step<T, NQ, NV>, theta: T) -> State<T, NQ, NV> {
         let state = step.at(&self.system, theta);
         state.state_with_time(origin + state.t)
@@ -322,16 +327,16 @@ where
     /// Continues within a step: emits the next sample or event, otherwise advances to the end of the step.
     fn advance_within(
         &mut self,
-        run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
+        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
         step: &Step<T, NQ, NV>,
-    ) -> Due<T, NQ, NV, NU> {
+    ) -> DueSample<T, NQ, NV, NU> {
         if run.hit.is_none() {
             self.search_next_event(run, step)?;
         }
         let length = run.ahead.0 - run.elapsed;
         let event = run.hit.map(|hit| (hit, run.elapsed + to_f64(hit.theta * step.end.t)));
         let limit = event.map_or(run.ahead.0, |(_, elapsed)| elapsed);
-        if let Some(due) = self.next_due(run).filter(|due| *due < limit) {
+        if let Some(due) = self.next_sample_instant(run).filter(|due| *due < limit) {
             let t = self.run_time_at(run, due);
             run.sample += 1;
             if run.quiet {
@@ -339,30 +344,30 @@ where
             }
             let theta = constant((due - run.elapsed) / length);
             let state = self.state_on_step(run.node.t, step, theta).state_with_time(t);
-            let state = self.on_constraints(state)?;
+            let state = self.project_on_constraints(state)?;
             return Ok(Some(self.make_sample(run, state, None)));
         }
         match event {
             Some((hit, elapsed)) => {
-                let state = self.on_constraints(self.state_on_step(run.node.t, step, hit.theta))?;
+                let state = self.project_on_constraints(self.state_on_step(run.node.t, step, hit.theta))?;
                 let limit = hit.theta + coincidence_threshold();
                 let (jump, next, jumped, stopped) = (None, 0, false, false);
-                run.firing = Some(Firing { state, elapsed, limit, jump, next, jumped, stopped });
+                run.firing = Some(SimultaneousEvents { state, elapsed, limit, jump, next, jumped, stopped });
             }
-            None => self.go_ahead(run, step),
+            None => self.move_to_step_end(run, step),
         }
         Ok(None)
     }
 
     /// Projects a state onto the constraints, if there are any.
-    fn on_constraints(&self, state: State<T, NQ, NV>) -> Result<State<T, NQ, NV>, Error> {
+    fn project_on_constraints(&self, state: State<T, NQ, NV>) -> Result<State<T, NQ, NV>, Error> {
         project_end_of_step(&self.system, state, state.t)
     }
 
     /// Searches for the first event after the current position on the step.
     fn search_next_event(
         &mut self,
-        run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
+        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
         step: &Step<T, NQ, NV>,
     ) -> Result<(), Error> {
         if E::COUNT == 0 {
@@ -395,9 +400,9 @@ where
     /// Applies the effect of the next event of an instant; after the last event, continues the run.
     fn fire_next_event(
         &mut self,
-        run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
+        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
         step: &Step<T, NQ, NV>,
-    ) -> Due<T, NQ, NV, NU> {
+    ) -> DueSample<T, NQ, NV, NU> {
         let Some(mut firing) = run.firing.take() else { return Ok(None) };
         run.hit = None;
         if let Some(index) = firing.jump.take() {
@@ -424,9 +429,9 @@ where
         };
         let before = firing.state;
         match self.events.act(index, &mut firing.state, &advance_by_moment) {
-            Flow::Go => {}
-            Flow::Stop => firing.stopped = true,
-            Flow::Jump => {
+            EventOutcome::Go => {}
+            EventOutcome::Stop => firing.stopped = true,
+            EventOutcome::Jump => {
                 let soon = (run.ahead.0 - run.elapsed) * SOON;
                 let is_repeated = |(last, elapsed)| last == index && firing.elapsed - elapsed < soon;
                 if run.jump.is_some_and(is_repeated) {
@@ -434,7 +439,7 @@ where
                 }
                 run.jump = Some((index, firing.elapsed));
                 firing.jumped = true;
-                firing.state = self.on_constraints(firing.state)?;
+                firing.state = self.project_on_constraints(firing.state)?;
             }
         }
         let sample = match firing.state.v == before.v {
@@ -450,7 +455,7 @@ where
     }
 
     /// Starts a new control period of the inputs if one is due.
-    fn renew_control_period(&mut self, run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>) {
+    fn renew_control_period(&mut self, run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>) {
         let State { t, q, v } = run.node;
         if run.clock.control_instant(run.control).is_some_and(|control| run.elapsed >= control) {
             run.control += 1;
@@ -461,7 +466,7 @@ where
 
     fn make_sample(
         &mut self,
-        run: &mut Progress<T, Memory<T, S, NV>, NQ, NV>,
+        run: &mut RunProgress<T, Memory<T, S, NV>, NQ, NV>,
         State { t, q, v }: State<T, NQ, NV>,
         event: Option<usize>,
     ) -> Sample<T, NQ, NV, NU> {

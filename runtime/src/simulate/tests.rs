@@ -1,22 +1,22 @@
 use super::*;
 use crate::Mechanism;
 use crate::integrate::{ImplicitMidpoint, Rk4, SemiImplicitEuler};
-use crate::testing::{FreeBody, OneDof, falling_ball, oscillator, pendulum, pendulum_period};
+use crate::testing::{FreeBody, OneDof, falling_ball, harmonic_oscillator, pendulum_period, unit_pendulum};
 use core::cell::Cell;
 use nalgebra::Vector3;
 use std::vec::Vec;
 
 const TIGHT: fn() -> DormandPrince<f64> = || DormandPrince::new().tolerance(1e-13, 1e-13);
 
-/// Returns the times of the samples of a run of the oscillator.
+/// Returns the times of the samples in a simulation of the oscillator.
 fn sample_times<S: Method<f64>>(method: S, duration: f64, interval: f64) -> Vec<f64> {
-    let oscillator = oscillator::<f64>();
+    let oscillator = harmonic_oscillator::<f64>();
     let run = simulate(&oscillator).from([1.0], [0.0]).duration(duration).sample_every(interval);
     run.method(method).map(|sample| sample.unwrap().t).collect()
 }
 
 #[test]
-fn samples_are_on_time() {
+fn samples_are_at_requested_times() {
     let expected_sample_time = |interval: f64| move |k: usize| k as f64 * interval;
     for (duration, interval, count) in [(10.0, 0.01, 1000), (1.0, 0.1, 10), (0.3, 0.1, 3), (0.7, 0.7, 1)] {
         let mut wanted: Vec<f64> = (0..count).map(expected_sample_time(interval)).collect();
@@ -32,7 +32,7 @@ fn samples_are_on_time() {
 
 #[test]
 fn without_an_interval_every_step_is_a_sample() {
-    let oscillator = oscillator::<f64>();
+    let oscillator = harmonic_oscillator::<f64>();
     let run = simulate(&oscillator).from([1.0], [0.0]).duration(1.0);
     assert_eq!(run.clone().method(Rk4::step(0.01)).count(), 101);
     assert_eq!(run.clone().method(Rk4::step(0.3)).count(), 5);
@@ -45,7 +45,7 @@ fn without_an_interval_every_step_is_a_sample() {
 
 #[test]
 fn interpolated_samples_are_accurate() {
-    let oscillator = oscillator::<f64>();
+    let oscillator = harmonic_oscillator::<f64>();
     let run = simulate(&oscillator).from([1.0], [0.0]).duration(10.0).sample_every(0.01).method(TIGHT());
     for sample in run {
         let sample = sample.unwrap();
@@ -55,7 +55,7 @@ fn interpolated_samples_are_accurate() {
 }
 
 #[test]
-fn the_defaults_are_rest_in_the_neutral_configuration() {
+fn default_start_is_neutral_at_rest() {
     let body = FreeBody { mass: 1.0, inertia: Vector3::new(1.0, 2.0, 2.5), gravity: 0.0 };
     let end = simulate(&body).duration(1.0).finish().unwrap();
     assert_eq!(end.q, Mechanism::neutral(&body));
@@ -63,22 +63,22 @@ fn the_defaults_are_rest_in_the_neutral_configuration() {
     assert!(end.u.is_empty());
 }
 
-/// A reference to a mechanism can be simulated like the mechanism.
+/// Simulates a reference to a mechanism, and checks that the result is that of the mechanism itself.
 #[test]
-fn a_plant_is_borrowed() {
+fn mechanism_reference_is_simulated() {
     struct Controller<P> {
         plant: P,
     }
-    let oscillator = oscillator::<f64>();
+    let oscillator = harmonic_oscillator::<f64>();
     let controller = Controller { plant: &oscillator };
     let end = simulate(&controller.plant).from([1.0], [0.5]).duration(2.0).finish();
     assert_eq!(end, simulate(&oscillator).from([1.0], [0.5]).duration(2.0).finish());
 }
 
 #[test]
-fn a_run_can_start_later() {
+fn run_starts_at_given_time() {
     let simulate_pushed_from = |start| {
-        let oscillator = oscillator::<f64>();
+        let oscillator = harmonic_oscillator::<f64>();
         let run = simulate(&oscillator).start_at(start).inputs(|t, _, _| SVector::from([t]));
         run.duration(1.0).finish().map(|end| (end.t, end.q[0])).unwrap()
     };
@@ -91,7 +91,7 @@ fn a_run_can_start_later() {
 /// Simulates a free mass with forces of alternating sign for periods of 0.1 s. The closed-form solution is a
 /// sum.
 fn simulate_controlled_mass<S: Method<f64>>(method: S) -> (f64, Vec<f64>) {
-    let mass = OneDof { force: |_| 0.0, ..oscillator::<f64>() };
+    let mass = OneDof { force: |_| 0.0, ..harmonic_oscillator::<f64>() };
     let calls = Cell::new(0);
     let instants = core::cell::RefCell::new(Vec::new());
     let run = simulate(&mass).control_every(0.1, |t, _, _| {
@@ -104,7 +104,7 @@ fn simulate_controlled_mass<S: Method<f64>>(method: S) -> (f64, Vec<f64>) {
 }
 
 #[test]
-fn digital_controllers_hold_their_output() {
+fn digital_control_is_constant_within_period() {
     // Ten periods: up and down five times, and 0.01 m in each pair.
     for (q, instants) in [
         simulate_controlled_mass(DormandPrince::new()),
@@ -119,7 +119,7 @@ fn digital_controllers_hold_their_output() {
 
 /// Returns the inputs at samples every 0.1 s of a controller that counts its periods of 0.3 s.
 fn sampled_inputs<S: Method<f64>>(method: S) -> Vec<f64> {
-    let oscillator = oscillator::<f64>();
+    let oscillator = harmonic_oscillator::<f64>();
     let mut count = -1.0;
     let run = simulate(&oscillator).control_every(0.3, |_, _, _| {
         count += 1.0;
@@ -129,19 +129,19 @@ fn sampled_inputs<S: Method<f64>>(method: S) -> Vec<f64> {
 }
 
 #[test]
-fn samples_hold_the_inputs() {
+fn samples_contain_held_inputs() {
     let wanted: Vec<f64> = (0..=30).map(|k| f64::from(k / 3)).collect();
     assert_eq!(sampled_inputs(Rk4::step(0.1)), wanted);
     assert_eq!(sampled_inputs(ImplicitMidpoint::step(0.03)), wanted);
     assert_eq!(sampled_inputs(DormandPrince::new()), wanted);
-    let oscillator = oscillator::<f64>();
+    let oscillator = harmonic_oscillator::<f64>();
     let run = simulate(&oscillator).inputs(|t, _, _| SVector::from([2.0 * t])).duration(1.0);
     assert!(run.sample_every(0.1).all(|sample| sample.is_ok_and(|s| s.u[0] == 2.0 * s.t)));
 }
 
 #[test]
 fn pendulum_crossings_are_periodic() {
-    let pendulum = pendulum();
+    let pendulum = unit_pendulum();
     let period = pendulum_period(2.5);
     let run = simulate(&pendulum).from([2.5], [0.0]).duration(5.0 * period).sample_every(100.0);
     let run =
@@ -164,7 +164,7 @@ fn pendulum_crossings_are_periodic() {
 }
 
 #[test]
-fn a_run_ends_where_it_is_told() {
+fn run_ends_at_stopping_event() {
     // A stone thrown upwards from the ground lands after t = 2 v; the start is no event.
     let stone = falling_ball();
     let run = simulate(&stone).from([0.0], [3.0]).until(|_, q, _| q[0]);
@@ -188,8 +188,8 @@ fn a_run_ends_where_it_is_told() {
 }
 
 #[test]
-fn several_events_come_in_order() {
-    let mass = OneDof { force: |_| 0.0, ..oscillator::<f64>() };
+fn several_events_are_in_time_order() {
+    let mass = OneDof { force: |_| 0.0, ..harmonic_oscillator::<f64>() };
     let run = simulate(&mass).from([0.0], [1.0]).duration(1.0).method(Rk4::step(1.0));
     let run = run
         .event(Crossing::Rising, |_, q, _| q[0] - 0.9)
@@ -204,7 +204,7 @@ fn several_events_come_in_order() {
 }
 
 #[test]
-fn a_ball_bounces() {
+fn bouncing_ball_has_exact_impact_times() {
     // From 0.5 m with unit gravity, the ball falls for 1 s. Each bounce halves the speed: impacts at 1, 2,
     // 2.5 and 2.75 s.
     let ball = falling_ball();
@@ -228,7 +228,7 @@ fn a_ball_bounces() {
 }
 
 #[test]
-fn a_ball_bounces_for_ever() {
+fn elastic_ball_bounces_without_loss() {
     let ball = falling_ball();
     let run = simulate(&ball).from([0.5], [0.0]).impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| -v);
     // 500 flights of 2 s.
@@ -239,9 +239,10 @@ fn a_ball_bounces_for_ever() {
     assert!((thrown.t - 6.0).abs() < 1e-12, "{thrown:?}");
 }
 
-/// Bounces that each lose a fraction of the speed accumulate at a finite time.
+/// Checks that bounces that each lose a fraction of the speed, which accumulate at a finite time, end with an
+/// error.
 #[test]
-fn impacts_without_end_are_an_error() {
+fn accumulating_impacts_are_an_error() {
     let ball = falling_ball();
     for part in [0.8, 0.5, 0.05] {
         let run = simulate(&ball).from([0.5], [0.0]);
@@ -257,7 +258,7 @@ fn impacts_without_end_are_an_error() {
 }
 
 #[test]
-fn an_event_that_is_not_a_number_is_an_error() {
+fn nan_event_function_is_an_error() {
     let ball = falling_ball();
     let end = simulate(&ball).duration(1.0).until(|t, _, _| if t < 0.5 { 1.0 } else { f64::NAN }).finish();
     assert!(matches!(end, Err(Error::Event { event: 0, .. })), "{end:?}");
@@ -267,7 +268,7 @@ fn an_event_that_is_not_a_number_is_an_error() {
 }
 
 #[test]
-fn an_impact_on_a_control_instant_is_both() {
+fn impact_coincides_with_control_instant() {
     let ball = falling_ball();
     let run = simulate(&ball).from([0.5], [0.0]).control_every(1.0, |_, _, _| SVector::zeros());
     let run = run.impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| -v).duration(2.5);
@@ -278,8 +279,9 @@ fn an_impact_on_a_control_instant_is_both() {
 }
 
 #[test]
-fn an_error_ends_the_run() {
-    let broken = OneDof { force: |q: f64| if q > 0.5 { f64::NAN } else { 1.0 }, ..oscillator::<f64>() };
+fn iteration_ends_after_an_error() {
+    let broken =
+        OneDof { force: |q: f64| if q > 0.5 { f64::NAN } else { 1.0 }, ..harmonic_oscillator::<f64>() };
     let mut run = simulate(&broken).duration(2.0).method(Rk4::step(0.125));
     let failed = run.by_ref().find(Result::is_err);
     assert!(matches!(failed, Some(Err(Error::NotFinite { t })) if t > 0.8 && t < 1.01), "{failed:?}");
@@ -287,8 +289,8 @@ fn an_error_ends_the_run() {
 }
 
 #[test]
-fn changing_a_setting_starts_over() {
-    let oscillator = oscillator::<f64>();
+fn changed_setting_restarts_the_run() {
+    let oscillator = harmonic_oscillator::<f64>();
     let mut run = simulate(&oscillator).from([1.0], [0.0]).duration(1.0).sample_every(0.1);
     assert_eq!(run.by_ref().count(), 11);
     assert!(run.next().is_none());
@@ -308,9 +310,11 @@ fn energy_gain<M: Mechanism<NQ, NV, NU>, const NQ: usize, const NV: usize, const
 }
 
 #[test]
-fn generic_code_can_simulate() {
-    assert!(energy_gain(&pendulum(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-8);
-    assert!(energy_gain(&oscillator::<f32>(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-4);
+fn generic_code_simulates_mechanisms() {
+    assert!(energy_gain(&unit_pendulum(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-8);
+    assert!(
+        energy_gain(&harmonic_oscillator::<f32>(), SVector::from([1.0]), SVector::from([0.0])).abs() < 1e-4
+    );
     let body = FreeBody { mass: 1.0, inertia: Vector3::new(1.0, 2.0, 2.5), gravity: 1.0 };
     assert!(
         energy_gain(&body, Mechanism::neutral(&body), SVector::from([1.0, 0.0, 2.0, 0.3, 1.0, -0.5])).abs()
@@ -318,9 +322,10 @@ fn generic_code_can_simulate() {
     );
 }
 
-/// After a plastic impact, no contact force supports the ball: an error instead of a fall through the floor.
+/// Checks that a plastic impact is an error: no contact force supports the ball afterwards, and it would fall
+/// through the floor.
 #[test]
-fn a_plastic_impact_is_an_error() {
+fn plastic_impact_is_an_error() {
     let ball = falling_ball();
     for part in [0.0, -1e-9, 1e-12, 1e-7, 1e-5, 1e-3] {
         let run = simulate(&ball).from([0.5], [0.0]).duration(30.0);
@@ -340,7 +345,7 @@ fn a_plastic_impact_is_an_error() {
     }
     // Without forces the ball remains on the surface; and the motion continues if the impact does not stop
     // it.
-    let free = OneDof { force: |_| 0.0, ..oscillator::<f64>() };
+    let free = OneDof { force: |_| 0.0, ..harmonic_oscillator::<f64>() };
     let run = simulate(&free).from([0.5], [-1.0]).duration(3.0);
     let end = run.clone().impact(Crossing::Falling, |_, q, _| q[0], |_, _, v| v * 0.0).finish().unwrap();
     assert!(end.q[0].abs() < 1e-14 && end.v[0] == 0.0, "{end:?}");
@@ -357,7 +362,7 @@ fn a_plastic_impact_is_an_error() {
 
 /// Checks that all events of one instant take effect, in the order of their declaration.
 #[test]
-fn events_that_coincide_all_act() {
+fn simultaneous_events_all_act() {
     let ball = falling_ball();
     let run = simulate(&ball).from([0.5], [0.0]).duration(4.0);
     let first =
@@ -378,9 +383,9 @@ fn events_that_coincide_all_act() {
     }
 }
 
-/// A quaternion without unit norm is not an orientation.
+/// Checks that an initial quaternion without unit norm is an error.
 #[test]
-fn quaternions_at_the_start_are_unit() {
+fn initial_quaternion_must_be_unit() {
     let body = FreeBody { mass: 1.0, inertia: Vector3::new(1.0, 2.0, 2.5), gravity: 0.0 };
     for q in [[0.0; 7], [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0], [1.0, 0.0, 0.0, 0.0, 0.6, 0.0, 0.7]] {
         let end = simulate(&body).from(q, [1.0; 6]).duration(0.1).finish();
@@ -394,10 +399,10 @@ fn quaternions_at_the_start_are_unit() {
     );
 }
 
-/// A run of zero duration yields only the initial state.
+/// Checks that a run of zero duration yields only the initial state.
 #[test]
-fn a_run_may_be_its_start() {
-    let oscillator = oscillator::<f64>();
+fn zero_duration_yields_initial_state() {
+    let oscillator = harmonic_oscillator::<f64>();
     let run = simulate(&oscillator).from([1.0], [2.0]).start_at(3.0).duration(0.0);
     let end = run.clone().finish().unwrap();
     assert_eq!((end.t, end.q[0], end.v[0]), (3.0, 1.0, 2.0));
@@ -408,8 +413,8 @@ fn a_run_may_be_its_start() {
 /// Checks that control periods of one millisecond have the same length after hours as at the start, in single
 /// precision.
 #[test]
-fn single_precision_keeps_time() {
-    let mass = OneDof { force: |_| 0.0, ..oscillator::<f32>() };
+fn control_periods_stay_exact_in_single_precision() {
+    let mass = OneDof { force: |_| 0.0, ..harmonic_oscillator::<f32>() };
     let start = 8192.0;
     let calls = Cell::new(0);
     let count_control_calls = |_: f32, _: &_, _: &_| {
@@ -437,9 +442,9 @@ fn single_precision_keeps_time() {
 
 /// Samples an oscillator at given times, with an adaptive method, which interpolates, and with a fixed-step
 /// method.
-fn looked_at<S: Method<f64> + Clone>(method: S, tolerance: f64) {
+fn check_listed_sample_times<S: Method<f64> + Clone>(method: S, tolerance: f64) {
     let (start, looked) = (2.0, [2.0, 2.013, 2.5, 2.500_000_1, 5.75]);
-    let mass = oscillator::<f64>();
+    let mass = harmonic_oscillator::<f64>();
     let run = simulate(&mass).from([1.0], [0.0]).start_at(start).method(method);
     let error_of_sample = |sample: &Sample<f64, 1, 1, 1>| (sample.q[0] - (sample.t - start).cos()).abs();
     let samples: Vec<_> = run.clone().sample_at(&looked).map(Result::unwrap).collect();
@@ -460,14 +465,14 @@ fn looked_at<S: Method<f64> + Clone>(method: S, tolerance: f64) {
 }
 
 #[test]
-fn samples_come_when_they_are_asked_for() {
-    looked_at(DormandPrince::new(), 1e-7);
-    looked_at(Rk4::step(1e-2), 1e-8);
+fn samples_at_listed_times() {
+    check_listed_sample_times(DormandPrince::new(), 1e-7);
+    check_listed_sample_times(Rk4::step(1e-2), 1e-8);
 }
 
 #[test]
-fn times_of_samples_increase() {
-    let mass = oscillator::<f64>();
+fn sample_times_must_increase() {
+    let mass = harmonic_oscillator::<f64>();
     let simulation_error =
         |times: &[f64]| simulate(&mass).start_at(1.0).sample_at(times).finish().unwrap_err();
     let simulation_error_message = |times: &[f64]| std::string::ToString::to_string(&simulation_error(times));

@@ -22,7 +22,7 @@ fn cubic_grid_table() -> Table<3> {
 }
 
 #[test]
-fn a_linear_table_goes_through_its_values_and_between_them() {
+fn linear_table_interpolates_its_values() {
     let table = cubic_grid_table();
     for (x, y, z) in [(0.0, 1.0, -1.0), (3.5, 4.0, 1.0), (-1.0, 0.0, -2.0)] {
         assert!((table.value::<f64>([x, y, z]) - biquadratic_function(x, y, z)).abs() < 1e-14);
@@ -33,7 +33,7 @@ fn a_linear_table_goes_through_its_values_and_between_them() {
 }
 
 #[test]
-fn a_smooth_table_is_exact_for_parabolas_with_all_its_slopes() {
+fn smooth_table_is_exact_for_parabolas() {
     let table = cubic_grid_table().smooth();
     for k in 0..40 {
         let t = f64::from(k) / 39.0;
@@ -67,7 +67,7 @@ fn slopes_of_a_smooth_table_are_continuous() {
 }
 
 #[test]
-fn beyond_the_grid_a_table_is_what_was_asked_for() {
+fn extrapolation_beyond_grid_is_as_selected() {
     for table in [cubic_grid_table(), cubic_grid_table().smooth()] {
         let edge = table.value([3.5, 1.0, 0.0]);
         assert_eq!(table.value([9.0, 1.0, 0.0]), edge);
@@ -82,7 +82,7 @@ fn beyond_the_grid_a_table_is_what_was_asked_for() {
 }
 
 #[test]
-fn lanes_look_up_each_for_itself() {
+fn lanes_are_looked_up_separately() {
     let x = [-3.0, 0.2, 0.5, 9.0];
     let (y, z) = ([0.1, 3.0, 1.0, 1.2], [0.0, -1.5, 1.0, 0.3]);
     for table in [
@@ -102,7 +102,7 @@ fn lanes_look_up_each_for_itself() {
 }
 
 #[test]
-fn single_precision_looks_up_too() {
+fn single_precision_table_lookup() {
     fn smooth_table_value<T: Real>(x: f64) -> f64 {
         let x = crate::private::constant::<T>(x);
         crate::private::to_f64(cubic_grid_table().smooth().value([x, x, x]))
@@ -111,7 +111,7 @@ fn single_precision_looks_up_too() {
 }
 
 #[test]
-fn figures_that_are_no_table_are_told() {
+fn invalid_tables_are_rejected() {
     static ONE: [f64; 1] = [1.0];
     static BACK: [f64; 3] = [0.0, 2.0, 1.0];
     static HOLE: [f64; 2] = [0.0, f64::NAN];

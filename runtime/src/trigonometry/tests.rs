@@ -4,9 +4,9 @@ mod large;
 use super::*;
 use crate::arithmetic::Compiled as A;
 
-/// Checks sine and cosine of an angle with every set of instructions that the processor has.
+/// Checks sine and cosine of an angle with every instruction set that the processor has.
 fn check_angle(x: f64) {
-    check_with::<A>(x);
+    check_with_instructions::<A>(x);
     #[cfg(all(
         feature = "std",
         target_arch = "x86_64",
@@ -15,12 +15,12 @@ fn check_angle(x: f64) {
     {
         use crate::lanes::x86::avx2;
         if avx2::is_available() {
-            check_with::<avx2::Avx2>(x);
+            check_with_instructions::<avx2::Avx2>(x);
         }
     }
 }
 
-fn check_with<A: Arithmetic>(x: f64) {
+fn check_with_instructions<A: Arithmetic>(x: f64) {
     let (s, c) = A::sin_cos(x);
     // The sine of a small angle is the angle itself; large angles use the library.
     if !(1e-8..=LARGEST).contains(&x.abs()) {
@@ -28,12 +28,16 @@ fn check_with<A: Arithmetic>(x: f64) {
         return;
     }
     let [sine, cosine] = exact::sin_cos(x);
-    assert!(exact::error(s, sine) <= 1.0, "sin {x:e}: {s:e}, by {}", exact::error(s, sine));
-    assert!(exact::error(c, cosine) <= 1.0, "cos {x:e}: {c:e}, by {}", exact::error(c, cosine));
+    assert!(exact::error_in_ulps(s, sine) <= 1.0, "sin {x:e}: {s:e}, by {}", exact::error_in_ulps(s, sine));
+    assert!(
+        exact::error_in_ulps(c, cosine) <= 1.0,
+        "cos {x:e}: {c:e}, by {}",
+        exact::error_in_ulps(c, cosine)
+    );
 }
 
 #[test]
-fn is_within_one_unit_in_the_last_place() {
+fn sines_are_accurate_to_one_ulp() {
     let mut state = 1_u64;
     for _ in 0..200_000 {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -45,7 +49,7 @@ fn is_within_one_unit_in_the_last_place() {
 }
 
 #[test]
-fn is_so_near_multiples_of_a_quarter_turn_and_at_extremes() {
+fn sines_near_quarter_turns_are_accurate() {
     for k in -60_000_i32..60_000 {
         let x = f64::from(k) * core::f64::consts::FRAC_PI_2;
         check_angle(x);
@@ -60,7 +64,7 @@ fn is_so_near_multiples_of_a_quarter_turn_and_at_extremes() {
 }
 
 #[test]
-fn arrays_and_single_precision() {
+fn sines_of_arrays_and_single_precision() {
     let x = [0.1, -2.0, 7.0, 3e5];
     let (s, c) = A::sin_cos_all(x);
     for k in 0..4 {

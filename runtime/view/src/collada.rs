@@ -16,7 +16,7 @@ const MAX_DEPTH: usize = 64;
 /// an unlimited number.
 const MOST_INSTANCES: usize = 100_000;
 
-/// Returns the corners of all triangles, three per triangle, m.
+/// Returns the corners of all triangles of a COLLADA file, three per triangle, m.
 pub(crate) fn corners_of_triangles(text: &str) -> Result<Vec<[f32; 3]>, String> {
     let document = Document::parse(text).map_err(|error| format!("not XML: {error}"))?;
     let root = document.root_element();
@@ -33,7 +33,7 @@ pub(crate) fn corners_of_triangles(text: &str) -> Result<Vec<[f32; 3]>, String> 
         let libraries = child_elements(root, library).flat_map(move |all| child_elements(all, of));
         libraries.filter_map(|node| Some((node.attribute("id")?, node))).collect::<HashMap<_, _>>()
     };
-    let mut reader = Reader {
+    let mut reader = ColladaReader {
         geometries: elements_by_id("library_geometries", "geometry"),
         // An instance may refer to any node with an `id`, in a library or in a scene.
         nodes: root
@@ -67,8 +67,8 @@ pub(crate) fn corners_of_triangles(text: &str) -> Result<Vec<[f32; 3]>, String> 
     Ok(reader.corners)
 }
 
-/// State of the conversion: referenced elements by name, and the corners so far.
-struct Reader<'a> {
+/// State of the conversion of a COLLADA file: referenced elements by name, and the corners so far.
+struct ColladaReader<'a> {
     geometries: HashMap<&'a str, Node<'a, 'a>>,
     nodes: HashMap<&'a str, Node<'a, 'a>>,
     /// Triangulated meshes by the geometry node of the file, so that each geometry is read once for all its
@@ -78,7 +78,7 @@ struct Reader<'a> {
     corners: Vec<[f32; 3]>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> ColladaReader<'a> {
     fn read_node(&mut self, node: Node<'a, 'a>, above: &Matrix4<f64>, depth: usize) -> Result<(), String> {
         self.instances += 1;
         if depth > MAX_DEPTH || self.instances > MOST_INSTANCES {
@@ -109,7 +109,7 @@ impl<'a> Reader<'a> {
             Entry::Occupied(found) => found.into_mut(),
             Entry::Vacant(free) => free.insert(triangles_of_geometry(geometry)?),
         };
-        within_bounds(self.corners.len() + mesh.len())?;
+        check_corner_count(self.corners.len() + mesh.len())?;
         self.corners.extend(mesh.iter().map(|corner| {
             let at = place.transform_point(corner);
             [at.x as f32, at.y as f32, at.z as f32]
@@ -118,14 +118,14 @@ impl<'a> Reader<'a> {
     }
 }
 
-fn within_bounds(corners: usize) -> Result<(), String> {
+fn check_corner_count(corners: usize) -> Result<(), String> {
     match corners / 3 > MAX_TRIANGLES {
         true => Err(format!("more than {MAX_TRIANGLES} triangles: take a simplified mesh")),
         false => Ok(()),
     }
 }
 
-/// Returns the corners of a geometry, three per triangle, in its own axes.
+/// Returns the corners of the triangles of a COLLADA geometry, three per triangle, in its own axes.
 fn triangles_of_geometry(geometry: Node<'_, '_>) -> Result<Vec<Point3<f64>>, String> {
     let Some(mesh) = child_element(geometry, "mesh") else {
         let name = geometry.attribute("id").unwrap_or("a geometry without name");
@@ -142,14 +142,14 @@ fn triangles_of_geometry(geometry: Node<'_, '_>) -> Result<Vec<Point3<f64>>, Str
                         pairs.for_each(|pair| corners.extend([face[0], pair[0], pair[1]]));
                     }
                 }
-                within_bounds(corners.len())?;
+                check_corner_count(corners.len())?;
             }
         }
     }
     Ok(corners)
 }
 
-/// Returns the corners of the faces, strips or fans of a list.
+/// Returns the corners of each face, strip or fan in a list of a COLLADA mesh.
 fn corners_of_faces(mesh: Node<'_, '_>, list: Node<'_, '_>) -> Result<Vec<Vec<Point3<f64>>>, String> {
     let kind = list.tag_name().name();
     if child_element(list, "ph").is_some() {
@@ -273,7 +273,8 @@ fn parse_number_list<T: std::str::FromStr>(node: Node<'_, '_>) -> Result<Vec<T>,
 mod tests {
     use super::*;
 
-    /// Returns a file with a mesh of four corners: a square in the plane z = 0 with edges of length 2.
+    /// Returns the text of a COLLADA file with a mesh of four corners: a square in the plane z = 0 with edges
+    /// of length 2.
     fn collada_file(unit: &str, faces: &str, scene: &str) -> String {
         format!(
             "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' \
@@ -302,7 +303,7 @@ mod tests {
     /// Checks that triangles, polygons and triangle fans of one square yield the same corners. A strip
     /// divides the square along the other diagonal.
     #[test]
-    fn lists_of_faces_agree() {
+    fn face_lists_give_equal_corners() {
         let square = corners_of_triangles(&collada_file("", TWO, "")).unwrap();
         let [a, b, c, d] = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0_f32]];
         assert_eq!(square, [a, b, c, a, c, d]);
@@ -319,10 +320,10 @@ mod tests {
         assert_eq!(corners_of_triangles(&collada_file("", &strip, "")), Ok(vec![a, b, d, b, d, c]));
     }
 
-    /// Checks the length unit of the file and the order of nested transforms: inner transforms are applied
-    /// first.
+    /// Checks the length unit of a COLLADA file and the order of nested transforms: inner transforms are
+    /// applied first.
     #[test]
-    fn nodes_place_what_they_hold() {
+    fn nodes_transform_their_geometry() {
         let nodes = format!(
             "<node><translate>100 0 0</translate><node><rotate>0 0 1 90</rotate>\
              <scale>1 3 1</scale>{SHOWN}</node></node>"
@@ -355,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn broken_files_are_told() {
+    fn invalid_collada_files_are_errors() {
         let vertex = "<input semantic='VERTEX' source='#v'/>";
         let corners_of_faces = |list: &str| corners_of_triangles(&collada_file("", list, ""));
         let corners_of_scene =

@@ -16,7 +16,7 @@ const LARGEST: f64 = 1.5e9;
 impl Stream {
     /// Appends a channel, quantised in multiples of `quantum`.
     pub fn channel(&mut self, values: impl Iterator<Item = f64>, quantum: f64) {
-        let steps: Vec<i64> = values.map(|x| step(x / quantum)).collect();
+        let steps: Vec<i64> = values.map(|x| step_count(x / quantum)).collect();
         let Some(first) = steps.first() else { return };
         self.write_integer(*first);
         let moves = steps.iter().any(|step| step != first);
@@ -41,7 +41,7 @@ impl Stream {
     }
 }
 
-fn step(x: f64) -> i64 {
+fn step_count(x: f64) -> i64 {
     x.round().clamp(-LARGEST, LARGEST) as i64
 }
 
@@ -64,9 +64,9 @@ pub fn base64(bytes: &[u8]) -> String {
 mod tests {
     use super::*;
 
-    /// Checks the examples of RFC 4648, section 10.
+    /// Checks the base64 examples of RFC 4648, section 10.
     #[test]
-    fn base64_is_that_of_the_standard() {
+    fn base64_matches_rfc_examples() {
         let known = [
             ("", ""),
             ("f", "Zg=="),
@@ -82,14 +82,14 @@ mod tests {
     }
 
     #[test]
-    fn integers_take_seven_bits_a_byte() {
+    fn integers_use_seven_bits_per_byte() {
         let mut stream = Stream::default();
         [0, -1, 1, 63, -64, 64, 300].into_iter().for_each(|n| stream.write_integer(n));
         assert_eq!(stream.bytes, [0, 1, 2, 126, 127, 128, 1, 216, 4]);
     }
 
     #[test]
-    fn what_stands_still_takes_two_integers() {
+    fn constant_channel_takes_two_integers() {
         let mut stream = Stream::default();
         stream.channel([0.25; 100].into_iter(), 0.5);
         assert_eq!(stream.bytes, [2, 0]);

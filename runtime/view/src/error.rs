@@ -6,19 +6,19 @@ use std::path::PathBuf;
 /// Reason why a page, log or live view cannot be created. Every variant names the cause.
 #[non_exhaustive]
 pub enum Error {
-    /// The motion has no samples.
+    /// Error: the motion has no samples.
     Empty {
         /// Title of the motion without samples.
         motion: String,
     },
-    /// The time of a sample is not finite, or is before the previous time.
+    /// Error: the time of a sample is not finite, or is before the previous time.
     Time {
         /// Title of the motion with the invalid time.
         motion: String,
         /// Index of the sample with the invalid time.
         sample: usize,
     },
-    /// A frame whose placement is not finite, or a state that is not finite.
+    /// Error: a placement of a frame, or a state, is not finite.
     NotFinite {
         /// Title of the motion that is not finite.
         motion: String,
@@ -27,7 +27,7 @@ pub enum Error {
         /// Name of the frame whose placement is not finite, or `state`.
         frame: String,
     },
-    /// A list whose length differs from the number of samples or frames.
+    /// Error: the length of a list differs from the number of samples or frames.
     Count {
         /// Description of the list that has the wrong length.
         what: String,
@@ -36,37 +36,37 @@ pub enum Error {
         /// Actual number of entries of the list.
         found: usize,
     },
-    /// The drawing has no frame of the requested name.
+    /// Error: the drawing has no frame of the requested name.
     Frame {
         /// Requested name of the unknown frame.
         name: String,
         /// Names of the frames that exist.
         known: Vec<String>,
     },
-    /// A port at which no live view can be opened, because another program uses it or the operating system
-    /// denies it.
+    /// Error: no live view can be opened at this port, because another program uses it or the operating
+    /// system denies it.
     Port {
         /// Port number at which no live view can be opened.
         port: u16,
         /// Error of the operating system when the port was opened.
         cause: std::io::Error,
     },
-    /// The surface cannot be drawn over its region, because bounds do not increase or a position is not
-    /// finite.
+    /// Error: the surface cannot be drawn over its region, because bounds do not increase or a position is
+    /// not finite.
     Surface {
         /// Name of the surface that cannot be drawn.
         name: String,
         /// Description of the error of the surface.
         what: String,
     },
-    /// A file that cannot be read or written.
+    /// Error: a file cannot be read or written.
     File {
         /// Path of the file that cannot be read or written.
         path: PathBuf,
         /// Error of the operating system for the file.
         cause: std::io::Error,
     },
-    /// The file contains no readable triangles.
+    /// Error: the mesh file contains no readable triangles.
     Mesh {
         /// Path of the mesh file.
         path: PathBuf,

@@ -1,6 +1,6 @@
 //! Drawn geometry of a mechanism: pieces that are fixed in frames.
 
-use crate::mesh::{self, Mesh};
+use crate::mesh::{self, TriangleMesh};
 use crate::{Error, text};
 use linkwork::drawing::{Kind, Piece, Role};
 use linkwork::nalgebra::{Matrix3, SymmetricEigen, Vector3};
@@ -14,20 +14,21 @@ use std::path::Path;
 #[derive(Clone, Debug, Default)]
 pub struct Figure {
     pub(crate) frames: Vec<String>,
-    pub(crate) shapes: Vec<Shape>,
+    pub(crate) shapes: Vec<DrawnShape>,
     pub(crate) gravity: [f64; 3],
 }
 
 /// Piece of a drawing with its dimensions, ready to be drawn.
 #[derive(Clone, Debug)]
-pub(crate) struct Shape {
+pub(crate) struct DrawnShape {
     pub(crate) name: String,
     pub(crate) role: Role,
     pub(crate) kind: Kind,
     pub(crate) frames: [Option<usize>; 2],
     pub(crate) numbers: Vec<f64>,
-    pub(crate) mesh: Option<Mesh>,
-    /// Index of its first number among the numbers of the declared pieces.
+    pub(crate) mesh: Option<TriangleMesh>,
+    /// Index of the first number of the shape among the numbers of the declared pieces; `None` for a shape
+    /// that the program adds.
     first: Option<usize>,
     /// Whether the piece is the equivalent ellipsoid of mass and moments of inertia, drawn if no shape is
     /// declared.
@@ -52,8 +53,8 @@ impl Figure {
         Figure::from_pieces(M::FRAMES.iter().map(ToString::to_string).collect(), M::DRAWING, &numbers)
     }
 
-    /// Creates a drawing from pieces and their dimensions, in frames of these names. Pieces with missing
-    /// dimensions or dimensions that are not finite are omitted.
+    /// Creates a drawing from pieces and their dimensions, in frames with the names `frames`. Pieces with
+    /// missing dimensions or dimensions that are not finite are omitted.
     pub fn from_pieces(frames: Vec<String>, pieces: &[Piece], numbers: &[f64]) -> Figure {
         let mut figure = Figure { frames, ..Figure::default() };
         for piece in pieces {
@@ -68,8 +69,8 @@ impl Figure {
         figure
     }
 
-    /// Adds a piece to a frame, or to the ground if `frame` is `None`. The dimensions are those documented at
-    /// [`Kind`], m and rad.
+    /// Adds a piece to a frame of the drawing, or to the ground if `frame` is `None`. The dimensions are
+    /// those documented at [`Kind`], m and rad.
     ///
     /// # Errors
     ///
@@ -90,8 +91,8 @@ impl Figure {
         Ok(self)
     }
 
-    /// Adds a surface to a frame, or to the ground if `frame` is `None`. The function `place` maps the
-    /// parameters `u` and `w` between these bounds to a position, m in the axes of the frame.
+    /// Adds a surface to a frame of the drawing, or to the ground if `frame` is `None`. The function `place`
+    /// maps the parameters `u` and `w` between these bounds to a position, m in the axes of the frame.
     ///
     /// Contact surfaces given by functions may be unbounded. This method draws a region of such a surface, or
     /// a larger region of a terrain than [`Motion::of`](crate::Motion::of) draws by default. No floor is
@@ -110,7 +111,7 @@ impl Figure {
         place: impl Fn(f64, f64) -> [f64; 3],
     ) -> Result<Figure, Error> {
         let frame = frame.map(|frame| self.frame_index(frame)).transpose()?;
-        let mesh = Mesh::triangulate_surface(u, w, place)
+        let mesh = TriangleMesh::triangulate_surface(u, w, place)
             .map_err(|what| Error::Surface { name: name.to_string(), what })?;
         let mut numbers = vec![0.0; Kind::Mesh("").count()];
         numbers[3..12].copy_from_slice(Matrix3::identity().as_slice());
@@ -158,15 +159,15 @@ impl Figure {
         missing
     }
 
-    /// Iterates over the shapes that are drawn. Shapes of mass properties are omitted if all meshes of their
-    /// body were read.
-    pub(crate) fn drawn_shapes(&self) -> impl Iterator<Item = &Shape> {
+    /// Returns the shapes of the drawing that are drawn. Shapes of mass properties are omitted if all meshes
+    /// of their body were read.
+    pub(crate) fn drawn_shapes(&self) -> impl Iterator<Item = &DrawnShape> {
         self.shapes.iter().filter(|shape| shape.is_visible() && !self.has_meshes(shape))
     }
 
     /// Returns whether a shape represents the mass properties of a body whose meshes were all read.
-    fn has_meshes(&self, shape: &Shape) -> bool {
-        let is_mesh_of_shape = |s: &&Shape| {
+    fn has_meshes(&self, shape: &DrawnShape) -> bool {
+        let is_mesh_of_shape = |s: &&DrawnShape| {
             s.declared && s.role == Role::Visual && matches!(s.kind, Kind::Mesh(_)) && s.name == shape.name
         };
         let mut meshes = self.shapes.iter().filter(is_mesh_of_shape).peekable();
@@ -210,14 +211,14 @@ impl Figure {
         };
         let (name, declared) = (name.to_string(), false);
         let (mesh, first) = (None, None);
-        self.shapes.push(Shape { name, role, kind, frames, numbers, mesh, first, fitted, declared });
+        self.shapes.push(DrawnShape { name, role, kind, frames, numbers, mesh, first, fitted, declared });
     }
 
     /// Limits the equivalent ellipsoids to the length of the links, because many robot files have fictitious
     /// inertias.
     fn limit_ellipsoids(&mut self) {
         let length =
-            |s: &Shape| (0..3).map(|k| (s.numbers[3 + k] - s.numbers[k]).powi(2)).sum::<f64>().sqrt();
+            |s: &DrawnShape| (0..3).map(|k| (s.numbers[3 + k] - s.numbers[k]).powi(2)).sum::<f64>().sqrt();
         let bars: Vec<(Option<usize>, f64)> =
             self.shapes.iter().filter(|s| s.kind == Kind::Bar).map(|s| (s.frames[0], length(s))).collect();
         let mean = bars.iter().map(|(_, length)| length).sum::<f64>() / bars.len().max(1) as f64;
@@ -231,7 +232,7 @@ impl Figure {
         }
     }
 
-    /// Returns the indices of the frames in which pieces are fixed.
+    /// Returns the indices of the frames in which pieces of the drawing are fixed.
     pub(crate) fn used_frames(&self) -> Vec<usize> {
         (0..self.frames.len()).filter(|k| self.shapes.iter().any(|s| s.frames.contains(&Some(*k)))).collect()
     }
@@ -242,7 +243,7 @@ impl Figure {
         &self,
         turn: impl Fn(Option<usize>, Vector3<f64>) -> Vector3<f64>,
     ) -> Option<Vector3<f64>> {
-        let hinge_axis = |s: &Shape| turn(s.frames[0], Vector3::from_column_slice(&s.numbers[3..6]));
+        let hinge_axis = |s: &DrawnShape| turn(s.frames[0], Vector3::from_column_slice(&s.numbers[3..6]));
         let hinges: Vec<Vector3<f64>> =
             self.shapes.iter().filter(|s| s.kind == Kind::Hinge).map(hinge_axis).collect();
         let first = hinges.first()?;
@@ -250,7 +251,7 @@ impl Figure {
     }
 }
 
-impl Shape {
+impl DrawnShape {
     /// Returns the index of the first number of the shape among the numbers of the declared pieces, and the
     /// count of these numbers. An equivalent ellipsoid takes only its position from them.
     pub(crate) fn source_range(&self) -> Option<[usize; 2]> {
@@ -258,8 +259,8 @@ impl Shape {
         self.first.map(|first| [first, count])
     }
 
-    /// Returns the reference points of the shape, each with its frame and the distance that the shape extends
-    /// beyond it.
+    /// Returns the reference points of the shape, each with its frame and the distance by which the shape
+    /// extends beyond it.
     pub(crate) fn reference_points(&self) -> Vec<(Option<usize>, Vector3<f64>, f64)> {
         let n = &self.numbers;
         let vector_from_numbers = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
@@ -318,7 +319,7 @@ impl Shape {
             Kind::Force(k) => ("Force".to_string(), k.to_string()),
             Kind::Torque(k) => ("Torque".to_string(), k.to_string()),
             Kind::Mesh(_) => {
-                ("Mesh".to_string(), self.mesh.as_ref().map_or("null".to_string(), Mesh::mesh_json))
+                ("Mesh".to_string(), self.mesh.as_ref().map_or("null".to_string(), TriangleMesh::mesh_json))
             }
             kind => (format!("{kind:?}"), "null".to_string()),
         };
@@ -362,7 +363,7 @@ mod tests {
     /// Checks that the equivalent ellipsoid of a homogeneous ellipsoid is itself. With semi-axes a, b, c, its
     /// inertia is `I_xx = m (b² + c²) / 5` (any table of mechanics).
     #[test]
-    fn an_ellipsoid_is_its_own_equivalent() {
+    fn equivalent_of_ellipsoid_is_itself() {
         let (m, [a, b, c]) = (3.0, [0.5, 0.2, 0.3_f64]);
         let ellipsoid_moment = |p: f64, q: f64| m * (p * p + q * q) / 5.0;
         let numbers = [
@@ -387,7 +388,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_numbers_is_left_out() {
+    fn pieces_without_numbers_are_omitted() {
         let frames = vec!["a".to_string()];
         let piece =
             |first| Piece { name: "p", role: Role::Body, kind: Kind::Sphere, frames: [Some(0), None], first };

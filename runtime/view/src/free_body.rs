@@ -8,21 +8,22 @@ use linkwork::free_body::{Action, Diagram, Origin};
 use linkwork::nalgebra::SVector;
 use std::fmt::Write;
 
-/// Widths of the drawing and of the list next to it, pixels.
+/// Widths of the drawing, and of the list of forces next to it, in a free-body diagram, pixels.
 const DRAWING: f64 = 480.0;
 const LIST: f64 = 420.0;
 /// Height of the free-body diagram, pixels.
 const HEIGHT: f64 = 480.0;
-/// Maximum length of an arrow, and maximum distance of a point from the centre of mass, pixels.
+/// Maximum length of an arrow, and maximum distance of a point from the centre of mass, in a free-body
+/// diagram, pixels.
 const LONGEST: f64 = 110.0;
 const REACH: f64 = 105.0;
-/// Radius of the arcs that represent torques, pixels.
+/// Radius of the arcs that represent torques in a free-body diagram, pixels.
 const ARC: f64 = 26.0;
-/// Length below which an arrow is omitted, pixels.
+/// Length below which an arrow is omitted from a free-body diagram, pixels.
 const SHORTEST: f64 = 1.5;
-/// Height of a line of the list, pixels.
+/// Height of a line in the list of forces next to a free-body diagram, pixels.
 const LINE: f64 = 19.0;
-/// Fraction of the largest torque below which a torque counts as zero.
+/// Fraction of the largest torque below which a torque counts as zero and is not drawn.
 const ZERO: f64 = 1e-9;
 
 /// Viewing direction of a free-body diagram, in the axes of the diagram.
@@ -40,7 +41,8 @@ pub enum Side {
 }
 
 impl Side {
-    /// Returns the unit vectors to the right, upward and towards the viewer.
+    /// Returns the unit vectors of the view to the right, upward and towards the viewer, in the axes of the
+    /// diagram.
     fn view_axes(self) -> [[f64; 3]; 3] {
         let third = 1.0 / 3.0_f64.sqrt();
         let (a, b, c) = (0.5_f64.sqrt(), 1.0 / 6.0_f64.sqrt(), (2.0 / 3.0_f64).sqrt());
@@ -52,7 +54,8 @@ impl Side {
         }
     }
 
-    /// Returns the components of a vector to the right, upward and towards the viewer.
+    /// Returns the components of a vector along the view's directions to the right, upward and towards the
+    /// viewer.
     fn view_components(self, v: [f64; 3]) -> [f64; 3] {
         self.view_axes().map(|axis| axis.iter().zip(v).map(|(a, b)| a * b).sum())
     }
@@ -86,7 +89,7 @@ impl Side {
 /// ```
 #[must_use]
 pub fn free_body<T: Real, const N: usize>(diagram: &Diagram<T, N>, side: Side) -> String {
-    let all: Vec<Shown> = diagram.actions.iter().map(|action| Shown::new(action, side)).collect();
+    let all: Vec<ShownAction> = diagram.actions.iter().map(|action| ShownAction::new(action, side)).collect();
     let height = HEIGHT.max(LINE * (3.0 * all.len() as f64 + 5.0) + 30.0);
     let width = DRAWING + LIST;
     let mut out = format!(
@@ -96,14 +99,14 @@ pub fn free_body<T: Real, const N: usize>(diagram: &Diagram<T, N>, side: Side) -
          <rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n",
         name = escaped(diagram.body)
     );
-    write_drawing(&mut out, &all, side);
+    write_body_and_arrows(&mut out, &all, side);
     write_list(&mut out, diagram, &all);
     out.push_str("</svg>\n");
     out
 }
 
 /// Force and torque that are drawn, with their components along the axes of the picture.
-struct Shown {
+struct ShownAction {
     name: &'static str,
     colour: &'static str,
     point: [f64; 3],
@@ -112,8 +115,8 @@ struct Shown {
     figures: [[f64; 3]; 3],
 }
 
-impl Shown {
-    fn new<T: Real>(action: &Action<T>, side: Side) -> Shown {
+impl ShownAction {
+    fn new<T: Real>(action: &Action<T>, side: Side) -> ShownAction {
         let figures = [action.point, action.force, action.torque].map(numbers_of_vector);
         let [point, force, torque] = figures.map(|v| side.view_components(v));
         let colour = match action.origin {
@@ -124,7 +127,7 @@ impl Shown {
             Origin::Constraint => "#aa3c82",
             Origin::Contact => "#8c6400",
         };
-        Shown { name: action.name, colour, point, force, torque, figures }
+        ShownAction { name: action.name, colour, point, force, torque, figures }
     }
 
     fn is_finite(&self) -> bool {
@@ -136,19 +139,19 @@ fn numbers_of_vector<T: Real>(v: SVector<T, 3>) -> [f64; 3] {
     [v[0], v[1], v[2]].map(to_double)
 }
 
-fn length(x: f64, y: f64) -> f64 {
+fn length_of_vector(x: f64, y: f64) -> f64 {
     x.hypot(y)
 }
 
-/// Returns the factor that scales the maximum of `sizes` to `to`.
+/// Returns the factor by which the maximum of `sizes` becomes `to`.
 fn scale_to_maximum(sizes: impl Iterator<Item = f64>, to: f64) -> f64 {
     let largest = sizes.fold(0.0_f64, f64::max);
     if largest > 0.0 { to / largest } else { 0.0 }
 }
 
-fn write_drawing(out: &mut String, all: &[Shown], side: Side) {
-    let all: Vec<&Shown> = all.iter().filter(|shown| shown.is_finite()).collect();
-    let places = scale_to_maximum(all.iter().map(|s| length(s.point[0], s.point[1])), REACH);
+fn write_body_and_arrows(out: &mut String, all: &[ShownAction], side: Side) {
+    let all: Vec<&ShownAction> = all.iter().filter(|shown| shown.is_finite()).collect();
+    let places = scale_to_maximum(all.iter().map(|s| length_of_vector(s.point[0], s.point[1])), REACH);
     let vector_norm = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let forces = scale_to_maximum(all.iter().map(|s| vector_norm(s.force)), LONGEST);
     let torques = scale_to_maximum(all.iter().map(|s| vector_norm(s.torque)), LONGEST / 2.0);
@@ -176,7 +179,7 @@ fn write_drawing(out: &mut String, all: &[Shown], side: Side) {
         let [right, up, _] = shown.force.map(|c| c * forces);
         draw_arrow(out, (x, y), (right, -up), shown.colour, 1);
         let away = if up < 0.0 { 16.0 } else { -8.0 };
-        let drawn = length(right, up) > SHORTEST;
+        let drawn = length_of_vector(right, up) > SHORTEST;
         // Outside the arc of a torque.
         let label = if drawn { (x + right, y - up + away) } else { (x + ARC, y - ARC - 8.0) };
         let _ = writeln!(
@@ -205,7 +208,7 @@ fn write_axes(out: &mut String, side: Side) {
         let mut axis = [0.0; 3];
         axis[k] = 30.0;
         let [right, up, _] = side.view_components(axis);
-        if length(right, up) < SHORTEST {
+        if length_of_vector(right, up) < SHORTEST {
             continue;
         }
         draw_arrow(out, origin, (right, -up), "#999", 1);
@@ -220,7 +223,7 @@ fn write_axes(out: &mut String, side: Side) {
 
 /// Draws an arrow with this number of heads, unless it is too short.
 fn draw_arrow(out: &mut String, (x, y): (f64, f64), (dx, dy): (f64, f64), colour: &str, heads: usize) {
-    let long = length(dx, dy);
+    let long = length_of_vector(dx, dy);
     if long <= SHORTEST {
         return;
     }
@@ -272,7 +275,7 @@ fn draw_arc(out: &mut String, (x, y): (f64, f64), counterclockwise: bool, colour
 }
 
 /// Writes the values of all actions and their sum as a list next to the diagram.
-fn write_list<T: Real, const N: usize>(out: &mut String, diagram: &Diagram<T, N>, all: &[Shown]) {
+fn write_list<T: Real, const N: usize>(out: &mut String, diagram: &Diagram<T, N>, all: &[ShownAction]) {
     let x = DRAWING + 10.0;
     let mut y = 26.0;
     let mut say = |out: &mut String, colour: &str, weight: &str, words: &str| {
@@ -296,8 +299,8 @@ fn write_list<T: Real, const N: usize>(out: &mut String, diagram: &Diagram<T, N>
     say(out, "#000", "normal", &format!("torque {} N·m", format_components(torque)));
 }
 
-/// Formats the three components of a vector with as many decimals as give the largest one four significant
-/// digits.
+/// Formats the three components of a vector, with the number of decimals that gives the largest component
+/// four significant digits.
 fn format_components(v: [f64; 3]) -> String {
     let largest = v.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
     let decimals = if largest > 0.0 && largest.is_finite() {

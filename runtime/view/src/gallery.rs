@@ -1,9 +1,10 @@
-//! HTML index of several pages with still pictures.
+//! HTML index of several pages of motions, with still pictures.
 
 use crate::page::page_head;
 use crate::{Page, text};
 
-/// Returns an index of pages with their still pictures. Each entry is the address of a page and the page.
+/// Returns an HTML index of pages with their still pictures. Each entry is the address of a page and the
+/// page.
 #[doc(hidden)]
 pub fn gallery(title: &str, pages: &[(String, Page)]) -> String {
     let title = text::html(title);

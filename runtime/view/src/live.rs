@@ -1,8 +1,8 @@
 //! Live views of a control loop in a browser.
 
 use crate::figure::to_double;
-use crate::motion::as_plain;
-use crate::server::Server;
+use crate::motion::placement_in_double;
+use crate::server::PageServer;
 use crate::{Error, Figure, Motion, Page};
 use linkwork::nalgebra::UnitQuaternion;
 use linkwork::simulate::Sample;
@@ -39,13 +39,13 @@ use linkwork::{Drawn, Mechanism};
 #[derive(Debug)]
 pub struct Live<'m, M, const NQ: usize, const NV: usize, const NU: usize> {
     mechanism: &'m M,
-    /// Indices of the mechanism's frames that the page draws.
+    /// Indices of the mechanism's frames that the live view draws.
     frames: Vec<usize>,
-    /// Number of coordinates that the page plots.
+    /// Number of coordinates that the live view plots.
     plotted: usize,
-    server: Server,
-    /// Newest message: the time in eight bytes, then for each frame its position and its quaternion x y z w,
-    /// then the plotted coordinates, then the inputs, each in four bytes.
+    server: PageServer,
+    /// Newest message of the live view: the time in eight bytes, then for each frame its position and its
+    /// quaternion x y z w, then the plotted coordinates, then the inputs, each in four bytes.
     message: Vec<u8>,
     samples: u64,
 }
@@ -54,7 +54,7 @@ impl<'m, M, const NQ: usize, const NV: usize, const NU: usize> Live<'m, M, NQ, N
 where
     M: Mechanism<NQ, NV, NU> + Drawn<NQ, NV, Scalar = <M as Mechanism<NQ, NV, NU>>::Scalar>,
 {
-    /// Opens the view at a port of this machine, `http://127.0.0.1:PORT/`; at any free port for port 0.
+    /// Opens a live view at a port of this machine, `http://127.0.0.1:PORT/`; at any free port for port 0.
     ///
     /// # Errors
     ///
@@ -64,7 +64,7 @@ where
         Live::of(mechanism, Figure::of(mechanism), port)
     }
 
-    /// Opens the view as [`open`](Self::open) does, with a drawing that contains more than the declared
+    /// Opens a live view as [`open`](Self::open) does, with a drawing that contains more than the declared
     /// pieces, such as meshes or terrain.
     ///
     /// # Errors
@@ -85,18 +85,18 @@ where
         let motion = Motion::of("", mechanism, &[neutral])?.figure(figure)?.mark_as_live();
         let frames = motion.used_frames();
         let [plotted, _] = motion.curve_counts();
-        let server = Server::open_server(port, Page::new(name).motion(motion).html())?;
+        let server = PageServer::open_server(port, Page::new(name).motion(motion).html())?;
         Ok(Live { mechanism, frames, plotted, server, message: Vec::new(), samples: 0 })
     }
 
-    /// Returns the address of the page, to be opened in a browser.
+    /// Returns the address of the live view, to be opened in a browser.
     pub fn url(&self) -> String {
         format!("http://{}/", self.server.server_address())
     }
 
-    /// Shows a sample. The call computes and copies the placements of the frames and never blocks. Samples
-    /// that a browser does not read in time are dropped: if samples follow each other faster than the screen
-    /// refreshes, the newest one is shown.
+    /// Shows a sample in the live view. The call computes and copies the placements of the frames and never
+    /// blocks. Samples that a browser does not read in time are dropped: if samples follow each other faster
+    /// than the screen refreshes, the newest one is shown.
     ///
     /// # Errors
     ///
@@ -121,7 +121,7 @@ where
                 .mechanism
                 .placement_of(*frame, sample.t, &sample.q)
                 .ok_or_else(frame_not_finite_error)?;
-            let placement = as_plain(&placement);
+            let placement = placement_in_double(&placement);
             let matrix = placement.rotation.matrix();
             if !placement.translation.vector.iter().chain(matrix.iter()).all(|x| x.is_finite()) {
                 return Err(frame_not_finite_error());

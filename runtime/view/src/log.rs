@@ -44,10 +44,15 @@ where
     M: Mechanism<NQ, NV, NU, Scalar = T>,
 {
     check_times("csv", samples.iter().map(|sample| to_double(sample.t)))?;
-    let names = |list: &[&str], of: &str| {
+    let prefixed_names = |list: &[&str], of: &str| {
         list.iter().map(|name| quoted_field(&format!("{of}.{name}"))).collect::<Vec<_>>()
     };
-    let head = [names(&M::CONFIGURATION, "q"), names(&M::VELOCITIES, "v"), names(&M::INPUTS, "u")].concat();
+    let head = [
+        prefixed_names(&M::CONFIGURATION, "q"),
+        prefixed_names(&M::VELOCITIES, "v"),
+        prefixed_names(&M::INPUTS, "u"),
+    ]
+    .concat();
     let mut out = "t".to_string();
     head.iter().for_each(|name| out.extend([",", name]));
     out.push_str("\r\n");
@@ -74,7 +79,7 @@ mod tests {
     use super::quoted_field;
 
     #[test]
-    fn names_that_would_be_several_fields_are_quoted() {
+    fn csv_names_with_commas_are_quoted() {
         assert_eq!(quoted_field("q.hinge"), "q.hinge");
         assert_eq!(quoted_field("a,\"b\"\n"), "\"a,\"\"b\"\"\n\"");
     }

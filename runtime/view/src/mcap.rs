@@ -5,7 +5,7 @@
 //! and are written one after the other, without chunks and without compression.
 
 use crate::figure::to_double;
-use crate::motion::as_plain;
+use crate::motion::placement_in_double;
 use crate::{Error, text};
 use linkwork::nalgebra::{IsometryMatrix3, UnitQuaternion};
 use linkwork::simulate::Sample;
@@ -20,7 +20,8 @@ const MESSAGE: u8 = 0x05;
 const STATISTICS: u8 = 0x0b;
 const DATA_END: u8 = 0x0f;
 
-/// Topics, with the names and contents of their schemas. Foxglove recognises the first two by name.
+/// Topics of an MCAP log, with the names and contents of their schemas. Foxglove recognises the first two by
+/// name.
 const TOPICS: [(&str, &str, &str); 3] = [
     (
         "/tf",
@@ -92,7 +93,7 @@ where
             v: plain_list(sample.v.as_slice()),
             u: plain_list(sample.u.as_slice()),
             placements: frames
-                .filter_map(|k| Some(as_plain(&mechanism.placement_of(k, sample.t, &sample.q)?)))
+                .filter_map(|k| Some(placement_in_double(&mechanism.placement_of(k, sample.t, &sample.q)?)))
                 .collect(),
         }
     };
@@ -104,11 +105,11 @@ where
 pub struct Names<'a> {
     /// Names of the frames whose placements are logged.
     pub frames: &'a [&'a str],
-    /// Names of the entries of the configuration.
+    /// Names of the entries of the configuration in the log.
     pub configuration: &'a [&'a str],
-    /// Names of the entries of the velocity.
+    /// Names of the entries of the velocity in the log.
     pub velocities: &'a [&'a str],
-    /// Names of the inputs.
+    /// Names of the inputs in the log.
     pub inputs: &'a [&'a str],
 }
 
@@ -136,7 +137,7 @@ pub struct Instant {
 /// As for [`mcap`], and [`Error::Count`] if an instant has a different number of entries than there are
 /// names.
 pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) -> Result<Vec<u8>, Error> {
-    let mut file = File::new();
+    let mut file = McapFile::new();
     let mut last = 0.0;
     for (k, sample) in samples.into_iter().enumerate() {
         check_representable(names, k, &sample, last)?;
@@ -192,8 +193,8 @@ pub fn mcap_of(names: &Names<'_>, samples: impl IntoIterator<Item = Instant>) ->
     Ok(file.finish_file())
 }
 
-/// Reports values that the format cannot represent: times outside 64 bits of nanoseconds, and values that are
-/// not finite.
+/// Returns an error for values that an MCAP file cannot represent: times outside 64 bits of nanoseconds, and
+/// values that are not finite.
 fn check_representable(names: &Names<'_>, k: usize, sample: &Instant, last: f64) -> Result<(), Error> {
     let motion_title = || "mcap".to_string();
     let not_finite =
@@ -224,9 +225,9 @@ fn check_representable(names: &Names<'_>, k: usize, sample: &Instant, last: f64)
 }
 
 /// MCAP file to which messages are appended.
-struct File {
+struct McapFile {
     bytes: Vec<u8>,
-    /// Number of messages, and the first and last time of all messages, ns.
+    /// Number of messages in the file. The other fields are the first and last time of all messages, ns.
     count: u32,
     first: u64,
     last: u64,
@@ -234,25 +235,25 @@ struct File {
 
 /// Content of an MCAP record under construction, in bytes.
 #[derive(Default)]
-struct Content(Vec<u8>);
+struct RecordContent(Vec<u8>);
 
-impl Content {
-    fn append_bytes(mut self, bytes: &[u8]) -> Content {
+impl RecordContent {
+    fn append_bytes(mut self, bytes: &[u8]) -> RecordContent {
         self.0.extend_from_slice(bytes);
         self
     }
 
-    fn append_string(self, text: &str) -> Content {
+    fn append_string(self, text: &str) -> RecordContent {
         self.append_bytes(&(text.len() as u32).to_le_bytes()).append_bytes(text.as_bytes())
     }
 }
 
-impl File {
-    fn new() -> File {
-        let mut file = File { bytes: MAGIC.to_vec(), count: 0, first: 0, last: 0 };
+impl McapFile {
+    fn new() -> McapFile {
+        let mut file = McapFile { bytes: MAGIC.to_vec(), count: 0, first: 0, last: 0 };
         file.write_record(
             HEADER,
-            Content::default()
+            RecordContent::default()
                 .append_string("")
                 .append_string(concat!("linkwork ", env!("CARGO_PKG_VERSION"))),
         );
@@ -260,23 +261,23 @@ impl File {
         file
     }
 
-    fn write_record(&mut self, kind: u8, content: Content) {
+    fn write_record(&mut self, kind: u8, content: RecordContent) {
         self.bytes.push(kind);
         self.bytes.extend((content.0.len() as u64).to_le_bytes());
         self.bytes.extend(content.0);
     }
 
-    /// Writes the schema and the channel of each topic.
+    /// Writes the MCAP records for the schema and the channel of each topic.
     fn write_schemas_and_channels(&mut self) {
         for (id, (topic, name, schema)) in (1_u16..).zip(TOPICS) {
             let id = id.to_le_bytes();
-            let content = Content::default()
+            let content = RecordContent::default()
                 .append_bytes(&id)
                 .append_string(name)
                 .append_string("jsonschema")
                 .append_string(schema);
             self.write_record(SCHEMA, content);
-            let content = Content::default()
+            let content = RecordContent::default()
                 .append_bytes(&id)
                 .append_bytes(&id)
                 .append_string(topic)
@@ -294,7 +295,7 @@ impl File {
         let time = nanoseconds.to_le_bytes();
         let sequence = (self.count / TOPICS.len() as u32).to_le_bytes();
         self.count += 1;
-        let head = Content::default().append_bytes(&channel.to_le_bytes()).append_bytes(&sequence);
+        let head = RecordContent::default().append_bytes(&channel.to_le_bytes()).append_bytes(&sequence);
         self.write_record(
             MESSAGE,
             head.append_bytes(&time).append_bytes(&time).append_bytes(message.as_bytes()),
@@ -305,11 +306,11 @@ impl File {
     fn finish_file(mut self) -> Vec<u8> {
         // A checksum of zero means that none is provided.
         let none = 0_u32.to_le_bytes();
-        self.write_record(DATA_END, Content::default().append_bytes(&none));
+        self.write_record(DATA_END, RecordContent::default().append_bytes(&none));
         let summary = self.bytes.len() as u64;
         self.write_schemas_and_channels();
         let channels = TOPICS.len() as u16;
-        let statistics = Content::default()
+        let statistics = RecordContent::default()
             .append_bytes(&u64::from(self.count).to_le_bytes())
             .append_bytes(&channels.to_le_bytes())
             .append_bytes(&u32::from(channels).to_le_bytes())
@@ -323,7 +324,7 @@ impl File {
             .fold(statistics, |all, channel| all.append_bytes(&channel.to_le_bytes()).append_bytes(&each));
         self.write_record(STATISTICS, statistics);
         let footer =
-            Content::default().append_bytes(&summary.to_le_bytes()).append_bytes(&0_u64.to_le_bytes());
+            RecordContent::default().append_bytes(&summary.to_le_bytes()).append_bytes(&0_u64.to_le_bytes());
         self.write_record(FOOTER, footer.append_bytes(&none));
         self.bytes.extend_from_slice(MAGIC);
         self.bytes

@@ -7,23 +7,23 @@ use std::path::{Component, Path, PathBuf};
 
 /// Triangle mesh as a list of corners, three for each triangle.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Mesh {
+pub(crate) struct TriangleMesh {
     corners: Vec<[f32; 3]>,
 }
 
-/// Maximum number of triangles of a file: a page with more would be large and slow.
+/// Maximum number of triangles of a mesh file: a page with more would be large and slow.
 pub(crate) const MAX_TRIANGLES: usize = 200_000;
 
-/// Number of cells of a surface along each of its two directions.
+/// Number of cells of a triangulated surface along each of its two directions.
 const CELLS: u32 = 80;
 
-impl Mesh {
+impl TriangleMesh {
     /// Triangulates a surface between bounds of its two parameters, with two triangles per cell.
     pub(crate) fn triangulate_surface(
         u: [f64; 2],
         w: [f64; 2],
         place: impl Fn(f64, f64) -> [f64; 3],
-    ) -> Result<Mesh, String> {
+    ) -> Result<TriangleMesh, String> {
         for [low, high] in [u, w] {
             if !(low < high && (high - low).is_finite()) {
                 return Err(format!("expected bounds that increase, found {low} and {high}"));
@@ -47,16 +47,16 @@ impl Mesh {
                 corners.extend([a, b, c, a, c, d]);
             }
         }
-        Ok(Mesh { corners })
+        Ok(TriangleMesh { corners })
     }
 
-    /// Returns the distance of the farthest corner from the origin.
+    /// Returns the distance of the mesh's farthest corner from the origin.
     pub(crate) fn radius_of_mesh(&self) -> f64 {
         let corner_norm = |c: &[f32; 3]| c.iter().map(|x| f64::from(*x) * f64::from(*x)).sum::<f64>().sqrt();
         self.corners.iter().map(corner_norm).fold(0.0, f64::max)
     }
 
-    /// Returns at most this number of corners, evenly chosen.
+    /// Returns at most `count` corners of the mesh, evenly chosen.
     pub(crate) fn some_corners(&self, count: usize) -> Vec<[f64; 3]> {
         let step = self.corners.len().div_ceil(count).max(1);
         self.corners.iter().step_by(step).map(|corner| corner.map(f64::from)).collect()
@@ -92,7 +92,7 @@ impl Mesh {
     }
 }
 
-/// Returns the file in a folder that a path of a robot's file refers to.
+/// Returns the mesh file in a folder that a path in a robot file refers to, if it exists.
 pub(crate) fn find_mesh_file(folder: &Path, path: &str) -> Option<PathBuf> {
     let path = path.split_once("://").map_or(path, |(_, path)| path);
     // `..` is dropped, so that no file outside the folder is read.
@@ -109,15 +109,14 @@ pub(crate) fn find_mesh_file(folder: &Path, path: &str) -> Option<PathBuf> {
 }
 
 /// Reads a triangle mesh in the format that the extension of the file determines.
-pub(crate) fn read_mesh(path: &Path) -> Result<Mesh, Error> {
+pub(crate) fn read_mesh(path: &Path) -> Result<TriangleMesh, Error> {
     let bytes = std::fs::read(path).map_err(|cause| Error::File { path: path.to_path_buf(), cause })?;
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let mesh = match ending.as_deref() {
         Some("stl") => read_stl(&bytes),
         Some("obj") => read_obj(&String::from_utf8_lossy(&bytes)),
-        Some("dae") => {
-            collada::corners_of_triangles(&String::from_utf8_lossy(&bytes)).map(|corners| Mesh { corners })
-        }
+        Some("dae") => collada::corners_of_triangles(&String::from_utf8_lossy(&bytes))
+            .map(|corners| TriangleMesh { corners }),
         _ => Err("expected an STL, OBJ or COLLADA (.dae) file".to_string()),
     };
     let mesh = mesh.and_then(|mesh| match mesh.corners.len() / 3 {
@@ -135,11 +134,11 @@ pub(crate) fn read_mesh(path: &Path) -> Result<Mesh, Error> {
 
 /// Reads an STL file. A binary file has a header of 80 bytes, the number of triangles, and 50 bytes per
 /// triangle. It is distinguished from ASCII by its length, since its header may also begin with `solid`.
-fn read_stl(bytes: &[u8]) -> Result<Mesh, String> {
+fn read_stl(bytes: &[u8]) -> Result<TriangleMesh, String> {
     let count = bytes.get(80..84).and_then(|n| n.try_into().ok()).map(u32::from_le_bytes);
     if let Some(count) = count.filter(|n| bytes.len() as u64 == 84 + 50 * u64::from(*n)) {
         let read_float = |b: &[u8]| b.try_into().map_or(f32::NAN, f32::from_le_bytes);
-        let mut mesh = Mesh { corners: Vec::with_capacity(3 * count as usize) };
+        let mut mesh = TriangleMesh { corners: Vec::with_capacity(3 * count as usize) };
         for triangle in bytes[84..].chunks_exact(50) {
             let numbers: Vec<f32> = triangle[12..48].chunks_exact(4).map(read_float).collect();
             mesh.corners.extend(numbers.chunks_exact(3).map(|c| [c[0], c[1], c[2]]));
@@ -150,7 +149,7 @@ fn read_stl(bytes: &[u8]) -> Result<Mesh, String> {
     if !text.trim_start().starts_with("solid") {
         return Err("neither a binary STL file nor one of text".to_string());
     }
-    let mut mesh = Mesh::default();
+    let mut mesh = TriangleMesh::default();
     for line in text.lines() {
         let mut words = line.split_whitespace();
         if words.next() == Some("vertex") {
@@ -166,8 +165,8 @@ fn read_stl(bytes: &[u8]) -> Result<Mesh, String> {
 }
 
 /// Reads the corners and faces of an OBJ file; faces with more than three corners are triangulated as fans.
-fn read_obj(text: &str) -> Result<Mesh, String> {
-    let (mut corners, mut mesh): (Vec<[f32; 3]>, Mesh) = (Vec::new(), Mesh::default());
+fn read_obj(text: &str) -> Result<TriangleMesh, String> {
+    let (mut corners, mut mesh): (Vec<[f32; 3]>, TriangleMesh) = (Vec::new(), TriangleMesh::default());
     for line in text.lines() {
         let unreadable_line_error = || format!("cannot be read: `{}`", line.trim());
         let mut words = line.split_whitespace();
@@ -203,7 +202,7 @@ mod tests {
     const TRIANGLE: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
 
     #[test]
-    fn the_same_triangle_in_three_ways() {
+    fn stl_and_obj_give_the_same_triangle() {
         let mut binary = vec![0; 80];
         binary.extend(1_u32.to_le_bytes());
         binary.extend([0; 12]);
@@ -213,13 +212,13 @@ mod tests {
                      endloop\nendfacet\nendsolid";
         let object = "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1/1/1 2/2/2 -1\n";
         for mesh in [read_stl(&binary), read_stl(ascii.as_bytes()), read_obj(object)] {
-            assert_eq!(mesh, Ok(Mesh { corners: TRIANGLE.to_vec() }));
+            assert_eq!(mesh, Ok(TriangleMesh { corners: TRIANGLE.to_vec() }));
         }
-        assert_eq!(Mesh { corners: TRIANGLE.to_vec() }.radius_of_mesh(), 2.0);
+        assert_eq!(TriangleMesh { corners: TRIANGLE.to_vec() }.radius_of_mesh(), 2.0);
     }
 
     #[test]
-    fn broken_files_are_told() {
+    fn invalid_mesh_files_are_errors() {
         for (what, found) in [
             ("neither", read_stl(&[0xff; 90])),
             ("three numbers", read_stl(b"solid\nvertex 0 zero 0")),
@@ -236,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn paths_do_not_leave_the_folder() {
+    fn mesh_paths_stay_in_the_folder() {
         assert_eq!(find_mesh_file(Path::new("/nowhere"), "package://robot/../../etc/hosts"), None);
         let source = Path::new(env!("CARGO_MANIFEST_DIR"));
         assert_eq!(

@@ -1,8 +1,8 @@
-//! Motions: placements of the frames of a drawing at each instant, with plots.
+//! Motions that a page shows: placements of the frames of a drawing at each instant, with plots.
 
 use crate::encode::{Stream, base64};
-use crate::figure::{Figure, Shape, to_double};
-use crate::scene::Scene;
+use crate::figure::{DrawnShape, Figure, to_double};
+use crate::scene::CameraView;
 use crate::{Error, text};
 use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 use linkwork::simulate::Sample;
@@ -18,7 +18,8 @@ const LEVELS: f64 = 4000.0;
 const PARTS: f64 = 10_000.0;
 /// Maximum number of shown samples per second for a motion with more than [`SHOWN`] samples.
 const RATE: f64 = 60.0;
-/// Number of shown samples of a shorter motion, which is usually watched in slow motion.
+/// Number of samples up to which all are shown; a motion with fewer samples is usually watched in slow
+/// motion.
 const SHOWN: f64 = 600.0;
 /// Maximum number of coordinates that are plotted by default.
 const PLOTTED: usize = 12;
@@ -31,48 +32,48 @@ pub struct Motion {
     title: String,
     figure: Figure,
     times: Vec<f64>,
-    /// Placements of frames, indexed by sample, then by frame.
+    /// Placements of the frames of the drawing, indexed by sample, then by frame.
     placements: Vec<Vec<IsometryMatrix3<f64>>>,
     /// Inputs of the mechanism, indexed by sample.
     inputs: Vec<Vec<f64>>,
-    plots: Vec<Plot>,
+    plots: Vec<PagePlot>,
     trails: Vec<(usize, [f64; 3], f64)>,
-    arrows: Vec<Arrow>,
+    arrows: Vec<PageArrow>,
     captions: Vec<(f64, String)>,
     live: bool,
-    /// Data of a mechanism that the page simulates.
-    simulated: Option<Simulated>,
+    /// Data of the mechanism if the page simulates it.
+    simulated: Option<SimulatedMechanism>,
 }
 
 /// Mechanism that the page simulates in the browser: its data as JSON, and its functions as a WebAssembly
 /// module.
 #[derive(Clone, Debug)]
-struct Simulated {
+struct SimulatedMechanism {
     data: String,
     module: Vec<u8>,
 }
 
 /// Vector over time, such as a force, that the page draws as an arrow.
 #[derive(Clone, Debug)]
-struct Arrow {
+struct PageArrow {
     kind: &'static str,
     frame: Option<usize>,
     point: [f64; 3],
-    /// Vectors, indexed by sample, in the ground's axes.
+    /// Vectors that the arrow shows, indexed by sample, in the ground's axes.
     values: Vec<[f64; 3]>,
 }
 
 /// Plot of a page, with several curves over time.
 #[derive(Clone, Debug)]
-struct Plot {
+struct PagePlot {
     title: String,
     unit: String,
     curves: Vec<(String, Vec<f64>)>,
 }
 
 impl Motion {
-    /// Creates a motion from samples. Up to twelve coordinates are plotted, with one plot per unit. Terrains
-    /// with contacts are drawn over the region of the motion.
+    /// Creates a motion of a mechanism from samples. Up to twelve coordinates are plotted, with one plot per
+    /// unit. Terrains with contacts are drawn over the region of the motion.
     ///
     /// # Errors
     ///
@@ -88,7 +89,7 @@ impl Motion {
     {
         let placements = samples.iter().map(|s| {
             let frames = 0..M::FRAMES.len();
-            frames.filter_map(|k| Some(as_plain(&mechanism.placement_of(k, s.t, &s.q)?))).collect()
+            frames.filter_map(|k| Some(placement_in_double(&mechanism.placement_of(k, s.t, &s.q)?))).collect()
         });
         let times = samples.iter().map(|s| to_double(s.t)).collect();
         let mut motion = Motion::from_placements(title, Figure::of(mechanism), times, placements.collect())?;
@@ -157,7 +158,7 @@ impl Motion {
         })
     }
 
-    /// Replaces the drawing by one with the same frames, which has further pieces or meshes.
+    /// Replaces the drawing of the motion by one with the same frames, which has further pieces or meshes.
     ///
     /// # Errors
     ///
@@ -172,7 +173,7 @@ impl Motion {
         Ok(self)
     }
 
-    /// Returns a copy of the drawing, to be modified and passed to [`figure`](Self::figure).
+    /// Returns a copy of the drawing of the motion, to be modified and passed to [`figure`](Self::figure).
     pub fn drawn(&self) -> Figure {
         self.figure.clone()
     }
@@ -182,13 +183,13 @@ impl Motion {
     /// terrain with this index at a position along its first two axes. Terrains whose height is not finite
     /// everywhere in the region are omitted.
     pub fn terrain(mut self, height: impl Fn(usize, [f64; 2]) -> Option<f64>) -> Motion {
-        let size = Scene::new(&self.figure, &self.placements, &self.shown_samples()).size;
+        let size = CameraView::new(&self.figure, &self.placements, &self.shown_samples()).size;
         self.figure.raise_terrains(&self.placements, size, height);
         self
     }
 
-    /// Adds a plot over time, with a name and one value per sample for each curve. Values that are not finite
-    /// are gaps.
+    /// Adds a plot over time to the motion, with a name and one value per sample for each curve. Values that
+    /// are not finite are gaps.
     ///
     /// # Errors
     ///
@@ -204,11 +205,11 @@ impl Motion {
         for (name, values) in &curves {
             check_count(&format!("the curve `{name}` of `{title}`"), self.times.len(), values.len())?;
         }
-        self.plots.push(Plot { title: title.to_string(), unit: unit.to_string(), curves });
+        self.plots.push(PagePlot { title: title.to_string(), unit: unit.to_string(), curves });
         Ok(self)
     }
 
-    /// Adds one plot per unit, for curves with a unit, a name, and one value per sample.
+    /// Adds one plot per unit to the motion, for curves with a unit, a name, and one value per sample.
     ///
     /// # Errors
     ///
@@ -218,15 +219,15 @@ impl Motion {
         title: &str,
         curves: impl IntoIterator<Item = (U, N, Vec<f64>)>,
     ) -> Result<Motion, Error> {
-        let mut plots: Vec<Plot> = Vec::new();
+        let mut plots: Vec<PagePlot> = Vec::new();
         for (unit, name, values) in curves {
             let (unit, curve) = (unit.into(), (name.into(), values));
             match plots.iter_mut().find(|plot| plot.unit == unit) {
                 Some(plot) => plot.curves.push(curve),
-                None => plots.push(Plot { title: title.to_string(), unit, curves: vec![curve] }),
+                None => plots.push(PagePlot { title: title.to_string(), unit, curves: vec![curve] }),
             }
         }
-        for Plot { title, unit, curves } in plots {
+        for PagePlot { title, unit, curves } in plots {
             self = self.plot(&title, &unit, curves)?;
         }
         Ok(self)
@@ -238,7 +239,7 @@ impl Motion {
         self
     }
 
-    /// Adds a trail of this duration, s, behind a point of a frame, m in its axes.
+    /// Adds a trail behind a point of a frame, m in its axes, that shows its path during the last `seconds`.
     ///
     /// # Errors
     ///
@@ -310,17 +311,17 @@ impl Motion {
     ) -> Result<Motion, Error> {
         let frame = frame.map(|frame| self.figure.frame_index(frame)).transpose()?;
         check_count(&format!("the arrows of a {}", kind.to_lowercase()), self.times.len(), values.len())?;
-        self.arrows.push(Arrow { kind, frame, point, values });
+        self.arrows.push(PageArrow { kind, frame, point, values });
         Ok(self)
     }
 
-    /// Adds a caption that is shown below the title from a time on, s.
+    /// Adds a caption to the motion, which is shown below the title from the time `time` on, s.
     pub fn caption(mut self, time: f64, words: &str) -> Motion {
         self.captions.push((time, words.to_string()));
         self
     }
 
-    /// Returns the indices of the samples that are shown. Samples that follow each other faster than the
+    /// Returns the indices of the samples that the page shows. Samples that follow each other faster than the
     /// screen refreshes are omitted.
     fn shown_samples(&self) -> Vec<usize> {
         let last = self.times.len() - 1;
@@ -341,7 +342,7 @@ impl Motion {
         self.figure.missing_meshes()
     }
 
-    /// Returns the indices of the frames that pieces, trails or arrows are fixed in.
+    /// Returns the indices of the frames in which pieces, trails or arrows of the motion are fixed.
     pub(crate) fn used_frames(&self) -> Vec<usize> {
         let mut used = self.figure.used_frames();
         used.extend(self.trails.iter().map(|(frame, ..)| *frame));
@@ -351,7 +352,7 @@ impl Motion {
         used
     }
 
-    /// Returns the numbers of plotted curves and of inputs.
+    /// Returns the number of plotted curves, and the number of inputs.
     pub(crate) fn curve_counts(&self) -> [usize; 2] {
         let inputs = self.inputs.first().map_or(0, Vec::len);
         [self.plots.iter().map(|plot| plot.curves.len()).sum(), inputs]
@@ -363,12 +364,12 @@ impl Motion {
         self
     }
 
-    /// Simulates the mechanism in the page, from the first sample on. The plots then show what the page
-    /// computes. `data` is a JSON object with the structure of the mechanism, and `module` the WebAssembly
+    /// Marks the motion as simulated in the page, from the first sample on. The plots then show the results
+    /// of the page. `data` is a JSON object with the structure of the mechanism, and `module` the WebAssembly
     /// module of its functions, both as the command `linkwork view --live` writes them.
     #[doc(hidden)]
     pub fn simulated(mut self, data: String, module: Vec<u8>) -> Motion {
-        self.simulated = Some(Simulated { data, module });
+        self.simulated = Some(SimulatedMechanism { data, module });
         self.mark_as_live()
     }
 
@@ -377,9 +378,9 @@ impl Motion {
         self.simulated.is_some()
     }
 
-    /// Returns a still picture of the first sample as SVG.
+    /// Returns a still picture of the motion's first sample as SVG.
     pub(crate) fn still_picture(&self) -> String {
-        let scene = Scene::new(&self.figure, &self.placements, &[0]);
+        let scene = CameraView::new(&self.figure, &self.placements, &[0]);
         crate::picture::figure_svg(&self.figure, &self.placements[0], &scene)
     }
 
@@ -388,7 +389,7 @@ impl Motion {
         let used = self.used_frames();
         let index_of_used_frame = |k: usize| used.iter().position(|known| *known == k).unwrap_or(0);
         let shown = self.shown_samples();
-        let scene = Scene::new(&self.figure, &self.placements, &shown);
+        let scene = CameraView::new(&self.figure, &self.placements, &shown);
         let quantum = scene.size / PARTS;
         let mut stream = Stream::default();
         let start = self.times[0];
@@ -440,11 +441,11 @@ impl Motion {
             ("live", self.live.to_string()),
             ("data", text::json(&stream.text())),
         ];
-        let source_range_json = |shape: &Shape| match shape.source_range() {
+        let source_range_json = |shape: &DrawnShape| match shape.source_range() {
             Some([first, count]) => format!("[{first},{count}]"),
             None => "null".to_string(),
         };
-        let simulated = self.simulated.iter().flat_map(|Simulated { data, module }| {
+        let simulated = self.simulated.iter().flat_map(|SimulatedMechanism { data, module }| {
             [
                 ("simulated", data.clone()),
                 ("module", text::json(&base64(module))),
@@ -461,7 +462,7 @@ impl Motion {
     }
 }
 
-impl Arrow {
+impl PageArrow {
     fn arrow_json(&self, shown: &[usize], renumber: impl Fn(usize) -> usize, stream: &mut Stream) -> String {
         let frame = self.frame.map_or("-1".to_string(), |frame| renumber(frame).to_string());
         let curves: Vec<String> =
@@ -470,7 +471,7 @@ impl Arrow {
     }
 }
 
-impl Plot {
+impl PagePlot {
     fn plot_json(&self, shown: &[usize], stream: &mut Stream) -> String {
         let curves = self
             .curves
@@ -481,8 +482,8 @@ impl Plot {
     }
 }
 
-/// Appends a curve to the stream, and returns its name, lowest value and quantisation step. A gap is encoded
-/// as the step −1.
+/// Appends a curve to the stream of encoded samples, and returns its name, lowest value and quantisation step
+/// as JSON. A curve without finite values has the step −1.
 fn curve_json(name: &str, values: impl Iterator<Item = f64> + Clone, stream: &mut Stream) -> String {
     let finite_values = || values.clone().filter(|x| x.is_finite());
     let (low, high) =
@@ -530,14 +531,14 @@ fn check_count(what: &str, expected: usize, found: usize) -> Result<(), Error> {
     }
 }
 
-pub(crate) fn as_plain<T: linkwork::Real>(p: &IsometryMatrix3<T>) -> IsometryMatrix3<f64> {
+pub(crate) fn placement_in_double<T: linkwork::Real>(p: &IsometryMatrix3<T>) -> IsometryMatrix3<f64> {
     let matrix = Matrix3::from_fn(|i, j| to_double(p.rotation.matrix()[(i, j)]));
     let at = Vector3::from_fn(|i, _| to_double(p.translation.vector[i]));
     IsometryMatrix3::from_parts(at.into(), Rotation3::from_matrix_unchecked(matrix))
 }
 
-/// Returns the orientations as quaternions x y z w. The sign of each is chosen so that it is nearer to the
-/// previous quaternion.
+/// Returns the orientations as quaternions x y z w. The sign of each quaternion is chosen so that it is
+/// nearer to the previous one.
 fn sign_continuous_quaternions(placements: &[&IsometryMatrix3<f64>]) -> Vec<[f64; 4]> {
     let mut before = [0.0, 0.0, 0.0, 1.0];
     let sign_continuous_quaternion = |p: &&IsometryMatrix3<f64>| {

@@ -23,15 +23,15 @@ impl Page {
         Page { title: title.to_string(), ..Page::default() }
     }
 
-    /// Sets the text below the title, with paragraphs separated by blank lines. The first paragraph is always
-    /// visible, the others can be unfolded. Lines that begin with `- ` are a list, words in backticks are
-    /// code, and words between asterisks are emphasised.
+    /// Sets the text below the title of the page, with paragraphs separated by blank lines. The first
+    /// paragraph is always visible, the others can be unfolded. Lines that begin with `- ` are a list, words
+    /// in backticks are code, and words between asterisks are emphasised.
     pub fn text(mut self, text: &str) -> Page {
         self.text = text.to_string();
         self
     }
 
-    /// Sets the equations that are shown below the plots: HTML with MathML, as the documentation of a
+    /// Sets the equations that the page shows below the plots: HTML with MathML, as the documentation of a
     /// mechanism contains them.
     #[doc(hidden)]
     pub fn equations(mut self, html: &str) -> Page {
@@ -89,8 +89,8 @@ impl Page {
         format!("<article>{pictures}<h2><a href=\"{address}\">{title}</a></h2>{about}</article>\n")
     }
 
-    /// Returns the motions as an element for another page. That page needs [`style`](Self::style) in its
-    /// head, and [`script`](Self::script) once after all fragments.
+    /// Returns the motions of the page as an HTML element for another page. That page needs
+    /// [`style`](Self::style) in its head, and [`script`](Self::script) once after all fragments.
     pub fn fragment(&self) -> String {
         let motions = text::list(self.motions.iter().map(Motion::motion_json));
         let pictures: String = self.motions.iter().map(Motion::still_picture).collect();
@@ -103,12 +103,13 @@ impl Page {
         )
     }
 
-    /// Returns the style sheet of [fragments](Self::fragment): the content of a `style` element.
+    /// Returns the style sheet for [fragments](Self::fragment) of pages: the content of a `style` element.
     pub fn style() -> &'static str {
         include_str!("view.css")
     }
 
-    /// Returns the program that plays [fragments](Self::fragment): the content of a `script` element.
+    /// Returns the program that plays [fragments](Self::fragment) of pages: the content of a `script`
+    /// element.
     pub fn script() -> &'static str {
         include_str!("view.js")
     }
@@ -150,7 +151,7 @@ impl Page {
     }
 }
 
-/// Returns the beginning of a page, up to its body. The title is escaped.
+/// Returns the beginning of an HTML page, up to its body. The title is escaped.
 pub(crate) fn page_head(title: &str) -> String {
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\

@@ -1,7 +1,7 @@
 //! Still pictures of a drawing as SVG, for readers without scripts.
 
-use crate::figure::{Figure, Shape};
-use crate::scene::Scene;
+use crate::figure::{DrawnShape, Figure};
+use crate::scene::CameraView;
 use linkwork::drawing::{Kind, Role};
 use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Point3, Vector3};
 use std::f64::consts::TAU;
@@ -15,25 +15,25 @@ const MARGIN: f64 = 24.0;
 const ROUND: usize = 28;
 /// Maximum number of corners of a mesh whose outline is drawn.
 const CORNERS: usize = 2000;
-/// Colours of bodies, the same as in moving pages.
+/// Colours of bodies in the still picture, the same as in moving pages.
 const COLOURS: [&str; 8] =
     ["#407ac9", "#de803d", "#54a173", "#a16ebd", "#cc616e", "#4da1b3", "#b59c47", "#80859e"];
 
 /// Outline of a shape in the still picture, in picture coordinates.
-struct Outline {
+struct SolidOutline {
     points: Vec<[f64; 2]>,
-    /// Distance of the shape towards the viewer, by which outlines are sorted.
+    /// Distance of the shape towards the viewer, by which outlines are sorted before they are drawn.
     depth: f64,
     colour: &'static str,
-    /// Width of a line without area, m; zero for areas.
+    /// Width of the outline if it is a line without area, m; zero for areas.
     line: f64,
 }
 
-/// Returns a picture of the drawing with its frames at these placements.
-pub(crate) fn figure_svg(figure: &Figure, placements: &[IsometryMatrix3<f64>], scene: &Scene) -> String {
+/// Returns a still picture of the drawing as SVG, with its frames at these placements.
+pub(crate) fn figure_svg(figure: &Figure, placements: &[IsometryMatrix3<f64>], scene: &CameraView) -> String {
     let [right, up, back] = scene.view_axes();
     let mut bodies: Vec<String> = Vec::new();
-    let mut outlines: Vec<Outline> = Vec::new();
+    let mut outlines: Vec<SolidOutline> = Vec::new();
     for shape in figure.drawn_shapes() {
         let place_in_world = |frame: Option<usize>, p: Vector3<f64>| {
             frame.map_or(p, |k| (placements[k] * Point3::from(p)).coords)
@@ -46,14 +46,14 @@ pub(crate) fn figure_svg(figure: &Figure, placements: &[IsometryMatrix3<f64>], s
             continue;
         }
         let depth = seen.iter().map(|p| p.dot(&back)).sum::<f64>() / seen.len() as f64;
-        outlines.push(Outline { points, depth, colour: colour_of_shape(shape, &mut bodies), line });
+        outlines.push(SolidOutline { points, depth, colour: colour_of_shape(shape, &mut bodies), line });
     }
     outlines.sort_by(|a, b| a.depth.total_cmp(&b.depth));
     draw_outlines(&outlines)
 }
 
 /// Returns the colour in which a shape is drawn. All shapes of one body have the same colour.
-fn colour_of_shape(shape: &Shape, bodies: &mut Vec<String>) -> &'static str {
+fn colour_of_shape(shape: &DrawnShape, bodies: &mut Vec<String>) -> &'static str {
     match shape.role {
         Role::Link => "#8f99a8",
         Role::Joint => "#454d59",
@@ -75,8 +75,8 @@ fn colour_of_shape(shape: &Shape, bodies: &mut Vec<String>) -> &'static str {
     }
 }
 
-/// Returns the outlines as an SVG picture; later outlines cover earlier ones.
-fn draw_outlines(outlines: &[Outline]) -> String {
+/// Returns the outlines as an SVG picture, in which later outlines cover earlier ones.
+fn draw_outlines(outlines: &[SolidOutline]) -> String {
     let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for point in outlines.iter().flat_map(|outline| &outline.points) {
         for k in 0..2 {
@@ -93,7 +93,7 @@ fn draw_outlines(outlines: &[Outline]) -> String {
         format!("{x:.1},{y:.1}")
     };
     let mut out = format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"drawing\">");
-    for Outline { points, colour, line, .. } in outlines {
+    for SolidOutline { points, colour, line, .. } in outlines {
         let points = points.iter().map(pixel_coordinates).collect::<Vec<_>>().join(" ");
         let _ = match *line > 0.0 {
             true => write!(
@@ -113,12 +113,12 @@ fn draw_outlines(outlines: &[Outline]) -> String {
     out
 }
 
-/// A point, and the frame in whose axes it is; `None` for the ground.
+/// Point, with the frame in whose axes it is given; `None` for the ground.
 type FramePoint = (Option<usize>, Vector3<f64>);
 
-/// Returns points whose convex hull is the shape, each with its frame, or the ends of a line and its width.
-/// `size` is the size of the mechanism.
-fn shape_outline_points(shape: &Shape, size: f64) -> (Vec<FramePoint>, f64) {
+/// Returns points whose convex hull is the outline of the shape, each with its frame, or the ends of a line
+/// and its width. `size` is the size of the mechanism.
+fn shape_outline_points(shape: &DrawnShape, size: f64) -> (Vec<FramePoint>, f64) {
     let n = &shape.numbers;
     let vector_from_numbers = |k: usize| Vector3::new(n[k], n[k + 1], n[k + 2]);
     let [a, b] = shape.frames;
@@ -138,7 +138,7 @@ fn shape_outline_points(shape: &Shape, size: f64) -> (Vec<FramePoint>, f64) {
                 .collect(),
         )
     };
-    let ball = |radius: f64| {
+    let points_of_ball = |radius: f64| {
         in_frame(
             points_on_sphere().iter().map(|c| vector_from_numbers(0) + Vector3::from(*c) * radius).collect(),
         )
@@ -163,22 +163,22 @@ fn shape_outline_points(shape: &Shape, size: f64) -> (Vec<FramePoint>, f64) {
             points.push((a, vector_from_numbers(0) + vector_from_numbers(3) * (0.75 * n[7])));
             points
         }
-        Kind::Sphere => ball(n[3]),
+        Kind::Sphere => points_of_ball(n[3]),
         Kind::Cuboid => points_of_scaled_corners(&corners_of_cube()),
         Kind::Ellipsoid => points_of_scaled_corners(&points_on_sphere()),
         Kind::Mesh(_) => {
             let corners = shape.mesh.as_ref().map(|mesh| mesh.some_corners(CORNERS)).unwrap_or_default();
             points_of_scaled_corners(&corners)
         }
-        Kind::Point => ball(0.028 * size),
-        Kind::Ball => ball(0.03 * size),
+        Kind::Point => points_of_ball(0.028 * size),
+        Kind::Ball => points_of_ball(0.03 * size),
         Kind::Hinge | Kind::Slide => points_of_round_solid(0.0425 * size, 0.02 * size),
         _ => Vec::new(),
     };
     (areas, 0.0)
 }
 
-/// Returns points on a circle about an axis.
+/// Returns equally spaced points on a circle about an axis.
 fn points_on_circle(at: Vector3<f64>, axis: Vector3<f64>, radius: f64) -> Vec<Vector3<f64>> {
     let helper = if axis.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
     let x = helper.cross(&axis).normalize();
@@ -199,7 +199,7 @@ fn points_on_sphere() -> Vec<[f64; 3]> {
     (0..=8).flat_map(ring_of_sphere).map(Into::into).collect()
 }
 
-/// Returns the corners of the unit cube about the origin.
+/// Returns the corners of the cube with edges of length one about the origin.
 fn corners_of_cube() -> Vec<[f64; 3]> {
     (0..8).map(|k| [0, 1, 2].map(|i| if k >> i & 1 == 0 { -0.5 } else { 0.5 })).collect()
 }
@@ -231,7 +231,7 @@ mod tests {
     use super::convex_hull;
 
     #[test]
-    fn the_hull_of_a_square_has_its_corners() {
+    fn hull_of_square_has_its_corners() {
         let mut square = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let inner = [[0.5, 0.5], [0.5, 0.0], [0.2, 0.9]];
         assert_eq!(convex_hull([&square[..], &inner].concat()), square);

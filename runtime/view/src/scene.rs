@@ -1,12 +1,12 @@
 //! Scene of a motion for the camera: position, extent and viewing direction.
 
-use crate::figure::{Figure, Shape};
+use crate::figure::{DrawnShape, Figure};
 use crate::text;
 use linkwork::drawing::{Kind, Role};
 use linkwork::nalgebra::{IsometryMatrix3, Point3, Vector3};
 
-/// Scene of a motion, as the camera needs it.
-pub(crate) struct Scene {
+/// Scene of a motion: the data that determine the initial view of the camera.
+pub(crate) struct CameraView {
     /// Extent of the mechanism in the first sample, m.
     pub(crate) size: f64,
     /// Centre of the region through which the mechanism moves.
@@ -19,33 +19,38 @@ pub(crate) struct Scene {
     eye: Vector3<f64>,
     /// Whether the motion is planar, so that the camera looks along its normal.
     plane: bool,
-    /// Height of the floor along `up`: a ground plane, or below the motion if there is gravity but no
+    /// Height of the floor along `up`: that of a ground plane, or below the motion if there is gravity but no
     /// terrain.
     floor: Option<f64>,
 }
 
-impl Scene {
+impl CameraView {
     /// Computes the scene of a motion from the drawing and the placements of its frames in each sample.
     /// `shown` has the indices of the samples that are shown, including the first one.
-    pub(crate) fn new(figure: &Figure, placements: &[Vec<IsometryMatrix3<f64>>], shown: &[usize]) -> Scene {
+    pub(crate) fn new(
+        figure: &Figure,
+        placements: &[Vec<IsometryMatrix3<f64>>],
+        shown: &[usize],
+    ) -> CameraView {
         let first = &placements[0];
         let gravity = Vector3::from(figure.gravity);
         let up = gravity.try_normalize(0.0).map_or(Vector3::z(), |g| -g);
-        let pieces: Vec<&Shape> = figure.drawn_shapes().collect();
+        let pieces: Vec<&DrawnShape> = figure.drawn_shapes().collect();
         let place_in_world = |k: usize, frame: Option<usize>, point: Vector3<f64>| {
             frame.map_or(point, |f| (placements[k][f] * Point3::from(point)).coords)
         };
-        let (mut start, mut whole, mut lowest) = (Extent::default(), Extent::default(), f64::INFINITY);
+        let (mut start, mut whole, mut lowest) =
+            (BoundingBox::default(), BoundingBox::default(), f64::INFINITY);
         for (frame, point, beyond) in pieces.iter().filter(|s| s.is_body()).flat_map(|s| s.reference_points())
         {
-            start.add(&place_in_world(0, frame, point), beyond);
+            start.add_point(&place_in_world(0, frame, point), beyond);
         }
         let reaches: Vec<_> = pieces.iter().flat_map(|s| s.reference_points()).collect();
         for k in shown {
             for (frame, point, beyond) in &reaches {
                 let at = place_in_world(*k, *frame, *point);
                 lowest = lowest.min(at.dot(&up) - beyond);
-                whole.add(&at, *beyond);
+                whole.add_point(&at, *beyond);
             }
         }
         let is_valid_size = |size: &f64| *size > 0.0 && size.is_finite();
@@ -55,11 +60,11 @@ impl Scene {
             |frame: Option<usize>, v: Vector3<f64>| frame.map_or(v, |f| first[f].rotation * v);
         let normal = figure.common_axis_direction(rotate_to_world).filter(|n| n.dot(&up).abs() < 1e-6);
         let is_fixed_terrain =
-            |s: &&Shape| s.role == Role::Surface && s.mesh.is_some() && s.frames[0].is_none();
+            |s: &&DrawnShape| s.role == Role::Surface && s.mesh.is_some() && s.frames[0].is_none();
         let hills = pieces.iter().any(is_fixed_terrain);
         let floor = gravity.norm() > 0.0 && !hills;
         let plane = figure.ground_along(&up);
-        Scene {
+        CameraView {
             size,
             centre: whole.middle_of_bounds(),
             radius: (whole.size_of_bounds() / 2.0).max(size / 2.0),
@@ -70,7 +75,7 @@ impl Scene {
         }
     }
 
-    /// Returns the unit vectors to the right, upward and towards the viewer of the initial view.
+    /// Returns the unit vectors of the initial view to the right, upward and towards the viewer.
     pub(crate) fn view_axes(&self) -> [Vector3<f64>; 3] {
         let (yaw, pitch): (f64, f64) = if self.plane { (0.25, 0.2) } else { (0.7, 0.38) };
         let side = self.eye * yaw.cos() + self.up.cross(&self.eye) * yaw.sin();
@@ -96,38 +101,39 @@ impl Figure {
     /// Returns the height of the lowest horizontal contact plane of the ground that faces upward.
     fn ground_along(&self, up: &Vector3<f64>) -> Option<f64> {
         let planes = self.shapes.iter().filter(|s| s.kind == Kind::Plane && s.frames[0].is_none());
-        let vector_from_numbers = |s: &Shape, k: usize| Vector3::from_column_slice(&s.numbers[k..k + 3]);
+        let vector_from_numbers = |s: &DrawnShape, k: usize| Vector3::from_column_slice(&s.numbers[k..k + 3]);
         let level = planes.filter(|s| vector_from_numbers(s, 3).dot(up) > 1.0 - 1e-9);
         level.map(|s| vector_from_numbers(s, 0).dot(up)).reduce(f64::min)
     }
 }
 
-impl Shape {
-    /// Returns whether the shape can be drawn: meshes and terrains may not have been read or computed.
+impl DrawnShape {
+    /// Whether the shape can be drawn: the files of meshes may not have been read, and terrains not have been
+    /// computed.
     pub(crate) fn is_visible(&self) -> bool {
         !matches!(self.kind, Kind::Mesh(_) | Kind::Terrain(_)) || self.mesh.is_some()
     }
 
-    /// Returns whether the shape is part of the mechanism itself, whose size is measured.
+    /// Whether the shape is part of the mechanism itself, whose size is measured.
     fn is_body(&self) -> bool {
         matches!(self.role, Role::Body | Role::Link | Role::Visual | Role::Joint)
     }
 }
 
 /// Axis-aligned bounding box of the drawn points.
-struct Extent {
+struct BoundingBox {
     low: Vector3<f64>,
     high: Vector3<f64>,
 }
 
-impl Default for Extent {
-    fn default() -> Extent {
-        Extent { low: Vector3::repeat(f64::INFINITY), high: Vector3::repeat(f64::NEG_INFINITY) }
+impl Default for BoundingBox {
+    fn default() -> BoundingBox {
+        BoundingBox { low: Vector3::repeat(f64::INFINITY), high: Vector3::repeat(f64::NEG_INFINITY) }
     }
 }
 
-impl Extent {
-    fn add(&mut self, at: &Vector3<f64>, beyond: f64) {
+impl BoundingBox {
+    fn add_point(&mut self, at: &Vector3<f64>, beyond: f64) {
         self.low = self.low.inf(&at.add_scalar(-beyond));
         self.high = self.high.sup(&at.add_scalar(beyond));
     }

@@ -1,4 +1,5 @@
-//! Server on this machine for one page and the web sockets that the page opens (RFC 6455).
+//! Server on this machine for the page of a live view, and for the web sockets that the page opens (RFC
+//! 6455).
 //!
 //! The server sends messages and ignores those it receives. This needs only the handshake and the frames of a
 //! server, for which a library would add a dozen crates.
@@ -14,11 +15,11 @@ use std::time::{Duration, Instant};
 
 /// Maximum number of simultaneous connections to the live view.
 const MAX_CONNECTIONS: usize = 16;
-/// Maximum length of the head of a request, bytes.
+/// Maximum length of the head of an HTTP request, bytes.
 const LONGEST_HEAD: usize = 16_384;
 /// Time after which an unresponsive connection is closed.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// Interval between pings while there are no messages.
+/// Interval between pings of the live view while there are no messages.
 const SILENCE: Duration = Duration::from_millis(500);
 /// Minimum interval between messages to a browser, about one screen refresh.
 const SCREEN: Duration = Duration::from_nanos(16_000_000);
@@ -29,36 +30,36 @@ const PING: u8 = 0x89;
 
 /// Server with its thread, which ends when the server is dropped.
 #[derive(Debug)]
-pub(crate) struct Server {
+pub(crate) struct PageServer {
     address: SocketAddr,
-    shared: Arc<Shared>,
+    shared: Arc<SharedState>,
     thread: Option<JoinHandle<()>>,
 }
 
 #[derive(Debug)]
-struct Shared {
-    /// Accepted `Host` names of this machine, with the port.
+struct SharedState {
+    /// Accepted values of the HTTP field `Host`: names of this machine, with the port.
     hosts: [String; 2],
     page: String,
-    newest: Mutex<Newest>,
+    newest: Mutex<NewestMessage>,
     news: Condvar,
     connections: AtomicUsize,
 }
 
 #[derive(Debug, Default)]
-struct Newest {
+struct NewestMessage {
     number: u64,
     message: Vec<u8>,
     closed: bool,
 }
 
-impl Server {
+impl PageServer {
     /// Serves a page at a port of this machine, or at any free port for port 0.
-    pub(crate) fn open_server(port: u16, page: String) -> Result<Server, Error> {
+    pub(crate) fn open_server(port: u16, page: String) -> Result<PageServer, Error> {
         let port_error = |cause| Error::Port { port, cause };
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(port_error)?;
         let address = listener.local_addr().map_err(port_error)?;
-        let shared = Arc::new(Shared {
+        let shared = Arc::new(SharedState {
             hosts: ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", address.port())),
             page,
             newest: Mutex::default(),
@@ -68,7 +69,7 @@ impl Server {
         let guests = shared.clone();
         let thread = thread::Builder::new().name("linkwork-view".to_string());
         let thread = thread.spawn(move || accept_connections(&listener, &guests)).map_err(port_error)?;
-        Ok(Server { address, shared, thread: Some(thread) })
+        Ok(PageServer { address, shared, thread: Some(thread) })
     }
 
     pub(crate) fn server_address(&self) -> SocketAddr {
@@ -87,7 +88,7 @@ impl Server {
     }
 }
 
-impl Drop for Server {
+impl Drop for PageServer {
     fn drop(&mut self) {
         self.shared.lock_newest().closed = true;
         self.shared.news.notify_all();
@@ -100,24 +101,24 @@ impl Drop for Server {
     }
 }
 
-impl Shared {
+impl SharedState {
     /// Locks the newest message for the browsers. A lock that a thread poisoned by a panic is still usable,
     /// because the message is unchanged.
-    fn lock_newest(&self) -> MutexGuard<'_, Newest> {
+    fn lock_newest(&self) -> MutexGuard<'_, NewestMessage> {
         self.newest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 /// Open connection, which is counted until it is dropped.
-struct Guest(Arc<Shared>);
+struct OpenConnection(Arc<SharedState>);
 
-impl Drop for Guest {
+impl Drop for OpenConnection {
     fn drop(&mut self) {
         self.0.connections.fetch_sub(1, Ordering::Relaxed);
     }
 }
 
-fn accept_connections(listener: &TcpListener, shared: &Arc<Shared>) {
+fn accept_connections(listener: &TcpListener, shared: &Arc<SharedState>) {
     for stream in listener.incoming() {
         if shared.lock_newest().closed {
             return;
@@ -128,7 +129,7 @@ fn accept_connections(listener: &TcpListener, shared: &Arc<Shared>) {
             continue;
         };
         let before = shared.connections.fetch_add(1, Ordering::Relaxed);
-        let guest = Guest(shared.clone());
+        let guest = OpenConnection(shared.clone());
         if before < MAX_CONNECTIONS {
             // A browser that disconnects is not an error.
             let _ = thread::Builder::new().spawn(move || {
@@ -139,7 +140,7 @@ fn accept_connections(listener: &TcpListener, shared: &Arc<Shared>) {
 }
 
 /// Answers one HTTP request: sends the page, or opens a web socket and sends the messages of the live view.
-fn serve_request(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
+fn serve_request(mut stream: TcpStream, shared: &SharedState) -> io::Result<()> {
     stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(PATIENCE))?;
     stream.set_nodelay(true)?;
@@ -164,7 +165,7 @@ fn serve_request(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
                 "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
                  Sec-WebSocket-Accept: {accept}\r\n\r\n"
             )?;
-            send_news(stream, shared)
+            send_newest_messages(stream, shared)
         }
         ("GET", "/", _) => write_response(&mut stream, "200 OK", &shared.page),
         _ => write_response(&mut stream, "404 Not Found", ""),
@@ -195,11 +196,11 @@ fn write_response(stream: &mut TcpStream, status: &str, page: &str) -> io::Resul
 }
 
 /// Sends the newest message whenever it changes, at most once per screen refresh.
-fn send_news(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
+fn send_newest_messages(mut stream: TcpStream, shared: &SharedState) -> io::Result<()> {
     let (mut seen, mut message) = (0, Vec::new());
     loop {
         let newest = shared.lock_newest();
-        let is_waiting_for_news = |newest: &mut Newest| newest.number == seen && !newest.closed;
+        let is_waiting_for_news = |newest: &mut NewestMessage| newest.number == seen && !newest.closed;
         let waited = shared.news.wait_timeout_while(newest, SILENCE, is_waiting_for_news);
         let (newest, silence) = waited.unwrap_or_else(PoisonError::into_inner);
         if newest.closed {
@@ -213,7 +214,7 @@ fn send_news(mut stream: TcpStream, shared: &Shared) -> io::Result<()> {
             true => send_frame(&mut stream, PING, &[])?,
             false => send_frame(&mut stream, BINARY, &message)?,
         }
-        forget_answers(&mut stream)?;
+        discard_browser_data(&mut stream)?;
         thread::sleep(SCREEN);
     }
 }
@@ -237,7 +238,7 @@ fn send_frame(stream: &mut TcpStream, kind: u8, content: &[u8]) -> io::Result<()
 }
 
 /// Discards data from the browser, and returns an error if it has disconnected.
-fn forget_answers(stream: &mut TcpStream) -> io::Result<()> {
+fn discard_browser_data(stream: &mut TcpStream) -> io::Result<()> {
     stream.set_nonblocking(true)?;
     let found = loop {
         match stream.read(&mut [0; 256]) {
@@ -251,8 +252,8 @@ fn forget_answers(stream: &mut TcpStream) -> io::Result<()> {
     found
 }
 
-/// Computes the SHA-1 digest of the handshake (FIPS 180-4). It serves no secrecy: the protocol uses it to
-/// confirm that the server supports web sockets.
+/// Computes the SHA-1 digest of the handshake of a web socket (FIPS 180-4). It serves no secrecy: the
+/// protocol uses it to confirm that the server supports web sockets.
 fn sha1(text: &[u8]) -> [u8; 20] {
     let mut bytes = text.to_vec();
     bytes.push(0x80);
@@ -297,10 +298,10 @@ fn sha1(text: &[u8]) -> [u8; 20] {
 mod tests {
     use super::*;
 
-    /// Checks the examples of the validation of FIPS 180-4, texts at block boundaries, and the handshake of
-    /// RFC 6455, section 1.3.
+    /// Checks SHA-1 digests: the examples of the validation of FIPS 180-4, texts at block boundaries, and the
+    /// handshake of RFC 6455, section 1.3.
     #[test]
-    fn digests_are_those_of_the_standard() {
+    fn sha1_digests_match_the_standard() {
         let hex =
             |text: &str| sha1(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
         assert_eq!(hex(""), "da39a3ee5e6b4b0d3255bfef95601890afd80709");

@@ -1,12 +1,13 @@
 //! Triangulation of terrains, whose height is a function of the mechanism, over the region of a motion.
 
 use crate::figure::Figure;
-use crate::mesh::Mesh;
+use crate::mesh::TriangleMesh;
 use linkwork::drawing::Kind;
 use linkwork::nalgebra::{IsometryMatrix3, Matrix3, Rotation3, Vector3};
 
 impl Figure {
-    /// Replaces every terrain by a surface over the region of the frames' positions, extended by `beyond`, m.
+    /// Replaces every terrain of the drawing by a surface over the region of the frames' positions, extended
+    /// by `beyond`, m.
     pub(crate) fn raise_terrains(
         &mut self,
         placements: &[Vec<IsometryMatrix3<f64>>],
@@ -34,7 +35,7 @@ impl Figure {
                 false => [-beyond, beyond],
             });
             let point_on_terrain = |u: f64, w: f64| [u, w, height(number, [u, w]).unwrap_or(f64::NAN)];
-            if let Ok(mesh) = Mesh::triangulate_surface(u, w, point_on_terrain) {
+            if let Ok(mesh) = TriangleMesh::triangulate_surface(u, w, point_on_terrain) {
                 (shape.kind, shape.mesh) = (Kind::Mesh(""), Some(mesh));
                 // Unit scales along the axes.
                 shape.numbers.extend([1.0; 3]);

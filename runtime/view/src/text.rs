@@ -52,7 +52,8 @@ fn block_html(lines: &[&str]) -> String {
     out
 }
 
-/// Converts code and emphasis; unpaired backticks and asterisks are printed literally.
+/// Converts the marks of code and emphasis in a text to HTML. Unpaired backticks and asterisks are printed
+/// literally.
 fn inline_html(text: &str) -> String {
     let text = html(text);
     let parts: Vec<&str> = text.split('`').collect();
@@ -69,7 +70,7 @@ fn inline_html(text: &str) -> String {
     out
 }
 
-/// Converts text between asterisks to emphasis; asterisks of products are printed literally.
+/// Converts text between asterisks to HTML emphasis. Asterisks of products are printed literally.
 fn emphasised_html(text: &str) -> String {
     let parts: Vec<&str> = text.split('*').collect();
     let mut out = String::new();
@@ -112,7 +113,7 @@ pub fn json(text: &str) -> String {
     out
 }
 
-/// Formats JSON texts as a JSON array.
+/// Formats a JSON array of elements that are already JSON texts.
 pub fn list(items: impl IntoIterator<Item = String>) -> String {
     let items: Vec<String> = items.into_iter().collect();
     format!("[{}]", items.join(","))
@@ -138,7 +139,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_ends_a_script_or_an_attribute() {
+    fn escaped_text_ends_no_script_or_attribute() {
         let hostile = "</script><img src=x onerror='alert(\"1\")'>&\u{2028}\0";
         let (text, data) = (html(hostile), json(hostile));
         assert!(!text.contains(['<', '>', '"', '\'']));
@@ -147,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn prose_has_paragraphs_lists_code_and_emphasis() {
+    fn prose_is_converted_to_html_blocks() {
         let text = "The *simple* pendulum: `m l² * θ''`, 2 * 3 * 4, a*b*c.\nOne line more.\n\n# Source\n\n\
                     Coordinates:\n- `pin`, rad,\n  counted up\n- <b>, `open and *so";
         assert_eq!(

@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 #[mechanism(gravity = -9.81 * y, drawing)]
-struct Arm {
+struct PlanarArm {
     #[body(mass = 1, com = x / 2, inertia = rod(1, 1, x))]
     upper: Body,
     #[body(mass = 1, com = x / 2, inertia = tube(1, 0.04, 0.05, 1, x))]
@@ -47,8 +47,8 @@ fn sample_of_arm(start: f64, k: u32) -> Sample<f64, 2, 2, 1> {
     }
 }
 
-/// Returns the document of a page after 1.5 s, and asserts that the console has no messages. `meanwhile` is
-/// called repeatedly until then. `None` if no browser starts.
+/// Returns the document of a page after 1.5 s in a browser, and asserts that the console has no messages.
+/// `meanwhile` is called repeatedly until then. Returns `None` if no browser starts.
 fn document_in_browser(name: &str, address: &str, mut meanwhile: impl FnMut()) -> Option<String> {
     let Some(browser) = find_browser() else {
         println!("skipped: no Chromium on the path");
@@ -87,9 +87,9 @@ fn document_in_browser(name: &str, address: &str, mut meanwhile: impl FnMut()) -
 }
 
 #[test]
-fn a_browser_plays_the_page() {
+fn browser_plays_the_page() {
     let samples: Vec<_> = (0..120).map(|k| sample_of_arm(0.0, k)).collect();
-    let motion_of_arm = || Motion::of("<i>arm</i>", &Arm {}, &samples).unwrap();
+    let motion_of_arm = || Motion::of("<i>arm</i>", &PlanarArm {}, &samples).unwrap();
     let pull = samples.iter().map(|s| [0.0, s.t, 0.0]).collect::<Vec<_>>();
     let first = motion_of_arm().trail("lower", [1.0, 0.0, 0.0], 0.5).unwrap().force(
         Some("lower"),
@@ -114,8 +114,8 @@ fn a_browser_plays_the_page() {
 
 /// Checks a live view in a browser for a loop whose time begins at 1000 s.
 #[test]
-fn a_browser_looks_on() {
-    let mut live = Live::open(&Arm {}, 0).unwrap();
+fn browser_shows_live_view() {
+    let mut live = Live::open(&PlanarArm {}, 0).unwrap();
     let (url, mut k) = (live.url(), 0);
     let show_next_sample = || {
         live.show(&sample_of_arm(1000.0, k)).unwrap();

@@ -3,9 +3,9 @@
 use linkwork::prelude::*;
 use linkwork_view::{Side, free_body};
 
-/// Horizontal rod on a pin with a motor.
+/// Test mechanism: horizontal rod on a pin with a motor.
 #[mechanism(gravity = -9.81 * y)]
-struct Rod {
+struct PinnedRod {
     #[body(mass = 2, com = 0.5 * x, inertia = rod(2, 1, x))]
     rod: Body,
     #[joint(ground -> rod, about = z)]
@@ -16,7 +16,8 @@ struct Rod {
     loads: FreeBody,
 }
 
-/// Returns the endpoint displacements of the straight lines of a colour, to the right and upward.
+/// Returns the displacements from start to end of the straight lines of a colour in an SVG picture, to the
+/// right and upward.
 fn arrow_vectors(svg: &str, colour: &str) -> Vec<[f64; 2]> {
     let number_of_attribute = |line: &str, name: &str| -> f64 {
         let rest = line.split(&format!("{name}=\"")).nth(1).expect("an attribute");
@@ -30,8 +31,8 @@ fn arrow_vectors(svg: &str, colour: &str) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn arrows_are_forces_and_arcs_torques() {
-    let rod = Rod {};
+fn arrows_show_forces_and_arcs_torques() {
+    let rod = PinnedRod {};
     let (q, v) = ([0.0].into(), [0.0].into());
     let svg = free_body(&rod.loads(&q, &v, &[9.81].into()), Side::Xy);
     assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
@@ -58,8 +59,8 @@ fn arrows_are_forces_and_arcs_torques() {
 }
 
 #[test]
-fn what_is_not_finite_is_listed_alone() {
-    let mut loads = Rod {}.loads(&[0.0].into(), &[0.0].into(), &[1.0].into());
+fn infinite_actions_are_listed_only() {
+    let mut loads = PinnedRod {}.loads(&[0.0].into(), &[0.0].into(), &[1.0].into());
     loads.actions[1].force[0] = f64::NAN;
     let svg = free_body(&loads, Side::Isometric);
     assert!(svg.contains("(NaN, ") && !svg.contains("\"NaN"));

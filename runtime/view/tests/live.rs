@@ -32,7 +32,7 @@ fn sample_at_time(t: f64) -> Sample<f64, 2, 2, 1> {
     }
 }
 
-/// Opens a connection and sends a request; `fields` has further header lines.
+/// Opens a connection to the live view and sends an HTTP request. `fields` has further header lines.
 fn send_request(url: &str, path: &str, fields: &str) -> TcpStream {
     let host = url.trim_start_matches("http://").trim_end_matches('/');
     let mut stream = TcpStream::connect(host).unwrap();
@@ -72,7 +72,7 @@ fn open_web_socket(url: &str) -> TcpStream {
     stream
 }
 
-/// Returns the kind and content of the next frame that is not a ping.
+/// Returns the kind and content of the next web-socket frame that is not a ping.
 fn read_frame(stream: &mut TcpStream) -> (u8, Vec<u8>) {
     loop {
         let [kind, length] = read_bytes(stream);
@@ -89,7 +89,7 @@ fn read_frame(stream: &mut TcpStream) -> (u8, Vec<u8>) {
 }
 
 #[test]
-fn a_browser_gets_the_page_and_then_samples() {
+fn browser_receives_page_and_samples() {
     let mut live = Live::open(&Arm {}, 0).unwrap();
     let page = response_text(send_request(&live.url(), "/", ""));
     assert!(page.starts_with("HTTP/1.1 200 OK\r\n") && page.contains("<title>Arm</title>"));
@@ -128,7 +128,7 @@ fn a_browser_gets_the_page_and_then_samples() {
 /// Checks that a program which shows samples does not block while one client reads nothing, and that another
 /// client receives the newest sample.
 #[test]
-fn the_loop_waits_for_nobody() {
+fn slow_client_does_not_block_the_loop() {
     let mut live = Live::open(&Arm {}, 0).unwrap();
     let (_idle, mut busy) = (open_web_socket(&live.url()), open_web_socket(&live.url()));
     for k in 0..20_000 {
@@ -147,7 +147,7 @@ fn the_loop_waits_for_nobody() {
 }
 
 #[test]
-fn what_is_no_page_of_its_own_is_refused() {
+fn foreign_requests_are_rejected() {
     let live = Live::open(&Arm {}, 0).unwrap();
     let url = live.url();
     let port = url.trim_end_matches('/').rsplit(':').next().unwrap();
@@ -165,7 +165,7 @@ fn what_is_no_page_of_its_own_is_refused() {
 }
 
 #[test]
-fn mistakes_are_told() {
+fn invalid_live_views_are_errors() {
     let mut live = Live::open(&Arm {}, 0).unwrap();
     let port = live.url().trim_end_matches('/').rsplit(':').next().unwrap().parse().unwrap();
     let second = Live::open(&Arm {}, port);

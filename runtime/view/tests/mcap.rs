@@ -8,7 +8,7 @@ use serde_json::Value;
 use std::process::Command;
 
 #[mechanism(gravity = -9.81 * z)]
-struct Boat {
+struct FloatingBoat {
     #[body(mass = 2, inertia = cuboid(2, 1, 0.4, 0.2))]
     hull: Body,
     #[body(mass = 0.5, com = z, inertia = rod(0.5, 2, z))]
@@ -34,10 +34,10 @@ fn sample_at_time(t: f64) -> Sample<f64, 8, 7, 1> {
     }
 }
 
-/// Reader that takes numbers and strings from the front.
-struct Reader<'a>(&'a [u8]);
+/// Reader of bytes that takes numbers and strings from the front.
+struct ByteReader<'a>(&'a [u8]);
 
-impl<'a> Reader<'a> {
+impl<'a> ByteReader<'a> {
     fn take_bytes(&mut self, count: usize) -> &'a [u8] {
         let (taken, rest) = self.0.split_at(count);
         self.0 = rest;
@@ -55,22 +55,23 @@ impl<'a> Reader<'a> {
 }
 
 /// Returns the records of an MCAP file, each with its offset, its kind and its content.
-fn records_of_file(file: &[u8]) -> Vec<(usize, u8, Reader<'_>)> {
+fn records_of_file(file: &[u8]) -> Vec<(usize, u8, ByteReader<'_>)> {
     let magic = b"\x89MCAP0\r\n";
     assert!(file.starts_with(magic) && file.ends_with(magic));
-    let mut rest = Reader(&file[8..file.len() - 8]);
+    let mut rest = ByteReader(&file[8..file.len() - 8]);
     let mut records = Vec::new();
     while !rest.0.is_empty() {
         let at = file.len() - 8 - rest.0.len();
         let (kind, length) = (rest.read_number(1) as u8, rest.read_number(8) as usize);
-        records.push((at, kind, Reader(rest.take_bytes(length))));
+        records.push((at, kind, ByteReader(rest.take_bytes(length))));
     }
     records
 }
 
 #[test]
-fn records_follow_the_format() {
-    let file = mcap(&Boat {}, &[sample_at_time(0.0), sample_at_time(0.25), sample_at_time(1.5)]).unwrap();
+fn mcap_records_follow_the_format() {
+    let file =
+        mcap(&FloatingBoat {}, &[sample_at_time(0.0), sample_at_time(0.25), sample_at_time(1.5)]).unwrap();
     let mut records = records_of_file(&file);
     let kinds: Vec<u8> = records.iter().map(|record| record.1).collect();
     let described = [3, 4, 3, 4, 3, 4];
@@ -116,20 +117,21 @@ fn records_follow_the_format() {
 /// Checks that the logged placements are those of the mechanism, up to rounding of quaternions, and that all
 /// other values have full precision.
 #[test]
-fn messages_say_what_the_samples_say() {
+fn mcap_messages_contain_the_samples() {
     let sample = sample_at_time(0.25);
-    let file = mcap(&Boat {}, &[sample]).unwrap();
+    let file = mcap(&FloatingBoat {}, &[sample]).unwrap();
     let messages = records_of_file(&file).into_iter().filter(|record| record.1 == 5);
     let messages: Vec<Value> =
         messages.map(|record| serde_json::from_slice(&record.2.0[22..]).unwrap()).collect();
     let [frames, joints, state] = &messages[..] else { panic!("three topics") };
     let transforms = frames["transforms"].as_array().unwrap();
-    assert_eq!(transforms.len(), Boat::FRAMES.len());
-    for (k, (transform, placement)) in transforms.iter().zip(Boat {}.frame_placements(&sample.q)).enumerate()
+    assert_eq!(transforms.len(), FloatingBoat::FRAMES.len());
+    for (k, (transform, placement)) in
+        transforms.iter().zip(FloatingBoat {}.frame_placements(&sample.q)).enumerate()
     {
         assert_eq!(
             (&transform["parent_frame_id"], &transform["child_frame_id"]),
-            (&"ground".into(), &Boat::FRAMES[k].into())
+            (&"ground".into(), &FloatingBoat::FRAMES[k].into())
         );
         assert_eq!(transform["timestamp"]["nsec"], 250_000_000);
         let transform_number = |of: &str, axis: &str| transform[of][axis].as_f64().unwrap();
@@ -145,30 +147,30 @@ fn messages_say_what_the_samples_say() {
     assert_eq!((&state["t"], &state["u"]["winch"]), (&0.25.into(), &4.5.into()));
     let q = state["q"].as_object().unwrap();
     assert_eq!(q.len(), 8);
-    assert_eq!(q[Boat::CONFIGURATION[7]], 0.1 + 1.0 / 3.0);
+    assert_eq!(q[FloatingBoat::CONFIGURATION[7]], 0.1 + 1.0 / 3.0);
 }
 
 #[test]
-fn what_cannot_be_logged_is_told() {
-    let late = mcap(&Boat {}, &[sample_at_time(1.0), sample_at_time(0.5)]);
+fn unloggable_motions_are_errors() {
+    let late = mcap(&FloatingBoat {}, &[sample_at_time(1.0), sample_at_time(0.5)]);
     assert!(matches!(late, Err(Error::Time { sample: 1, .. })));
-    assert!(matches!(mcap(&Boat {}, &[sample_at_time(-0.1)]), Err(Error::Time { sample: 0, .. })));
-    assert!(matches!(mcap(&Boat {}, &[sample_at_time(f64::NAN)]), Err(Error::Time { .. })));
+    assert!(matches!(mcap(&FloatingBoat {}, &[sample_at_time(-0.1)]), Err(Error::Time { sample: 0, .. })));
+    assert!(matches!(mcap(&FloatingBoat {}, &[sample_at_time(f64::NAN)]), Err(Error::Time { .. })));
     let mut broken = sample_at_time(0.0);
     broken.u[0] = f64::INFINITY;
     assert!(matches!(
-        mcap(&Boat {}, &[sample_at_time(0.0), broken]),
+        mcap(&FloatingBoat {}, &[sample_at_time(0.0), broken]),
         Err(Error::NotFinite { sample: 1, .. })
     ));
-    assert!(records_of_file(&mcap(&Boat {}, &[]).unwrap()).len() == 16);
+    assert!(records_of_file(&mcap(&FloatingBoat {}, &[]).unwrap()).len() == 16);
 }
 
-/// Compares with the reader of the format's authors, if Python has it.
+/// Compares the log with the content read by the Python package of the format's authors, if it is installed.
 #[test]
-fn another_reader_agrees() {
+fn reference_reader_agrees() {
     let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("boat.mcap");
     let samples: Vec<_> = (0..5).map(|k| sample_at_time(0.1 * f64::from(k))).collect();
-    std::fs::write(&path, mcap(&Boat {}, &samples).unwrap()).unwrap();
+    std::fs::write(&path, mcap(&FloatingBoat {}, &samples).unwrap()).unwrap();
     let script = "
 import json, sys
 try:

@@ -25,7 +25,7 @@ fn flight_samples(seconds: f64) -> Vec<HumanoidSample> {
 }
 
 #[test]
-fn samples_come_back_to_half_a_step() {
+fn decoded_samples_match_to_half_a_step() {
     let samples = flight_samples(1.0);
     let html = page("Humanoid", &Humanoid, &samples).unwrap();
     let motion = &motions(&html)[0];
@@ -55,12 +55,12 @@ fn samples_come_back_to_half_a_step() {
 }
 
 #[test]
-fn ten_seconds_of_a_humanoid_are_small() {
+fn ten_seconds_of_humanoid_page_are_small() {
     let html = page("Humanoid", &Humanoid, &flight_samples(10.0)).unwrap();
     assert!(html.len() < 400_000, "{} bytes", html.len());
 }
 
-/// Mechanism with every kind of solid, and joints that rotate and translate them.
+/// Test mechanism with every kind of solid, and joints that rotate and translate them.
 #[mechanism(gravity = -9.81 * z, drawing)]
 struct Solids {
     m: f64,
@@ -115,7 +115,7 @@ struct Solids {
 }
 
 #[test]
-fn every_solid_has_its_numbers() {
+fn solids_have_their_declared_numbers() {
     let solids = Solids { m: 2.0, r: 0.2, h: 0.6 };
     let numbers = solids.drawing_numbers();
     let counted: usize = Solids::DRAWING.iter().map(|piece| piece.kind.count()).sum();
@@ -147,7 +147,7 @@ fn every_solid_has_its_numbers() {
 /// Checks that the bar of a child ends at the joint that is drawn on its parent, in an arbitrary
 /// configuration.
 #[test]
-fn joints_and_links_meet() {
+fn bars_end_at_the_drawn_joints() {
     let solids = Solids { m: 2.0, r: 0.2, h: 0.6 };
     let mut q = solids.neutral();
     let turn = SVector::<f64, { Solids::NV }>::from_fn(|k, _| 0.3 + 0.1 * k as f64);
@@ -202,7 +202,7 @@ fn visual_geometry_of_files_is_drawn() {
     assert_eq!(meshes[0][6][2].as_str().unwrap().len(), 4 * 3 * 2 * 4 / 3);
 }
 
-/// Returns the page of a drawing of `Shapes` in its neutral configuration.
+/// Returns the page of a drawing of the robot `Shapes` in its neutral configuration.
 fn page_of_shapes(figure: Figure) -> String {
     let placements = vec![Shapes.frame_placements(&Shapes.neutral()).to_vec()];
     let motion = Motion::from_placements("", figure, vec![0.0], placements).unwrap();
@@ -278,7 +278,7 @@ where
 /// Checks that the same robot in three formats has the same drawing. The sign of a cylinder axis is
 /// irrelevant.
 #[test]
-fn formats_agree_on_what_is_seen() {
+fn file_formats_give_the_same_drawing() {
     let urdf = visual_geometry::<_, 2>(&Shapes);
     let [mujoco, sdf] = [visual_geometry::<_, 2>(&MujocoShapes), visual_geometry::<_, 2>(&SdfShapes)];
     // In the MJCF file, a collision shape is drawn if a body has no visual geometry.
@@ -299,7 +299,7 @@ fn formats_agree_on_what_is_seen() {
 }
 
 #[mechanism(gravity = -9.81 * y, scalar = f32, drawing)]
-struct Single {
+struct SinglePrecisionArm {
     #[particle(mass = 1)]
     bob: Particle,
     #[joint(ground -> bob.at(y), about = z)]
@@ -309,7 +309,7 @@ struct Single {
 }
 
 #[mechanism(inertia = none, drawing)]
-struct Kinematic {
+struct KinematicArm {
     #[body]
     arm: Body,
     #[body]
@@ -321,21 +321,21 @@ struct Kinematic {
 }
 
 #[test]
-fn single_precision_and_kinematics_are_drawn_too() {
+fn single_precision_and_kinematics_are_drawn() {
     let q = [0.3_f32].into();
     let sample =
         |t| linkwork::simulate::Sample { t, q, v: [0.0].into(), u: [].into(), event: None, violation: 0.0 };
-    let html = page("single", &Single {}, &[sample(0.0_f32), sample(1.0)]).unwrap();
+    let html = page("single", &SinglePrecisionArm {}, &[sample(0.0_f32), sample(1.0)]).unwrap();
     assert_eq!(motions(&html)[0]["scene"][3], serde_json::json!([0, 1, 0]));
 
-    let roles: Vec<Role> = Kinematic::DRAWING.iter().map(|p| p.role).collect();
+    let roles: Vec<Role> = KinematicArm::DRAWING.iter().map(|p| p.role).collect();
     assert_eq!(roles, [Role::Joint, Role::Joint, Role::Link]);
-    let frames = vec![Kinematic {}.frame_placements(&[0.0, 1.0].into()).to_vec()];
-    assert!(Motion::from_placements("", Figure::of(&Kinematic {}), vec![0.0], frames).is_ok());
+    let frames = vec![KinematicArm {}.frame_placements(&[0.0, 1.0].into()).to_vec()];
+    assert!(Motion::from_placements("", Figure::of(&KinematicArm {}), vec![0.0], frames).is_ok());
 }
 
 #[test]
-fn pages_need_nothing_and_names_are_only_text() {
+fn pages_are_self_contained_and_escape_names() {
     let hostile = "</script><script>alert('1')</script>\"&";
     let samples = flight_samples(0.1);
     let energy = samples.iter().map(|s| Humanoid.kinetic_energy(&s.q, &s.v)).collect();
@@ -350,7 +350,7 @@ fn pages_need_nothing_and_names_are_only_text() {
 }
 
 #[test]
-fn what_cannot_be_shown_is_told() {
+fn invalid_motions_are_errors() {
     let samples = flight_samples(0.1);
     let humanoid_motion = || Motion::of("", &Humanoid, &samples).unwrap();
     assert!(matches!(page::<_, 36, 35, 29>("", &Humanoid, &[]), Err(Error::Empty { .. })));
@@ -372,7 +372,7 @@ fn what_cannot_be_shown_is_told() {
 /// Checks that samples above the limit are omitted and that gaps in plotted curves are preserved. A motion of
 /// one second has at most 600 samples, one of a minute at most 60 per second.
 #[test]
-fn samples_are_thinned_and_gaps_kept() {
+fn samples_are_thinned_and_gaps_preserved() {
     let sample_at_step = |k: i32| {
         let t = f64::from(k) * 1e-3;
         linkwork::simulate::Sample {
@@ -386,7 +386,7 @@ fn samples_are_thinned_and_gaps_kept() {
     };
     let samples: Vec<_> = (0..=1000).map(sample_at_step).collect();
     let value_with_gap = |k: usize| if k == 0 { f64::NAN } else { k as f64 };
-    let motion = Motion::of("", &Turning {}, &samples).unwrap().without_plots();
+    let motion = Motion::of("", &TurningBody {}, &samples).unwrap().without_plots();
     let motion = motion.plot("", "", [("gap", (0..samples.len()).map(value_with_gap).collect())]).unwrap();
     let html = Page::new("").motion(motion).html();
     let motion = &motions(&html)[0];
@@ -397,12 +397,12 @@ fn samples_are_thinned_and_gaps_kept() {
     assert_eq!(channels[0].last(), Some(&100_000));
     let slow_sample = |k: i32| linkwork::simulate::Sample { t: 6e-3 * f64::from(k), ..sample_at_step(k) };
     let minute: Vec<_> = (0..=10_000).map(slow_sample).collect();
-    let html = page("", &Turning {}, &minute).unwrap();
+    let html = page("", &TurningBody {}, &minute).unwrap();
     assert_eq!(motions(&html)[0]["count"], 3335, "of samples 6 ms apart every third, and the last");
 }
 
 #[mechanism(drawing)]
-struct Turning {
+struct TurningBody {
     #[body(mass = 1, inertia = sphere(1, 1))]
     wheel: Body,
     #[joint(ground -> wheel, about = z)]
@@ -411,9 +411,9 @@ struct Turning {
 
 /// Checks that coordinates of the same unit share one plot: positions, quaternions, angles.
 #[test]
-fn coordinates_of_a_unit_are_plotted_together() {
+fn coordinates_of_one_unit_share_a_plot() {
     #[mechanism(drawing)]
-    struct Swinging {
+    struct SwingingPendulum {
         #[body(mass = 1, inertia = sphere(1, 1))]
         ball: Body,
         #[joint(ground -> ball)]
@@ -423,9 +423,12 @@ fn coordinates_of_a_unit_are_plotted_together() {
         #[joint(ball -> rod, about = y)]
         hinge: Pin,
     }
-    let run = simulate(&Swinging {}).from(Swinging.neutral(), [1.0; 7]).method(Rk4::step(0.01)).duration(0.1);
+    let run = simulate(&SwingingPendulum {})
+        .from(SwingingPendulum.neutral(), [1.0; 7])
+        .method(Rk4::step(0.01))
+        .duration(0.1);
     let samples: Vec<_> = run.collect::<Result<_, _>>().unwrap();
-    let html = page("", &Swinging {}, &samples).unwrap();
+    let html = page("", &SwingingPendulum {}, &samples).unwrap();
     let plots = motions(&html)[0]["plots"].as_array().unwrap().clone();
     let told = plots.iter().map(|plot| {
         let names: Vec<&str> =
@@ -437,9 +440,9 @@ fn coordinates_of_a_unit_are_plotted_together() {
 }
 
 #[test]
-fn generic_code_can_draw() {
+fn generic_code_reads_drawings() {
     fn count_pieces<M: Drawn<NQ, NV>, const NQ: usize, const NV: usize>(_: &M) -> usize {
         M::DRAWING.len()
     }
-    assert_eq!(count_pieces(&Turning {}), 2);
+    assert_eq!(count_pieces(&TurningBody {}), 2);
 }

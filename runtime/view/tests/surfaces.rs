@@ -10,7 +10,7 @@ use serde_json::Value;
 use support::{channels, motions};
 
 #[mechanism(gravity = -9.81 * z, drawing)]
-struct Ball {
+struct RollingBall {
     #[body(mass = 2, inertia = sphere(2, 0.1))]
     ball: Body,
     #[joint(ground -> ball)]
@@ -25,7 +25,7 @@ fn sample_at_time(t: f64) -> Sample<f64, 7, 6, 0> {
 }
 
 fn motion_of_ball() -> Motion {
-    Motion::of("ball", &Ball {}, &[sample_at_time(0.0), sample_at_time(0.5), sample_at_time(1.0)])
+    Motion::of("ball", &RollingBall {}, &[sample_at_time(0.0), sample_at_time(0.5), sample_at_time(1.0)])
         .unwrap()
         .without_plots()
 }
@@ -61,7 +61,7 @@ fn assert_bounds(surface: &Value, known: [[f64; 2]; 3]) {
 /// Checks the bounds of a surface and the heights of the sine over it. The floor is omitted, and the camera
 /// distance does not change.
 #[test]
-fn a_surface_is_drawn_over_a_region() {
+fn surface_is_drawn_over_its_region() {
     let plain = data_of_motion(motion_of_ball());
     let figure =
         motion_of_ball().drawn().surface("more", None, [-1.0, 2.0], [-0.5, 0.5], point_on_hill).unwrap();
@@ -76,7 +76,7 @@ fn a_surface_is_drawn_over_a_region() {
 /// Checks that a declared terrain is drawn over the region of the motion, extended by the size of the ball,
 /// which is the diagonal of its bounding box.
 #[test]
-fn a_terrain_is_drawn_by_its_declaration() {
+fn terrain_is_drawn_from_its_declaration() {
     let motion = data_of_motion(motion_of_ball());
     let [surface] = meshes_of_motion(&motion)[..] else { panic!("the terrain") };
     assert_eq!((&surface[1], &surface[2], &surface[3]), (&"Surface".into(), &"hills".into(), &(-1).into()));
@@ -91,9 +91,9 @@ fn a_terrain_is_drawn_by_its_declaration() {
 /// Checks the drawing of a terrain from a table with parameters on a tilted, moving tray. Its positions are
 /// along the axes of the tray.
 #[test]
-fn a_terrain_may_be_a_table_on_a_body() {
+fn terrain_table_on_a_moving_body() {
     #[mechanism(gravity = -9.81 * z, drawing)]
-    struct Tray {
+    struct TiltedTray {
         share: f64,
         bumps: Table<2>,
         #[body(mass = 3, inertia = cuboid(3, 1, 1, 0.1))]
@@ -110,7 +110,7 @@ fn a_terrain_may_be_a_table_on_a_body() {
 
     let values = &[0.0, 0.0, 0.0, 0.0, 0.4, 0.0, 0.0, 0.0, 0.0];
     let bumps = Table::new([&[-9.0, 0.0, 9.0], &[-9.0, 1.0, 9.0]], values).unwrap();
-    let tray = Tray { share: 0.5, bumps };
+    let tray = TiltedTray { share: 0.5, bumps };
     let turned = std::f64::consts::FRAC_PI_2;
     // The x axis of the tray points down, its z axis along x: the pearl is 2 m along −x and 1 m along y of
     // the tray.
@@ -129,8 +129,8 @@ fn a_terrain_may_be_a_table_on_a_body() {
 }
 
 #[test]
-fn surfaces_that_cannot_be_drawn_are_told() {
-    let figure_of_ball = || Figure::of(&Ball {});
+fn invalid_surfaces_are_errors() {
+    let figure_of_ball = || Figure::of(&RollingBall {});
     let error_message = |found: Result<Figure, Error>| found.unwrap_err().to_string();
     let pole =
         error_message(figure_of_ball().surface("pole", None, [0.0, 1.0], [0.0, 1.0], |u, w| [u, w, 1.0 / u]));
@@ -148,7 +148,7 @@ fn surfaces_that_cannot_be_drawn_are_told() {
 /// Checks that decoded components of an arrow equal the given vectors to one quantisation step. Components
 /// that are not finite are missing.
 #[test]
-fn arrows_are_the_vectors_that_were_given() {
+fn arrows_reproduce_the_given_vectors() {
     let vectors = vec![[0.0, 1.0, 20.0], [3.0, f64::NAN, 10.0], [-3.0, 0.0, 0.0]];
     let motion = motion_of_ball().force(Some("ball"), [0.0, 0.0, -0.1], vectors).unwrap();
     let motion = data_of_motion(motion.torque(None, [1.0, 0.0, 0.0], vec![[0.0, 0.0, 2.0]; 3]).unwrap());
@@ -176,7 +176,8 @@ fn arrows_are_the_vectors_that_were_given() {
 fn collada_files_are_read_in_metres() {
     let mut numbers = [0.0; 15];
     [3, 7, 11, 12, 13, 14].into_iter().for_each(|k| numbers[k] = 1.0);
-    let figure = Figure::of(&Ball {}).add("wedge", Kind::Mesh("meshes/wedge.dae"), Some("ball"), &numbers);
+    let figure =
+        Figure::of(&RollingBall {}).add("wedge", Kind::Mesh("meshes/wedge.dae"), Some("ball"), &numbers);
     let figure = figure.unwrap().meshes(concat!(env!("CARGO_MANIFEST_DIR"), "/tests")).unwrap();
     let motion = data_of_motion(motion_of_ball().figure(figure).unwrap());
     let low = meshes_of_motion(&motion)[0][6][0].as_array().unwrap().iter().map(|x| x.as_f64().unwrap());

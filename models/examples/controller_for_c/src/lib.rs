@@ -17,7 +17,8 @@ use controller::{Cart, Regulator, force_on_cart, quadratic_costs};
 use linkwork::discrete;
 use linkwork::prelude::{Rk4, SVector};
 
-/// Gains of the input force for the cart's position and the poles' angles, and for their rates.
+/// Gains of the force on the cart: for the position of the cart and the angles of the poles, and for their
+/// rates.
 #[repr(C)]
 pub struct Gains {
     q: [f64; 3],
@@ -62,7 +63,7 @@ pub extern "C" fn cart_step(period: f64, push: f64, q: &mut [f64; 3], v: &mut [f
     true
 }
 
-/// Required without the standard library; no code here panics.
+/// Handler of panics that a program without the standard library must define; no code here panics.
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     loop {}

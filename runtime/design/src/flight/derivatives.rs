@@ -6,9 +6,9 @@ use crate::mechanism::effective_mass;
 use linkwork::{Derivatives as Generated, Mechanism, Scleronomic};
 use nalgebra::{DMatrix, DVector, SVector};
 
-/// Forces along, and moments about, the forward, right and down axes.
+/// Names of the forces along, and moments about, the forward, right and down axes of an aircraft.
 const FORCES: [&str; 6] = ["X", "Y", "Z", "L", "M", "N"];
-/// Linear and angular velocities along the same axes.
+/// Names of the linear and angular velocities of an aircraft along its forward, right and down axes.
 const VELOCITIES: [&str; 6] = ["u", "v", "w", "p", "q", "r"];
 
 /// Reference quantities that make aerodynamic derivatives dimensionless.
@@ -28,8 +28,8 @@ pub struct Reference {
 /// gravity and inertia. Moments are about the origin of the airframe; components are in airframe axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derivatives {
-    /// Derivatives with respect to `u`, `v`, `w`, `p`, `q`, `r`: N·s/m, N·s, N·m·s. Rows are `X`, `Y`, `Z`,
-    /// `L`, `M`, `N`.
+    /// Derivatives of forces and moments with respect to the velocities `u`, `v`, `w`, `p`, `q`, `r`: N·s/m,
+    /// N·s, N·m·s. Rows are `X`, `Y`, `Z`, `L`, `M`, `N`.
     pub by_velocity: DMatrix<f64>,
     /// Derivatives of forces and moments with respect to the time derivatives of the velocities, such as
     /// `∂Z/∂ẇ`: kg, kg·m, kg·m².
@@ -43,7 +43,8 @@ pub struct Derivatives {
     inputs: Vec<&'static str>,
 }
 
-/// Returns the wrench `w × (M v)` for a twist `w`, with the linear part first.
+/// Returns the wrench `w × (M v)` for twists `w` and `v` and the mass matrix `M` of a body, with the linear
+/// part first.
 fn bias_wrench(mass: &DMatrix<f64>, w: &DVector<f64>, v: &DVector<f64>) -> DVector<f64> {
     let momentum = mass * v;
     let three_entries_from = |x: &DVector<f64>, from: usize| x.fixed_rows::<3>(from).into_owned();
@@ -139,10 +140,11 @@ impl Derivatives {
         Ok(self.by_input[(row, index_of_known_name("velocity or input", &names, by)?.saturating_sub(6))])
     }
 
-    /// Returns a derivative made dimensionless as by Etkin and Reid (*Dynamics of Flight*, 1996, table 4.1).
-    /// Forces are divided by `½ ρ V² S`, and moments by that and chord or span. `u` is divided by the
-    /// airspeed, at a coefficient that changes; `v` and `w` become the angles `β` and `α`. Angular velocities
-    /// are divided by `2 V / b` (in pitch `2 V / c`), and rates of `v` and `w` accordingly.
+    /// Returns a dimensionless aerodynamic derivative as defined by Etkin and Reid (*Dynamics of Flight*,
+    /// 1996, table 4.1). Forces are divided by `½ ρ V² S`, and moments by that and chord or span. `u` is
+    /// divided by the airspeed, at a coefficient that changes; `v` and `w` become the angles `β` and `α`.
+    /// Angular velocities are divided by `2 V / b` (in pitch `2 V / c`), and rates of `v` and `w`
+    /// accordingly.
     ///
     /// # Errors
     ///
@@ -199,8 +201,8 @@ impl Derivatives {
     }
 }
 
-/// Returns the generalized forces of the potential on the free joint, by central differences, which are exact
-/// for a uniform field.
+/// Returns the generalized forces on the free joint that derive from the potential energy, by central
+/// differences, which are exact for a uniform field.
 fn weight_on_free_joint<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,

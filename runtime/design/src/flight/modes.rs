@@ -9,7 +9,7 @@ use crate::{Error, Mode, StateSpace};
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct FlightModes {
-    /// Oscillation of angle of attack and pitch rate.
+    /// Short period: oscillation of angle of attack and pitch rate.
     pub short_period: Option<Mode>,
     /// Phugoid: slow oscillation that exchanges airspeed and height.
     pub phugoid: Option<Mode>,
@@ -17,7 +17,7 @@ pub struct FlightModes {
     pub dutch_roll: Option<Mode>,
     /// Roll mode: fast real mode of the roll rate.
     pub roll: Option<Mode>,
-    /// Slow real mode of bank angle and heading.
+    /// Spiral mode: slow real mode of bank angle and heading.
     pub spiral: Option<Mode>,
     /// Modes of the aircraft other than the named ones, such as those of engines, of actuators and of the
     /// change of air density with height.
@@ -28,7 +28,7 @@ fn share_of_states(mode: &Mode, states: &[&str]) -> f64 {
     states.iter().filter_map(|state| mode.participation_of(state)).sum()
 }
 
-/// Removes and returns the mode of maximum `key` among the modes for which `fits` is true.
+/// Removes the mode of maximum `key` among the modes for which `fits` is true from the list, and returns it.
 fn take_matching_mode(
     modes: &mut Vec<Mode>,
     fits: impl Fn(&Mode) -> bool,
@@ -56,16 +56,16 @@ impl FlightModes {
         let mut modes = system.modes()?;
         let longitudinal_share = |mode: &Mode| share_of_states(mode, &LONGITUDINAL);
         let lateral_share = |mode: &Mode| share_of_states(mode, &LATERAL);
-        let in_plane = |mode: &Mode| longitudinal_share(mode) > 0.5;
+        let is_longitudinal_mode = |mode: &Mode| longitudinal_share(mode) > 0.5;
         let is_lateral_mode = |mode: &Mode| lateral_share(mode) > 0.5;
         let is_oscillating_mode = |mode: &Mode| mode.exponent.im > 0.0;
         let pitch_share = |mode: &Mode| share_of_states(mode, &["w", "q"]);
         let surge_share = |mode: &Mode| share_of_states(mode, &["u", "theta", "h"]);
         let is_short_period = |mode: &Mode| {
-            in_plane(mode) && is_oscillating_mode(mode) && pitch_share(mode) > surge_share(mode)
+            is_longitudinal_mode(mode) && is_oscillating_mode(mode) && pitch_share(mode) > surge_share(mode)
         };
         let is_phugoid = |mode: &Mode| {
-            in_plane(mode) && is_oscillating_mode(mode) && pitch_share(mode) <= surge_share(mode)
+            is_longitudinal_mode(mode) && is_oscillating_mode(mode) && pitch_share(mode) <= surge_share(mode)
         };
         let yaw_share = |mode: &Mode| share_of_states(mode, &["v", "r"]);
         let is_aperiodic_lateral = |mode: &Mode| is_lateral_mode(mode) && !is_oscillating_mode(mode);

@@ -10,8 +10,8 @@ pub const LONGITUDINAL: [&str; 5] = ["u", "w", "q", "theta", "h"];
 /// States of lateral motion: sideways velocity, roll and yaw rate, bank angle.
 pub const LATERAL: [&str; 4] = ["v", "p", "r", "phi"];
 
-/// Names and units of the states, in the order of the free joint's velocities and displacements. Horizontal
-/// position and heading are omitted.
+/// Names and units of the states of an aircraft, in the order of the free joint's velocities and
+/// displacements. Horizontal position and heading are omitted.
 const STATES: [(&str, &str); 9] = [
     ("u", "m/s"),
     ("v", "m/s"),
@@ -24,7 +24,7 @@ const STATES: [(&str, &str); 9] = [
     ("h", "m"),
 ];
 
-/// Accelerations and angular rates below this count as zero, m/s², rad/s² and rad/s.
+/// Magnitude of accelerations and angular rates below which flight counts as steady, m/s², rad/s² and rad/s.
 const STEADY: f64 = 1e-6;
 
 /// Dependence on horizontal position or heading, relative to the largest entry of `A`, below which it is
@@ -34,7 +34,7 @@ const ROUNDING: f64 = 1e-9;
 /// Suffixes of the velocity names of a free joint, linear before angular.
 const FREE: [&str; 6] = [".vx", ".vy", ".vz", ".wx", ".wy", ".wz"];
 
-/// Reports an error for a mechanism that does not begin with a free joint.
+/// Returns an error for a mechanism that does not begin with a free joint.
 pub(super) fn check_free(velocities: &[&'static str]) -> Result<(), Error> {
     for (k, suffix) in FREE.iter().enumerate() {
         let name = velocities.get(k).copied().unwrap_or("nothing");
@@ -52,12 +52,12 @@ pub(super) fn check_free(velocities: &[&'static str]) -> Result<(), Error> {
 
 /// Attitude of the airframe: its axes in the ground frame, and the matrix from body rates to rates of bank,
 /// pitch angle and heading.
-struct Attitude {
+struct AirframeAttitude {
     axes: Matrix3<f64>,
     rates: Matrix3<f64>,
 }
 
-impl Attitude {
+impl AirframeAttitude {
     fn from_configuration(q: &[f64]) -> Result<Self, Error> {
         let turn = UnitQuaternion::from_quaternion(Quaternion::new(q[6], q[3], q[4], q[5]));
         let axes = turn.to_rotation_matrix().into_inner();
@@ -94,7 +94,7 @@ where
     M: Derivatives<NQ, NV, NU, Scalar = f64> + Scleronomic,
 {
     check_free(&M::VELOCITIES)?;
-    let attitude = Attitude::from_configuration(q.as_slice())?;
+    let attitude = AirframeAttitude::from_configuration(q.as_slice())?;
     let forces = Mechanism::generalized_forces(m, 0.0, q, v, u);
     let acceleration = Mechanism::forward_dynamics(m, 0.0, q, v, &forces);
     let turning = attitude.rates * v.fixed_rows::<3>(3);
@@ -106,10 +106,14 @@ where
         return Err(Error::NotSteady { what, rate });
     }
     let system = mechanism::linear_system(m, q, v, u)?;
-    in_flight(&system, &attitude, NV - M::FIRST_ORDER)
+    transform_to_flight_states(&system, &attitude, NV - M::FIRST_ORDER)
 }
 
-fn in_flight(system: &StateSpace, attitude: &Attitude, displacements: usize) -> Result<StateSpace, Error> {
+fn transform_to_flight_states(
+    system: &StateSpace,
+    attitude: &AirframeAttitude,
+    displacements: usize,
+) -> Result<StateSpace, Error> {
     let n = system.order();
     let (mut to, mut from) = (DMatrix::identity(n, n), DMatrix::identity(n, n));
     let singular = Error::Singular { what: "rates of bank, pitch and heading" };

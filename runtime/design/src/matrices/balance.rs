@@ -5,8 +5,8 @@ use nalgebra::DMatrix;
 /// Maximum number of balancing sweeps; three are usual.
 const MAX_SWEEPS: usize = 40;
 
-/// Returns `D⁻¹ A D`, whose rows and columns have similar norms, and the diagonal of `D` (Parlett and
-/// Reinsch, *Balancing a matrix for calculation of eigenvalues and eigenvectors*, 1969).
+/// Returns the balanced matrix `D⁻¹ A D`, whose rows and columns have similar norms, and the diagonal of `D`
+/// (Parlett and Reinsch, *Balancing a matrix for calculation of eigenvalues and eigenvectors*, 1969).
 pub(crate) fn balance_matrix(a: &DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
     let n = a.nrows();
     let empty = (DMatrix::zeros(n, 0), DMatrix::zeros(0, n));
@@ -14,8 +14,8 @@ pub(crate) fn balance_matrix(a: &DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
     (a, d)
 }
 
-/// Returns `D⁻¹ A D`, `D⁻¹ B`, `C D` and the diagonal of `D`. The scales in `D` balance, for each state, its
-/// row in `A` and `B` with its column in `A` and `C`.
+/// Returns the balanced system `D⁻¹ A D`, `D⁻¹ B`, `C D`, and the diagonal of `D`. The scales in `D` balance,
+/// for each state, its row in `A` and `B` with its column in `A` and `C`.
 pub(crate) fn balance_system(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,

@@ -16,7 +16,7 @@ const MAX_ITERATIONS: usize = 120;
 /// [`Error::Shape`], [`Error::NotFinite`], and [`Error::NotConverged`] if the iteration does not converge.
 pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<C>, Error> {
     let n = check_square("A", a)?;
-    let mut h = hessenberg(balance_matrix(a).0);
+    let mut h = hessenberg_form(balance_matrix(a).0);
     let size = h.norm();
     let mut found = Vec::with_capacity(n);
     let (mut left, mut steps) = (n, 0);
@@ -41,11 +41,11 @@ pub fn eigenvalues(a: &DMatrix<f64>) -> Result<Vec<C>, Error> {
                 moved += by;
                 (0..left).for_each(|i| h[(i, i)] -= by);
                 let s = h[(high, high - 1)].abs() + h[(high - 1, high - 2)].abs();
-                step(&mut h, low, high, [1.5 * s, s * s]);
+                double_qr_step(&mut h, low, high, [1.5 * s, s * s]);
             } else {
                 let (x, y) = (h[(high, high)], h[(high - 1, high - 1)]);
                 let product = x * y - h[(high, high - 1)] * h[(high - 1, high)];
-                step(&mut h, low, high, [x + y, product]);
+                double_qr_step(&mut h, low, high, [x + y, product]);
             }
         }
     }
@@ -67,7 +67,7 @@ fn first_row_of_active_block(h: &DMatrix<f64>, high: usize, size: f64) -> usize 
     0
 }
 
-/// Returns the eigenvalues of the block of two rows at `k`.
+/// Returns the eigenvalues of the diagonal block of rows `k` and `k + 1`.
 fn eigenvalue_pair(h: &DMatrix<f64>, k: usize) -> [C; 2] {
     let (a, b, c, d) = (h[(k, k)], h[(k, k + 1)], h[(k + 1, k)], h[(k + 1, k + 1)]);
     let half = 0.5 * (a - d);
@@ -81,8 +81,8 @@ fn eigenvalue_pair(h: &DMatrix<f64>, k: usize) -> [C; 2] {
     [C::new(one, 0.0), C::new(other, 0.0)]
 }
 
-/// Performs a double step with the sum and the product of two shifts.
-fn step(h: &mut DMatrix<f64>, low: usize, high: usize, [sum, product]: [f64; 2]) {
+/// Performs a double QR step on a Hessenberg matrix, with the sum and the product of two shifts.
+fn double_qr_step(h: &mut DMatrix<f64>, low: usize, high: usize, [sum, product]: [f64; 2]) {
     let first = h[(low, low)];
     let mut v = [
         first * first + h[(low, low + 1)] * h[(low + 1, low)] - sum * first + product,
@@ -117,7 +117,7 @@ fn step(h: &mut DMatrix<f64>, low: usize, high: usize, [sum, product]: [f64; 2])
     }
 }
 
-fn hessenberg(mut h: DMatrix<f64>) -> DMatrix<f64> {
+fn hessenberg_form(mut h: DMatrix<f64>) -> DMatrix<f64> {
     let n = h.nrows();
     for k in 0..n.saturating_sub(2) {
         let mut v = h.view((k + 1, k), (n - k - 1, 1)).clone_owned();

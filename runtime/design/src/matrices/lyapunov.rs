@@ -7,26 +7,26 @@ use nalgebra::{DMatrix, DVector};
 
 type CVector = DVector<C>;
 
-/// Kind of Sylvester equation, by its left-hand side: `A X + X B` (continuous) or `A X B − X` (discrete).
+/// Kind of Sylvester equation: `A X + X B = F` (continuous) or `A X B − X = F` (discrete).
 #[derive(Clone, Copy)]
-enum Kind {
+enum SylvesterKind {
     Continuous,
     Discrete,
 }
 
-/// Schur forms of both coefficient matrices, reused for refinement.
-struct Sides {
+/// Schur forms of both coefficient matrices of a Sylvester equation, reused for refinement.
+struct SylvesterForms {
     left: Schur,
     right: Schur,
-    kind: Kind,
+    kind: SylvesterKind,
 }
 
-impl Sides {
-    fn new(a: &DMatrix<f64>, b: &DMatrix<f64>, kind: Kind) -> Result<Self, Error> {
+impl SylvesterForms {
+    fn new(a: &DMatrix<f64>, b: &DMatrix<f64>, kind: SylvesterKind) -> Result<Self, Error> {
         Ok(Self { left: Schur::new(&complex_matrix(a))?, right: Schur::new(&complex_matrix(b))?, kind })
     }
 
-    /// Solves `A X + X B = F`, or `A X B − X = F`, for `X`.
+    /// Solves the Sylvester equation `A X + X B = F`, or `A X B − X = F`, for `X`.
     fn solve_equation(&self, f: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
         let (t, s) = (&self.left.t, &self.right.t);
         let f = self.left.q.adjoint() * complex_matrix(f) * &self.right.q;
@@ -38,8 +38,8 @@ impl Sides {
             }
             let own = s[(k, k)];
             let (factor, plus, right) = match self.kind {
-                Kind::Continuous => (C::new(1.0, 0.0), own, f.column(k) - before),
-                Kind::Discrete => (own, C::new(-1.0, 0.0), f.column(k) - t * before),
+                SylvesterKind::Continuous => (C::new(1.0, 0.0), own, f.column(k) - before),
+                SylvesterKind::Discrete => (own, C::new(-1.0, 0.0), f.column(k) - t * before),
             };
             y.set_column(k, &solve_shifted_triangular(t, factor, plus, right)?);
         }
@@ -47,7 +47,7 @@ impl Sides {
     }
 }
 
-/// Solves `(factor T + plus I) x = right` for `x`.
+/// Solves `(factor T + plus I) x = right` for `x`, with an upper triangular matrix `T`.
 fn solve_shifted_triangular(t: &CMatrix, factor: C, plus: C, mut right: CVector) -> Result<CVector, Error> {
     for i in (0..right.nrows()).rev() {
         let sum: C = (i + 1..right.nrows()).map(|j| factor * t[(i, j)] * right[j]).sum();
@@ -60,7 +60,7 @@ fn solve_shifted_triangular(t: &CMatrix, factor: C, plus: C, mut right: CVector)
     Ok(right)
 }
 
-/// Solves `A X + X B = C` for `X`.
+/// Solves the Sylvester equation `A X + X B = C` for `X`.
 ///
 /// ```
 /// use linkwork_design::matrices::sylvester;
@@ -79,13 +79,13 @@ fn solve_shifted_triangular(t: &CMatrix, factor: C, plus: C, mut right: CVector)
 pub fn sylvester(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let (n, m) = (check_square("A", a)?, check_square("B", b)?);
     check_matrix("C", c, n, m)?;
-    let sides = Sides::new(a, b, Kind::Continuous)?;
+    let sides = SylvesterForms::new(a, b, SylvesterKind::Continuous)?;
     let x = sides.solve_equation(c)?;
     let residual = c - a * &x - &x * b;
     Ok(&x + sides.solve_equation(&residual)?)
 }
 
-/// Solves `A X B − X + C = 0` for `X`.
+/// Solves the discrete Sylvester equation `A X B − X + C = 0` for `X`.
 ///
 /// # Errors
 ///
@@ -98,14 +98,14 @@ pub fn discrete_sylvester(
 ) -> Result<DMatrix<f64>, Error> {
     let (n, m) = (check_square("A", a)?, check_square("B", b)?);
     check_matrix("C", c, n, m)?;
-    let sides = Sides::new(a, b, Kind::Discrete)?;
+    let sides = SylvesterForms::new(a, b, SylvesterKind::Discrete)?;
     let x = sides.solve_equation(&-c)?;
     let residual = -(c + a * &x * b - &x);
     Ok(&x + sides.solve_equation(&residual)?)
 }
 
-/// Solves `A X + X Aᵀ + Q = 0` for `X`, the covariance of a stable system under white noise. `X` is symmetric
-/// if `Q` is symmetric.
+/// Solves the Lyapunov equation `A X + X Aᵀ + Q = 0` for `X`, the covariance of a stable system under white
+/// noise. `X` is symmetric if `Q` is symmetric.
 ///
 /// # Errors
 ///
@@ -117,7 +117,8 @@ pub fn lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Erro
     Ok(restore_symmetry(q, sylvester(a, &a.transpose(), &-q)?))
 }
 
-/// Solves `A X Aᵀ − X + Q = 0` for `X`, which is symmetric if `Q` is symmetric.
+/// Solves the discrete Lyapunov equation `A X Aᵀ − X + Q = 0` for `X`, which is symmetric if `Q` is
+/// symmetric.
 ///
 /// # Errors
 ///
@@ -129,7 +130,7 @@ pub fn discrete_lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f
     Ok(restore_symmetry(q, discrete_sylvester(a, &a.transpose(), q)?))
 }
 
-/// Removes the asymmetric rounding error of a solution if `Q` is symmetric.
+/// Removes the asymmetric rounding error of the solution of a Lyapunov equation if `Q` is symmetric.
 fn restore_symmetry(q: &DMatrix<f64>, x: DMatrix<f64>) -> DMatrix<f64> {
     if *q == q.transpose() { symmetric_part(&x) } else { x }
 }

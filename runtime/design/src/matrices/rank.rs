@@ -6,17 +6,17 @@ use nalgebra::DMatrix;
 
 /// Orthogonal transformation of a matrix `M` such that the first `rank` rows of `Qᵀ M` are significant; the
 /// other rows are rounding errors.
-pub(crate) struct Compression {
+pub(crate) struct RowCompression {
     /// Orthogonal square matrix `Q` of the transformation.
     pub q: DMatrix<f64>,
-    /// Number of significant rows of `Qᵀ M`.
+    /// Number of significant rows of the transformed matrix `Qᵀ M`.
     pub rank: usize,
 }
 
-impl Compression {
+impl RowCompression {
     /// Compresses the rows of a matrix by Householder reflections with column pivoting. Columns whose norm is
     /// at most `least` count as zero.
-    pub fn rows(m: &DMatrix<f64>, least: f64) -> Self {
+    pub fn compress_rows(m: &DMatrix<f64>, least: f64) -> Self {
         let (rows, columns) = m.shape();
         let (mut r, mut q) = (m.clone(), DMatrix::identity(rows, rows));
         let mut rank = 0;
@@ -47,8 +47,8 @@ impl Compression {
     }
 }
 
-/// Returns the number of singular values of `m` above `tolerance` times the largest. A tolerance of zero
-/// selects the rounding error.
+/// Returns the numerical rank of the matrix `m`: the number of singular values above `tolerance` times the
+/// largest. A tolerance of zero selects the rounding error.
 ///
 /// # Errors
 ///

@@ -19,25 +19,25 @@ pub struct Cost {
     pub q: DMatrix<f64>,
     /// Weight matrix `R` of the inputs in the quadratic cost.
     pub r: DMatrix<f64>,
-    /// Weight `N` of products of states and inputs.
+    /// Weight matrix `N` of products of states and inputs in the quadratic cost.
     pub n: DMatrix<f64>,
 }
 
 impl Cost {
-    /// Creates a cost without products of states and inputs.
+    /// Creates a quadratic cost without products of states and inputs.
     pub fn new(q: DMatrix<f64>, r: DMatrix<f64>) -> Self {
         let n = DMatrix::zeros(q.nrows(), r.nrows());
         Self { q, r, n }
     }
 
-    /// Creates a cost with diagonal weights. Bryson's rule chooses the reciprocal of the square of the
-    /// maximum acceptable deviation.
+    /// Creates a quadratic cost with diagonal weights. Bryson's rule chooses the reciprocal of the square of
+    /// the maximum acceptable deviation.
     pub fn diagonal(states: &[f64], inputs: &[f64]) -> Self {
         let diagonal_matrix = |x: &[f64]| DMatrix::from_diagonal(&nalgebra::DVector::from_column_slice(x));
         Self::new(diagonal_matrix(states), diagonal_matrix(inputs))
     }
 
-    /// Sets the weight of products of states and inputs.
+    /// Sets the weight of products of states and inputs in the quadratic cost.
     pub fn with_products(mut self, n: DMatrix<f64>) -> Self {
         self.n = n;
         self
@@ -66,7 +66,8 @@ impl Cost {
         Ok(n)
     }
 
-    /// Returns `A − B R⁻¹ Nᵀ`, `B R⁻¹ Bᵀ` and `Q − N R⁻¹ Nᵀ`, the equivalent problem without products.
+    /// Returns `A − B R⁻¹ Nᵀ`, `B R⁻¹ Bᵀ` and `Q − N R⁻¹ Nᵀ`: the equivalent regulator problem whose cost has
+    /// no products of states and inputs.
     fn without_products(&self, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<[DMatrix<f64>; 3], Error> {
         let both = solve_linear_system("R", &self.r, &self.n.transpose())?;
         let g = b * solve_linear_system("R", &self.r, &b.transpose())?;
@@ -170,8 +171,8 @@ fn refine_by_newton(
     Ok(x)
 }
 
-/// Reports the mode for which no solution exists: unstable modes must be controllable, and modes on the
-/// stability boundary must contribute to the cost.
+/// Returns an error that names the mode for which the Riccati equation has no stabilising solution: unstable
+/// modes must be controllable, and modes on the stability boundary must contribute to the cost.
 fn check_modes(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,
@@ -181,22 +182,22 @@ fn check_modes(
 ) -> Result<(), Error> {
     let size = balance_matrix(a).0.norm().max(f64::MIN_POSITIVE);
     for mode in eigenvalues(a)? {
-        if (unstable(mode) || distance(mode) <= 1e-10 * size) && is_fixed(a, b, mode) {
+        if (unstable(mode) || distance(mode) <= 1e-10 * size) && is_uncontrollable_mode(a, b, mode) {
             return Err(Error::Unstabilizable { mode });
         }
     }
     let [f, _, q] = cost.without_products(a, b)?;
     for mode in eigenvalues(&f)? {
-        if distance(mode) <= 1e-10 * size && is_fixed(&f.transpose(), &q, mode) {
+        if distance(mode) <= 1e-10 * size && is_uncontrollable_mode(&f.transpose(), &q, mode) {
             return Err(Error::Undetectable { mode });
         }
     }
     Ok(())
 }
 
-/// Returns whether `[A − λ I, B]` loses rank numerically (test of Popov, Belevitch and Hautus), with `A` and
-/// `B` scaled separately.
-pub(crate) fn is_fixed(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C) -> bool {
+/// Whether no input controls a mode: whether `[A − λ I, B]` loses rank numerically (test of Popov, Belevitch
+/// and Hautus), with `A` and `B` scaled separately.
+pub(crate) fn is_uncontrollable_mode(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C) -> bool {
     let n = a.nrows();
     let (a, b, _, _) = balance_system(a, b, &DMatrix::zeros(0, n));
     let inverse_norm = |m: &DMatrix<f64>| if m.norm() > 0.0 { 1.0 / m.norm() } else { 1.0 };
@@ -224,7 +225,7 @@ pub(crate) fn is_fixed(a: &DMatrix<f64>, b: &DMatrix<f64>, mode: C) -> bool {
 pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
     match cost.check_weights(a, b) {
         Err(Error::Singular { .. }) if cost.r.clone().symmetric_eigenvalues().iter().all(|x| *x >= 0.0) => {
-            return with_free_inputs(a, b, cost);
+            return solve_with_free_inputs(a, b, cost);
         }
         checked => checked?,
     };
@@ -243,9 +244,9 @@ pub fn discrete_riccati(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Resu
     best
 }
 
-/// Solves a problem with singular `R` by Newton's method, starting from the solution for slightly increased
-/// `R`.
-fn with_free_inputs(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
+/// Solves a discrete Riccati equation with singular `R` by Newton's method, starting from the solution for
+/// slightly increased `R`.
+fn solve_with_free_inputs(a: &DMatrix<f64>, b: &DMatrix<f64>, cost: &Cost) -> Result<Riccati, Error> {
     let little = 1e-6 * (cost.r.norm() + cost.q.norm() * b.norm_squared());
     if little == 0.0 {
         return Err(Error::Singular { what: "R" });
@@ -279,8 +280,8 @@ fn doubling_limit(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Resul
     Err(Error::NotConverged { what: "the discrete Riccati equation" })
 }
 
-/// Computes the solution from the invariant subspace of the symplectic matrix inside the unit circle (Laub,
-/// 1979).
+/// Computes the solution of a discrete Riccati equation from the invariant subspace of the symplectic matrix
+/// inside the unit circle (Laub, 1979).
 fn symplectic_subspace(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
     let n = f.nrows();
     let inverse = solve_linear_system("A", &f.transpose(), &DMatrix::identity(n, n))?;
@@ -299,7 +300,7 @@ fn symplectic_subspace(f: &DMatrix<f64>, g: &DMatrix<f64>, q: &DMatrix<f64>) -> 
     subspace_solution(&schur, &d)
 }
 
-/// Solves `X U₁ = U₂` for the leading subspace, in the units before scaling.
+/// Solves `X U₁ = U₂` for the leading invariant subspace `[U₁; U₂]`, in the units before scaling.
 fn subspace_solution(schur: &Schur, d: &[f64]) -> Result<DMatrix<f64>, Error> {
     let n = d.len() / 2;
     let (upper, lower) = (schur.q.view((0, 0), (n, n)), schur.q.view((n, 0), (n, n)));
@@ -309,8 +310,8 @@ fn subspace_solution(schur: &Schur, d: &[f64]) -> Result<DMatrix<f64>, Error> {
     Ok(symmetric_part(&x))
 }
 
-/// Refines a solution by Newton's method. Returns it with its gain and relative residual, or an error if it
-/// does not stabilise.
+/// Refines the solution of a discrete Riccati equation by Newton's method. Returns it with its gain and
+/// relative residual, or an error if it does not stabilise.
 fn refine_discrete_solution(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,

@@ -15,12 +15,12 @@ pub(crate) struct Schur {
 
 /// Givens rotation `[c s; −s̄ c]` that maps `(x, y)` to `(r, 0)`.
 #[derive(Clone, Copy)]
-struct Rotation {
+struct GivensRotation {
     c: f64,
     s: C,
 }
 
-impl Rotation {
+impl GivensRotation {
     fn givens_rotation(x: C, y: C) -> Self {
         let (a, b) = (x.norm(), y.norm());
         if b == 0.0 {
@@ -50,8 +50,8 @@ impl Rotation {
     }
 }
 
-/// Computes the upper Hessenberg form by Householder reflections.
-fn hessenberg(a: &CMatrix) -> (CMatrix, CMatrix) {
+/// Returns the upper Hessenberg form of a matrix, by Householder reflections, and the transformation.
+fn hessenberg_form(a: &CMatrix) -> (CMatrix, CMatrix) {
     let n = a.nrows();
     let (mut h, mut q) = (a.clone(), CMatrix::identity(n, n));
     for k in 0..n.saturating_sub(2) {
@@ -82,10 +82,10 @@ fn hessenberg(a: &CMatrix) -> (CMatrix, CMatrix) {
 }
 
 impl Schur {
-    /// Computes the form of a matrix with finite entries, by QR steps with single shifts.
+    /// Computes the Schur form of a matrix with finite entries, by QR steps with single shifts.
     pub fn new(a: &CMatrix) -> Result<Self, Error> {
         let n = a.nrows();
-        let (mut t, mut q) = hessenberg(a);
+        let (mut t, mut q) = hessenberg_form(a);
         let size = t.norm();
         let mut high = n.saturating_sub(1);
         let mut steps = 0;
@@ -100,7 +100,7 @@ impl Schur {
                 return Err(Error::NotConverged { what: "the QR algorithm" });
             }
             let shift = wilkinson_shift(&t, high, steps);
-            step(&mut t, &mut q, low, high, shift);
+            single_qr_step(&mut t, &mut q, low, high, shift);
         }
         for j in 0..n {
             for i in j + 1..n {
@@ -110,29 +110,29 @@ impl Schur {
         Ok(Self { q, t })
     }
 
-    /// Moves the selected eigenvalues to the top by swaps of neighbours, and returns their number (Bai and
-    /// Demmel, *On swapping diagonal blocks in real Schur form*, 1993, for single entries).
+    /// Moves the selected eigenvalues of the Schur form to the top by swaps of neighbours, and returns their
+    /// number (Bai and Demmel, *On swapping diagonal blocks in real Schur form*, 1993, for single entries).
     pub fn reorder(&mut self, selected: impl Fn(C) -> bool) -> usize {
         let n = self.t.nrows();
         let mut top = 0;
         for k in 0..n {
             if selected(self.t[(k, k)]) {
-                self.raise(k, top);
+                self.raise_eigenvalue(k, top);
                 top += 1;
             }
         }
         top
     }
 
-    /// Moves the eigenvalue at the index `from` up to the index `to`.
-    pub fn raise(&mut self, from: usize, to: usize) {
+    /// Moves the eigenvalue at the index `from` of the Schur form up to the index `to`.
+    pub fn raise_eigenvalue(&mut self, from: usize, to: usize) {
         (to..from).rev().for_each(|j| self.swap_eigenvalues(j));
     }
 
     fn swap_eigenvalues(&mut self, k: usize) {
         let n = self.t.nrows();
         let (first, second) = (self.t[(k, k)], self.t[(k + 1, k + 1)]);
-        let rotation = Rotation::givens_rotation(self.t[(k, k + 1)], second - first);
+        let rotation = GivensRotation::givens_rotation(self.t[(k, k + 1)], second - first);
         rotation.rotate_rows(&mut self.t, k, k..n);
         rotation.rotate_columns(&mut self.t, k, 0..k + 2);
         rotation.rotate_columns(&mut self.q, k, 0..n);
@@ -209,11 +209,11 @@ fn wilkinson_shift(t: &CMatrix, high: usize, steps: usize) -> C {
     if larger.norm() == 0.0 { d } else { d - b * c / larger }
 }
 
-fn step(t: &mut CMatrix, q: &mut CMatrix, low: usize, high: usize, shift: C) {
+fn single_qr_step(t: &mut CMatrix, q: &mut CMatrix, low: usize, high: usize, shift: C) {
     let n = t.nrows();
     let (mut x, mut y) = (t[(low, low)] - shift, t[(low + 1, low)]);
     for k in low..high {
-        let rotation = Rotation::givens_rotation(x, y);
+        let rotation = GivensRotation::givens_rotation(x, y);
         rotation.rotate_rows(t, k, k.saturating_sub(1).max(low)..n);
         rotation.rotate_columns(t, k, 0..(k + 3).min(high + 1));
         rotation.rotate_columns(q, k, 0..n);

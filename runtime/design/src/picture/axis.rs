@@ -3,7 +3,7 @@
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use std::ops::Range;
 
-/// Range of an axis, whose coordinates are numbers or their decimal logarithms.
+/// Range of an axis of a diagram, whose coordinates are numbers or their decimal logarithms.
 #[derive(Clone)]
 pub struct Axis {
     pub low: f64,
@@ -12,8 +12,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Returns the axis that spans the finite values, extended at both ends by the fraction `margin` of its
-    /// length; `None` without finite values.
+    /// Returns the axis that spans all finite values, extended at both ends by the fraction `margin` of its
+    /// length; `None` if no value is finite.
     pub fn fit(values: impl Iterator<Item = f64>, margin: f64, logarithmic: bool) -> Option<Self> {
         let (low, high) = values
             .filter(|v| v.is_finite())
@@ -31,13 +31,13 @@ impl Axis {
         Some(Self { low: low - margin * width, high: high + margin * width, logarithmic })
     }
 
-    /// Returns an axis of this length with the same centre.
-    pub fn widened(&self, width: f64) -> Self {
+    /// Returns the axis with the length `width` and the same centre.
+    pub fn widened_axis(&self, width: f64) -> Self {
         let more = 0.5 * (width - (self.high - self.low));
         Self { low: self.low - more, high: self.high + more, ..*self }
     }
 
-    /// Returns the positions of the ticks, at most about `most`.
+    /// Returns the positions of about `most` ticks at round numbers.
     pub fn ticks(&self, most: usize) -> Vec<f64> {
         let width = self.high - self.low;
         let rough = width / most.max(2) as f64;
@@ -105,12 +105,12 @@ fn superscript_number(k: i64) -> String {
 }
 
 /// Axis with a maximum number of ticks, for plotters.
-pub struct Ticked {
+pub struct TickedAxis {
     pub axis: Axis,
     pub most: usize,
 }
 
-impl Ranged for Ticked {
+impl Ranged for TickedAxis {
     type FormatOption = DefaultFormatting;
     type ValueType = f64;
 
@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ticks_are_round() {
+    fn tick_positions_are_round() {
         let tick_labels = |axis: &Axis, most| -> Vec<String> {
             axis.ticks(most).into_iter().map(|x| axis.label(x, most)).collect()
         };

@@ -1,4 +1,4 @@
-//! Diagrams of arbitrary curves.
+//! Line diagrams of arbitrary curves.
 
 use super::panel::{self, Curve, Panel};
 use crate::Error;
@@ -36,28 +36,29 @@ impl Chart {
         Self::new(title, "time, s", y)
     }
 
-    /// Makes the vertical axis logarithmic. Absolute values are drawn, and zeros are omitted.
+    /// Makes the vertical axis of the diagram logarithmic. Absolute values are drawn, and zeros are omitted.
     #[must_use]
     pub fn logarithmic(mut self) -> Self {
         self.panel.decades = true;
         self
     }
 
-    /// Makes the horizontal axis logarithmic. Points whose first coordinate is not positive are omitted.
+    /// Makes the horizontal axis of the diagram logarithmic. Points whose first coordinate is not positive
+    /// are omitted.
     #[must_use]
     pub fn logarithmic_along(mut self) -> Self {
         self.panel.logarithmic = true;
         self
     }
 
-    /// Gives both axes the same scale, as needed for a path in a plane.
+    /// Gives both axes of the diagram the same scale, as needed for a path in a plane.
     #[must_use]
     pub fn equal(mut self) -> Self {
         self.panel.equal = true;
         self
     }
 
-    /// Sets the size in pixels, which is 720 by 360 by default and at least 200 by 160.
+    /// Sets the size of the diagram in pixels, which is 720 by 360 by default and at least 200 by 160.
     #[must_use]
     pub fn sized(mut self, width: u32, height: u32) -> Self {
         self.size = (width.max(200), height.max(160));
@@ -72,14 +73,14 @@ impl Chart {
         self
     }
 
-    /// Adds a vertical dashed line with a label.
+    /// Adds a vertical dashed line with a label to the diagram.
     #[must_use]
     pub fn instant(mut self, at: f64, word: impl Into<String>) -> Self {
         self.panel.instants.push((at, word.into()));
         self
     }
 
-    /// Returns the chart as SVG.
+    /// Returns the diagram as SVG text.
     ///
     /// # Errors
     ///

@@ -26,7 +26,7 @@ pub fn modes(modes: &[Mode]) -> Result<String, Error> {
     named_modes(&all)
 }
 
-/// Draws [`modes`] with a name before each, as returned by
+/// Draws mode shapes as [`modes`] does, with a name before each, as returned by
 /// [`FlightModes::named_modes`](crate::flight::FlightModes::named_modes).
 ///
 /// # Errors

@@ -1,12 +1,12 @@
-//! Panels with axes, curves and marks, drawn by plotters.
+//! Panels of a diagram with axes, curves and marks, drawn by plotters.
 
-use super::axis::{Axis, Ticked};
+use super::axis::{Axis, TickedAxis};
 use crate::Error;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Colours of the curves, which colour-blind readers can distinguish.
+/// Colours of the curves in diagrams, which colour-blind readers can distinguish.
 const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 90, 160),
     RGBColor(213, 94, 0),
@@ -19,7 +19,7 @@ const GREY: RGBColor = RGBColor(140, 140, 140);
 const FONT: &str = "sans-serif";
 /// Number of drawing units per pixel. Plotters rounds coordinates to whole units.
 const UNITS: u32 = 10;
-/// Height of the title and of the row of names, pixels.
+/// Height of the title, and of the row of names, in a diagram, pixels.
 const HEADING: u32 = 26;
 const NAMES: u32 = 22;
 /// Maximum number of points drawn per curve: more would be closer together than a pixel.
@@ -39,7 +39,7 @@ pub enum Mark {
     Circle,
 }
 
-/// Curve of a panel; a curve without a name is not listed above the panel.
+/// Curve of a panel. A curve without a name is not listed in the legend above the panel.
 pub struct Curve {
     pub name: String,
     pub points: Vec<(f64, f64)>,
@@ -50,9 +50,9 @@ pub struct Panel {
     pub title: String,
     pub x: String,
     pub y: String,
-    /// Whether horizontal coordinates are decimal logarithms.
+    /// Whether horizontal coordinates of the panel are decimal logarithms.
     pub logarithmic: bool,
-    /// Whether vertical coordinates are decimal logarithms.
+    /// Whether vertical coordinates of the panel are decimal logarithms.
     pub decades: bool,
     /// Whether both axes of the panel have the same scale.
     pub equal: bool,
@@ -76,8 +76,8 @@ impl Panel {
         curves.chain(lines).chain(self.marks.iter().map(|(_, x, y)| (*x, *y)))
     }
 
-    /// Returns both axes for an area of this size. With equal scales, the shorter axis is extended to the
-    /// aspect ratio of the area.
+    /// Returns both axes of the panel for a drawing area of this size. With equal scales, the shorter axis is
+    /// extended to the aspect ratio of the area.
     fn axes_for_area(&self, (width, height): (u32, u32)) -> Option<(Axis, Axis)> {
         let window_test = |k: usize| {
             let window = self.window.map(|window| window[k]);
@@ -93,7 +93,7 @@ impl Panel {
         }
         let shape = f64::from(width) / f64::from(height.max(1));
         let (have_x, have_y) = (x.high - x.low, y.high - y.low);
-        Some((x.widened(have_x.max(have_y * shape)), y.widened(have_y.max(have_x / shape))))
+        Some((x.widened_axis(have_x.max(have_y * shape)), y.widened_axis(have_y.max(have_x / shape))))
     }
 
     fn draw_panel<DB: DrawingBackend>(&self, area: DrawingArea<DB, Shift>) -> Result<(), Error> {
@@ -131,8 +131,8 @@ impl Panel {
             .x_label_area_size(below)
             .y_label_area_size(left)
             .build_cartesian_2d(
-                Ticked { axis: x.clone(), most: most_x },
-                Ticked { axis: y.clone(), most: most_y },
+                TickedAxis { axis: x.clone(), most: most_x },
+                TickedAxis { axis: y.clone(), most: most_y },
             )
             .map_err(drawing_error)?;
         chart
@@ -185,7 +185,7 @@ impl Panel {
         Ok(())
     }
 
-    /// Draws the names of curves and marks in a row.
+    /// Draws the legend: the names of curves and marks in a row.
     fn draw_names<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), Error> {
         let (mut x, y) = (as_i32(units_of_pixels(84)), as_i32(units_of_pixels(NAMES / 2 + 2)));
         let style = text_style(14).pos(Pos::new(HPos::Left, VPos::Center));
@@ -222,8 +222,8 @@ fn as_i32(n: u32) -> i32 {
     i32::try_from(n).unwrap_or(i32::MAX)
 }
 
-/// Reduces the number of points: the lowest and the highest point of each group remain, so that peaks are
-/// preserved.
+/// Reduces the number of points of a curve. The lowest and the highest point of each group remain, so that
+/// peaks are preserved.
 fn thin_out_points(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     if points.len() <= MAX_POINTS {
         return points.to_vec();
@@ -239,7 +239,7 @@ fn thin_out_points(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     out
 }
 
-/// Clips a curve to the axes and returns its visible pieces. Points that are not finite interrupt it.
+/// Clips a curve to the axes and returns its visible pieces. Points that are not finite interrupt the curve.
 fn clip_curve(points: &[(f64, f64)], x: &Axis, y: &Axis) -> Vec<Vec<(f64, f64)>> {
     let mut runs: Vec<Vec<(f64, f64)>> = Vec::new();
     let mut open = false;

@@ -1,6 +1,6 @@
 //! Linearisation about a steady state, in independent coordinates and velocities.
 
-use super::problem::{Place, Problem, dynamic};
+use super::problem::{SteadyProblem, TrimState, dynamic_matrix};
 use super::solve::check_steady;
 use super::{SteadyState, Trim};
 use crate::mechanism::{displacement_signals, effective_mass, input_names, signals_with_units, state_names};
@@ -12,9 +12,9 @@ use nalgebra::{DMatrix, SVector};
 const ROUNDING: f64 = 1e-9;
 
 /// Linearised motion, before it becomes a state-space system.
-pub struct Linear {
-    /// Indices of the independent coordinates. `shape` maps their displacements to the displacements of all
-    /// coordinates.
+pub struct LinearisedMotion {
+    /// Indices of the independent coordinates. The matrix `shape` maps their displacements to the
+    /// displacements of all coordinates.
     pub coordinates: Vec<usize>,
     pub shape: DMatrix<f64>,
     speeds: Vec<usize>,
@@ -23,14 +23,14 @@ pub struct Linear {
     /// Derivative of the accelerations with respect to displacements.
     pub by_q: DMatrix<f64>,
     pub mass: DMatrix<f64>,
-    motion: Seen,
+    motion: DependentMotions,
     /// Whether all constraints of the mechanism are holonomic.
     pub is_holonomic: bool,
 }
 
 /// Maps from independent coordinates, independent velocities and inputs to the displacements, velocities and
 /// accelerations of all coordinates. Outputs are linearised with them.
-struct Seen {
+struct DependentMotions {
     /// Derivatives of all velocities with respect to the independent coordinates and the independent
     /// velocities.
     velocities: [DMatrix<f64>; 2],
@@ -41,16 +41,16 @@ struct Seen {
     parameters: Vec<f64>,
 }
 
-/// Reduced form of `J x = R y` for the dependent entries of `x`, by Gauss–Jordan elimination with complete
-/// pivoting.
-struct Dependence {
+/// Reduced form of the equations `J x = R y` for the dependent entries of `x`, by Gauss–Jordan elimination
+/// with complete pivoting.
+struct DependentEntries {
     left: DMatrix<f64>,
     right: DMatrix<f64>,
     /// Row and column of each pivot of the elimination.
     pivots: Vec<(usize, usize)>,
 }
 
-impl Dependence {
+impl DependentEntries {
     fn eliminate_dependent_entries(mut left: DMatrix<f64>, mut right: DMatrix<f64>) -> Self {
         let (rows, columns) = left.shape();
         let mut pivots: Vec<(usize, usize)> = Vec::new();
@@ -86,7 +86,7 @@ impl Dependence {
         (free, shape)
     }
 
-    /// Returns the matrix that maps `y` to all entries while the independent entries are zero.
+    /// Returns the matrix that maps `y` to all entries of `x` for independent entries of zero.
     fn particular_solution(&self) -> DMatrix<f64> {
         let mut all = DMatrix::zeros(self.left.ncols(), self.right.ncols());
         self.pivots.iter().for_each(|(row, column)| all.set_row(*column, &self.right.row(*row)));
@@ -95,47 +95,48 @@ impl Dependence {
 }
 
 /// Appends unit rows to a constraint matrix, one for each coordinate that is held constant.
-fn with_rows(m: &DMatrix<f64>, columns: usize, held: &[usize]) -> DMatrix<f64> {
+fn append_held_rows(m: &DMatrix<f64>, columns: usize, held: &[usize]) -> DMatrix<f64> {
     let mut all = m.clone().resize(m.nrows() + held.len(), columns, 0.0);
     held.iter().enumerate().for_each(|(i, k)| all[(m.nrows() + i, *k)] = 1.0);
     all
 }
 
-pub fn linear<M, const NQ: usize, const NV: usize, const NU: usize>(
+pub fn linearise_about_steady_state<M, const NQ: usize, const NV: usize, const NU: usize>(
     trim: &Trim<'_, M, NQ, NV, NU>,
     found: &SteadyState<NQ, NV, NU>,
-) -> Result<Linear, Error>
+) -> Result<LinearisedMotion, Error>
 where
     M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
-    let problem = Problem::new(trim)?;
-    let mut place = Place { q: found.q, v: found.v, u: found.u, ..problem.start() };
+    let problem = SteadyProblem::new(trim)?;
+    let mut place = TrimState { q: found.q, v: found.v, u: found.u, ..problem.initial_state() };
     place.parameters.clone_from(&found.parameters);
     problem.held.iter().zip(&found.holding).for_each(|(k, (_, force))| place.holding[*k] = *force);
     check_steady(&problem, &place)?;
-    let motion = problem.motion(&place)?;
+    let motion = problem.accelerations_at(&place)?;
     let (mass, turning) = trim.with_mechanism(&place.parameters, |m| {
         let turning = Derivatives::turning(m, &place.q, &place.v);
-        (effective_mass(m, trim.t, &place.q, &place.v), dynamic(&turning))
+        (effective_mass(m, trim.t, &place.q, &place.v), dynamic_matrix(&turning))
     });
     let held = &problem.held;
-    let by_force = dynamic(&motion.by_force);
+    let by_force = dynamic_matrix(&motion.by_force);
     let lock = locking_projector(&by_force, held);
-    let (by_q, by_v) = (&lock * dynamic(&motion.by_q), &lock * dynamic(&motion.by_v));
-    let by_u = &lock * dynamic(&motion.by_u);
+    let (by_q, by_v) = (&lock * dynamic_matrix(&motion.by_q), &lock * dynamic_matrix(&motion.by_v));
+    let by_u = &lock * dynamic_matrix(&motion.by_u);
     let empty = DMatrix::zeros(0, NV);
-    let bounds = problem.bounds(&place);
+    let bounds = problem.constraint_residuals(&place);
     let (jacobian, rates_by_q, holonomic) = bounds
         .as_ref()
         .map_or((&empty, &empty, 0), |bounds| (&bounds.jacobian, &bounds.rates_by_q, bounds.residuals.len()));
     // States of first order have no displacement coordinate.
     let placeless: Vec<usize> = held.iter().copied().chain(NV.saturating_sub(M::FIRST_ORDER)..NV).collect();
-    let on_configurations = with_rows(&jacobian.rows(0, holonomic).clone_owned(), NV, &placeless);
+    let on_configurations = append_held_rows(&jacobian.rows(0, holonomic).clone_owned(), NV, &placeless);
     let rows = on_configurations.nrows();
-    let positions = Dependence::eliminate_dependent_entries(on_configurations, DMatrix::zeros(rows, NV));
-    let on_velocities = with_rows(jacobian, NV, held);
+    let positions =
+        DependentEntries::eliminate_dependent_entries(on_configurations, DMatrix::zeros(rows, NV));
+    let on_velocities = append_held_rows(jacobian, NV, held);
     let right = (-rates_by_q).resize(on_velocities.nrows(), NV, 0.0);
-    let velocities = Dependence::eliminate_dependent_entries(on_velocities, right);
+    let velocities = DependentEntries::eliminate_dependent_entries(on_velocities, right);
     let ((coordinates, shape), (speeds, gamma)) =
         (positions.independent_entries(), velocities.independent_entries());
     let carried = velocities.particular_solution() * &shape;
@@ -152,13 +153,13 @@ where
     });
     let b = DMatrix::from_fn(np + ns, NU, |i, j| if i < np { 0.0 } else { by_u[(row_of_state(i), j)] });
     let is_holonomic = holonomic == jacobian.nrows();
-    let motion = Seen {
+    let motion = DependentMotions {
         velocities: [carried, gamma],
         accelerations: [by_position, by_speed, by_u],
-        acceleration: (&lock * dynamic(&motion.value)).iter().copied().collect(),
+        acceleration: (&lock * dynamic_matrix(&motion.value)).iter().copied().collect(),
         parameters: place.parameters,
     };
-    Ok(Linear { coordinates, shape, speeds, a, b, by_q, mass, motion, is_holonomic })
+    Ok(LinearisedMotion { coordinates, shape, speeds, a, b, by_q, mass, motion, is_holonomic })
 }
 
 /// Returns the projector that locks the held coordinates' accelerations: `1 − P Lᵀ (L P Lᵀ)⁻¹ L`, where `P`
@@ -195,21 +196,21 @@ where
     /// [`Error::NotFinite`] if the mass matrix is singular; [`Error::NotSteady`] if the state violates a
     /// condition of this trim, with the condition that is violated most and its residual.
     pub fn linear_system(&self, found: &SteadyState<NQ, NV, NU>) -> Result<StateSpace, Error> {
-        let system = Self::system_of_linear_model(&linear(self, found)?)?;
+        let system = Self::system_of_linear_model(&linearise_about_steady_state(self, found)?)?;
         Ok(system.with_inputs(input_names::<M, NQ, NV, NU>())?.with_states_as_outputs())
     }
 
     fn system_of_linear_model(
-        Linear { coordinates, speeds, a, b, .. }: &Linear,
+        LinearisedMotion { coordinates, speeds, a, b, .. }: &LinearisedMotion,
     ) -> Result<StateSpace, Error> {
         let n = a.nrows();
         let system = StateSpace::new(a.clone(), b.clone(), DMatrix::identity(n, n), DMatrix::zeros(n, NU))?;
         system.with_states(state_names::<M, NQ, NV, NU>(coordinates.iter().copied(), speeds.iter().copied()))
     }
 
-    /// Computes [`linear_system`](Self::linear_system) with the declared outputs of the mechanism:
-    /// `y = C x + D δu`. The derivatives of the outputs include the changes of dependent positions,
-    /// velocities and accelerations that follow from constraints and held coordinates.
+    /// Returns the linearised motion as [`linear_system`](Self::linear_system) does, with the declared
+    /// outputs of the mechanism: `y = C x + D δu`. The derivatives of the outputs include the changes of
+    /// dependent positions, velocities and accelerations that follow from constraints and held coordinates.
     ///
     /// ```
     /// use linkwork::prelude::*;
@@ -247,21 +248,24 @@ where
     where
         M: OutputDerivatives<NQ, NV, NU, NY, Scalar = f64>,
     {
-        let linear = linear(self, found)?;
-        let Seen { velocities: [carried, gamma], accelerations: [by_position, by_speed, by_u], .. } =
-            &linear.motion;
+        let linear = linearise_about_steady_state(self, found)?;
+        let DependentMotions {
+            velocities: [carried, gamma],
+            accelerations: [by_position, by_speed, by_u],
+            ..
+        } = &linear.motion;
         let a = SVector::from_iterator(linear.motion.acceleration.iter().copied());
         let seen = self.with_mechanism(&linear.motion.parameters, |m| {
             m.output_derivatives(self.t, &found.q, &found.v, &a, &found.u)
         });
-        let [of_q, of_v, of_a] = [&seen.by_q, &seen.by_v, &seen.by_a].map(dynamic);
+        let [of_q, of_v, of_a] = [&seen.by_q, &seen.by_v, &seen.by_a].map(dynamic_matrix);
         let by_positions = &of_q * &linear.shape + &of_v * carried + &of_a * by_position;
         let by_speeds = &of_v * gamma + &of_a * by_speed;
         let np = by_positions.ncols();
         let c = DMatrix::from_fn(NY, np + by_speeds.ncols(), |i, j| {
             if j < np { by_positions[(i, j)] } else { by_speeds[(i, j - np)] }
         });
-        let d = dynamic(&seen.by_u) + of_a * by_u;
+        let d = dynamic_matrix(&seen.by_u) + of_a * by_u;
         let names = Self::system_of_linear_model(&linear)?;
         let system = StateSpace::new(linear.a, linear.b, c, d)?.with_states(names.states().to_vec())?;
         let outputs = signals_with_units(&M::OUTPUTS, &M::OUTPUT_UNITS);
@@ -310,7 +314,8 @@ where
             let what = "states of first order";
             return Err(Error::Count { what, expected: 0, found: M::FIRST_ORDER });
         }
-        let Linear { coordinates, speeds, a, b, mass, motion, .. } = linear(self, found)?;
+        let LinearisedMotion { coordinates, speeds, a, b, mass, motion, .. } =
+            linearise_about_steady_state(self, found)?;
         let (np, ns) = (coordinates.len(), speeds.len());
         let speed_name = |k: usize| M::VELOCITIES.get(k).copied().unwrap_or_default().to_owned();
         // For each independent velocity, the position of its coordinate among the independent ones, if

@@ -1,6 +1,6 @@
 //! Solution of the equations of a steady state by Levenberg–Marquardt steps on the tangent space.
 
-use super::problem::{Equations, Place, Problem, Unknown};
+use super::problem::{ConditionResiduals, SteadyProblem, TrimState, UnknownQuantity};
 use super::{SteadyState, Trim};
 use crate::Error;
 use linkwork::Derivatives;
@@ -27,18 +27,19 @@ const WITHOUT_INFLUENCE: f64 = 1e-8;
 /// Maximum step of a coordinate, rad or m: a larger step would leave the neighbourhood of the guess.
 const LONGEST: f64 = 1.0;
 
-/// Damping at which steps vanish and the iteration ends.
+/// Damping of Levenberg–Marquardt steps at which steps vanish and the iteration ends.
 const DAMPED: f64 = 1e20;
 
-/// Scales of conditions and unknowns: the largest norms of rows and columns during the iteration.
-struct Scales {
+/// Scales of conditions and unknowns of a steady state: the largest norms of rows and columns of the Jacobian
+/// during the iteration.
+struct EquationScales {
     rows: Vec<f64>,
     columns: Vec<f64>,
 }
 
-impl Scales {
-    fn update_scales(&mut self, equations: &Equations, sizes: &[f64]) {
-        let Equations { jacobian, floors, .. } = equations;
+impl EquationScales {
+    fn update_scales(&mut self, equations: &ConditionResiduals, sizes: &[f64]) {
+        let ConditionResiduals { jacobian, floors, .. } = equations;
         for ((scale, row), floor) in self.rows.iter_mut().zip(jacobian.row_iter()).zip(floors) {
             let norm = row.iter().zip(sizes).map(|(x, size)| (x * size).powi(2)).sum::<f64>().sqrt();
             *scale = scale.max(norm).max(*floor);
@@ -54,7 +55,7 @@ impl Scales {
         }
     }
 
-    /// Returns the factor that a condition is multiplied by.
+    /// Returns the weight by which the residual of a condition is multiplied.
     fn weight_of_condition(&self, row: usize) -> f64 {
         if self.rows[row] > 0.0 { 1.0 / self.rows[row] } else { 1.0 }
     }
@@ -88,10 +89,10 @@ fn damped_least_squares(a: &DMatrix<f64>, r: &DVector<f64>, mu: f64) -> Option<D
 }
 
 /// State, equations and iteration count at the end of the search for a steady state.
-struct Ended<const NQ: usize, const NV: usize, const NU: usize> {
-    place: Place<NQ, NV, NU>,
-    scales: Scales,
-    equations: Equations,
+struct SearchResult<const NQ: usize, const NV: usize, const NU: usize> {
+    place: TrimState<NQ, NV, NU>,
+    scales: EquationScales,
+    equations: ConditionResiduals,
     iterations: usize,
 }
 
@@ -101,29 +102,30 @@ pub fn find<M, const NQ: usize, const NV: usize, const NU: usize>(
 where
     M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
-    let problem = Problem::new(trim)?;
+    let problem = SteadyProblem::new(trim)?;
     let ended = descend_to_solution(&problem)?;
-    let Ended { place, scales, equations: Equations { residuals, jacobian, .. }, iterations } = &ended;
+    let SearchResult { place, scales, equations, iterations } = &ended;
+    let ConditionResiduals { residuals, jacobian, .. } = equations;
     let left = scales.weighted_residuals(residuals);
     let worst = left.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     if let Some((row, _)) = worst.filter(|(_, left)| left.abs() > LEFT) {
         return Err(Error::NoSteadyState {
-            condition: problem.conditions(place).swap_remove(row),
+            condition: problem.condition_names(place).swap_remove(row),
             residual: residuals[row],
             conditions: residuals.len(),
             unknowns: problem.unknowns.len(),
             place: named_unknowns(&problem, place),
         });
     }
-    let open = open_directions(&problem, &scales.scaled_jacobian(jacobian));
+    let open = undetermined_unknowns(&problem, &scales.scaled_jacobian(jacobian));
     if !trim.nearest && !open.is_empty() {
         return Err(Error::Undetermined { unknowns: open, place: named_unknowns(&problem, place) });
     }
-    let motion = problem.motion(place)?;
+    let motion = problem.accelerations_at(place)?;
     let multipliers = trim.constraints.map_or(Vec::new(), |(_, multipliers)| {
         trim.with_mechanism(&place.parameters, |m| multipliers(m, trim.t, &place.q, &place.v, &motion.tau))
     });
-    let Place { q, v, u, holding, parameters } = ended.place.clone();
+    let TrimState { q, v, u, holding, parameters } = ended.place.clone();
     let holding = problem.held.iter().map(|k| (M::VELOCITIES[*k].to_string(), holding[*k])).collect();
     let (acceleration, iterations) = (motion.value, *iterations);
     let residual = left.amax();
@@ -131,8 +133,8 @@ where
 }
 
 fn named_unknowns<M, const NQ: usize, const NV: usize, const NU: usize>(
-    problem: &Problem<'_, '_, M, NQ, NV, NU>,
-    place: &Place<NQ, NV, NU>,
+    problem: &SteadyProblem<'_, '_, M, NQ, NV, NU>,
+    place: &TrimState<NQ, NV, NU>,
 ) -> Vec<(String, f64)>
 where
     M: Derivatives<NQ, NV, NU, Scalar = f64>,
@@ -141,35 +143,35 @@ where
         M::CONFIGURATION.iter().zip(place.q.iter()).map(|(name, x)| (name.to_string(), *x)).collect();
     for unknown in &problem.unknowns {
         let value = match *unknown {
-            Unknown::Coordinate(_) => continue,
-            Unknown::Speed(k) => place.v[k],
-            Unknown::Input(k) => place.u[k],
-            Unknown::Holding(k) => place.holding[k],
-            Unknown::Parameter(k) => place.parameters[k],
+            UnknownQuantity::Coordinate(_) => continue,
+            UnknownQuantity::Speed(k) => place.v[k],
+            UnknownQuantity::Input(k) => place.u[k],
+            UnknownQuantity::Holding(k) => place.holding[k],
+            UnknownQuantity::Parameter(k) => place.parameters[k],
         };
-        all.push((problem.name(*unknown), value));
+        all.push((problem.name_of_unknown(*unknown), value));
     }
     all
 }
 
 fn descend_to_solution<M, const NQ: usize, const NV: usize, const NU: usize>(
-    problem: &Problem<'_, '_, M, NQ, NV, NU>,
-) -> Result<Ended<NQ, NV, NU>, Error>
+    problem: &SteadyProblem<'_, '_, M, NQ, NV, NU>,
+) -> Result<SearchResult<NQ, NV, NU>, Error>
 where
     M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
-    let mut place = problem.start();
-    let mut equations = problem.equations(&place)?;
+    let mut place = problem.initial_state();
+    let mut equations = problem.condition_residuals(&place)?;
     let is_finite = equations.residuals.iter().chain(equations.jacobian.iter()).all(|x| x.is_finite());
     if !is_finite {
         return Err(Error::NotFinite { what: "the motion at the guess" });
     }
     let (rows, columns) = equations.jacobian.shape();
-    let mut scales = Scales { rows: vec![0.0; rows], columns: vec![0.0; columns] };
+    let mut scales = EquationScales { rows: vec![0.0; rows], columns: vec![0.0; columns] };
     let (mut mu, mut iterations) = (1e-4, 0);
     while iterations < problem.trim.iterations && mu < DAMPED {
         iterations += 1;
-        let sizes: Vec<f64> = problem.unknowns.iter().map(|u| problem.size(&place, *u)).collect();
+        let sizes: Vec<f64> = problem.unknowns.iter().map(|u| problem.size_of_unknown(&place, *u)).collect();
         scales.update_scales(&equations, &sizes);
         let (a, r) =
             (scales.scaled_jacobian(&equations.jacobian), scales.weighted_residuals(&equations.residuals));
@@ -180,15 +182,15 @@ where
             break;
         }
         let longest = problem.unknowns.iter().zip(change.iter());
-        let longest = longest.filter(|(u, _)| matches!(u, Unknown::Coordinate(_)));
+        let longest = longest.filter(|(u, _)| matches!(u, UnknownQuantity::Coordinate(_)));
         let longest = longest.map(|(_, x)| x.abs()).fold(0.0, f64::max);
         let part = if longest > LONGEST { LONGEST / longest } else { 1.0 };
         change *= part;
-        let next = problem.displace(&place, &change);
+        let next = problem.displace_state(&place, &change);
         // If friction jams or a value is not finite, the step was too long.
-        let trial = problem.equations(&next).ok();
+        let trial = problem.condition_residuals(&next).ok();
         let weighted_squared_residual =
-            |trial: &Equations| scales.weighted_residuals(&trial.residuals).norm_squared();
+            |trial: &ConditionResiduals| scales.weighted_residuals(&trial.residuals).norm_squared();
         let better = trial
             .map(|trial| (r.norm_squared() - weighted_squared_residual(&trial), trial))
             .filter(|(gained, _)| *gained > 0.0);
@@ -204,44 +206,46 @@ where
             mu *= 4.0;
         }
     }
-    let sizes: Vec<f64> = problem.unknowns.iter().map(|u| problem.size(&place, *u)).collect();
+    let sizes: Vec<f64> = problem.unknowns.iter().map(|u| problem.size_of_unknown(&place, *u)).collect();
     scales.update_scales(&equations, &sizes);
-    Ok(Ended { place, scales, equations, iterations })
+    Ok(SearchResult { place, scales, equations, iterations })
 }
 
-/// Reports a state that violates a condition, with the condition that is violated most.
+/// Returns an error for a state that violates a condition, with the name of the condition that is violated
+/// most.
 pub fn check_steady<M, const NQ: usize, const NV: usize, const NU: usize>(
-    problem: &Problem<'_, '_, M, NQ, NV, NU>,
-    place: &Place<NQ, NV, NU>,
+    problem: &SteadyProblem<'_, '_, M, NQ, NV, NU>,
+    place: &TrimState<NQ, NV, NU>,
 ) -> Result<(), Error>
 where
     M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
-    let equations = problem.equations(place)?;
+    let equations = problem.condition_residuals(place)?;
     let (rows, columns) = equations.jacobian.shape();
-    let mut scales = Scales { rows: vec![0.0; rows], columns: vec![0.0; columns] };
-    let sizes: Vec<f64> = problem.unknowns.iter().map(|unknown| problem.size(place, *unknown)).collect();
+    let mut scales = EquationScales { rows: vec![0.0; rows], columns: vec![0.0; columns] };
+    let sizes: Vec<f64> =
+        problem.unknowns.iter().map(|unknown| problem.size_of_unknown(place, *unknown)).collect();
     scales.update_scales(&equations, &sizes);
     let left = scales.weighted_residuals(&equations.residuals);
     let worst = left.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     match worst.filter(|(_, left)| left.abs() > STEADY || left.is_nan()) {
         None => Ok(()),
         Some((row, _)) => Err(Error::NotSteady {
-            what: problem.conditions(place).swap_remove(row),
+            what: problem.condition_names(place).swap_remove(row),
             rate: equations.residuals[row],
         }),
     }
 }
 
 /// Returns the names of the unknowns that can change together while all conditions remain satisfied.
-fn open_directions<M, const NQ: usize, const NV: usize, const NU: usize>(
-    problem: &Problem<'_, '_, M, NQ, NV, NU>,
+fn undetermined_unknowns<M, const NQ: usize, const NV: usize, const NU: usize>(
+    problem: &SteadyProblem<'_, '_, M, NQ, NV, NU>,
     scaled: &DMatrix<f64>,
 ) -> Vec<String>
 where
     M: Derivatives<NQ, NV, NU, Scalar = f64>,
 {
-    /// Components of a unit direction above this count as significant.
+    /// Fraction of a unit direction above which its component along an unknown is significant.
     const PART: f64 = 0.1;
     let (rows, columns) = scaled.shape();
     // Without unknowns, no direction is undetermined.
@@ -255,5 +259,5 @@ where
     let is_singular_direction = |k: &usize| svd.singular_values[*k] <= SINGULAR;
     let takes_part =
         |j: &usize| (0..columns).filter(is_singular_direction).any(|k| directions[(k, *j)].abs() > PART);
-    (0..columns).filter(takes_part).map(|j| problem.name(problem.unknowns[j])).collect()
+    (0..columns).filter(takes_part).map(|j| problem.name_of_unknown(problem.unknowns[j])).collect()
 }

@@ -1,16 +1,16 @@
 //! Stability of equilibria by the energy criterion.
 
-use super::linear::{Linear, linear};
+use super::linear::{LinearisedMotion, linearise_about_steady_state};
 use super::{SteadyState, Trim};
 use crate::Error;
 use crate::matrices::symmetric_part;
 use linkwork::Derivatives;
 use nalgebra::DMatrix;
 
-/// Curvatures below this fraction of the largest count as zero.
+/// Fraction of the largest curvature of the potential below which a curvature counts as zero.
 const FLAT: f64 = 1e-9;
 
-/// Skew-symmetric parts above this fraction of the stiffness are not rounding error.
+/// Fraction of the stiffness above which its skew-symmetric part is not rounding error.
 const SKEW: f64 = 1e-7;
 
 /// Stiffness about an equilibrium: the Hessian of the potential on the constraint manifold, in independent
@@ -23,10 +23,10 @@ pub struct Stiffness {
     /// Names of the independent coordinates, which are the names of their velocities.
     pub coordinates: Vec<&'static str>,
     /// Stationary values of `xᵀ K x / xᵀ M x`, 1/s², in ascending order: squares of the undamped natural
-    /// frequencies.
+    /// frequencies, with stiffness `K` and mass matrix `M`.
     pub curvatures: Vec<f64>,
-    /// Ratio of the largest entry of the skew-symmetric part of `K` to the largest entry of `K`. Rounding
-    /// error if the forces have a potential.
+    /// Ratio of the largest entry of the skew-symmetric part of the stiffness `K` to the largest entry of
+    /// `K`. It is rounding error if the forces have a potential.
     pub asymmetry: f64,
 }
 
@@ -34,20 +34,22 @@ pub struct Stiffness {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Verdict {
-    /// The potential has a strict minimum: the equilibrium is stable, and dissipation does not change that.
+    /// The potential has a strict minimum, so that the equilibrium is stable, and dissipation does not change
+    /// that.
     Stable,
-    /// The potential decreases in some direction: unstable without gyroscopic forces, and with complete
-    /// dissipation for any gyroscopic forces (Kelvin and Chetaev).
+    /// The potential decreases in some direction, so that the equilibrium is unstable without gyroscopic
+    /// forces, and with complete dissipation for any gyroscopic forces (Kelvin and Chetaev).
     Unstable,
-    /// The potential is flat in some direction: terms of higher order decide.
+    /// The potential is constant to second order in some direction, so that terms of higher order decide on
+    /// stability.
     Undecided,
-    /// The forces have no potential: the [modes](Trim::linear_system) decide.
+    /// The forces have no potential, so that the [modes](Trim::linear_system) decide on stability.
     NotConservative,
 }
 
 impl Stiffness {
-    /// Returns the verdict on stability. It requires that velocity-dependent forces dissipate energy or do no
-    /// work (Merkin, *Introduction to the Theory of Stability*, 1997, ch. 3 and 6).
+    /// Returns the stability of the equilibrium. It requires that velocity-dependent forces dissipate energy
+    /// or do no work (Merkin, *Introduction to the Theory of Stability*, 1997, ch. 3 and 6).
     pub fn verdict(&self) -> Verdict {
         let most = self.curvatures.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let least = self.curvatures.first().copied().unwrap_or(f64::INFINITY);
@@ -78,7 +80,8 @@ where
     /// order. In these cases, [`linear_system`](Trim::linear_system) decides on stability.
     /// [`Error::Indefinite`] if the mass matrix is not positive definite.
     pub fn stiffness(&self, found: &SteadyState<NQ, NV, NU>) -> Result<Stiffness, Error> {
-        let Linear { coordinates, shape, by_q, mass, is_holonomic, .. } = linear(self, found)?;
+        let LinearisedMotion { coordinates, shape, by_q, mass, is_holonomic, .. } =
+            linearise_about_steady_state(self, found)?;
         if found.v.amax() > 0.0 {
             return Err(Error::NoPotential { why: "the mechanism moves" });
         }
@@ -105,7 +108,7 @@ where
     }
 }
 
-/// Returns the eigenvalues of `L⁻¹ K L⁻ᵀ` in ascending order.
+/// Returns the eigenvalues of `L⁻¹ K L⁻ᵀ` in ascending order, for a lower triangular matrix `L`.
 fn relative_eigenvalues(lower: &DMatrix<f64>, matrix: &DMatrix<f64>) -> Result<Vec<f64>, Error> {
     let singular = Error::Indefinite { matrix: "M" };
     let half = lower.solve_lower_triangular(&symmetric_part(matrix)).ok_or(singular.clone())?;

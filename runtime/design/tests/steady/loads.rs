@@ -7,9 +7,10 @@ use linkwork_design::steady::{Verdict, constrained_equilibrium, equilibrium};
 use nalgebra::{DMatrix, DVector, Isometry3, Point3, UnitQuaternion, Vector3, vector};
 use std::f64::consts::PI;
 
-/// Two links with springs in their hinges under a vertical load: a discrete model of Euler's column.
+/// Test mechanism: two links with springs in their hinges under a vertical load, a discrete model of Euler's
+/// column.
 #[mechanism(derivatives)]
-struct Column {
+struct EulerColumn {
     load: f64,
     #[body(mass = 0.1, com = 0.25 * y, inertia = rod(0.1, 0.5, y))]
     lower: Body,
@@ -30,10 +31,10 @@ struct Column {
 /// Compares with the critical load `(3 − √5) / 2 · k / l` of links of length `l` and springs of stiffness
 /// `k`.
 #[test]
-fn a_column_buckles_at_eulers_load() {
+fn column_buckles_at_critical_load() {
     let critical = (3.0 - 5.0_f64.sqrt()) / 2.0 * 20.0 / 0.5;
     for (part, verdict) in [(0.999, Verdict::Stable), (1.001, Verdict::Unstable)] {
-        let column = Column { load: part * critical };
+        let column = EulerColumn { load: part * critical };
         let problem = equilibrium(&column);
         let upright = problem.find().unwrap();
         assert!(upright.q.amax() < 1e-15);
@@ -43,11 +44,11 @@ fn a_column_buckles_at_eulers_load() {
         assert_eq!(fastest > 1e-3, verdict == Verdict::Unstable, "{stable:?}");
     }
     // At the critical load the equations are singular, and the error lists both hinges.
-    let column = Column { load: critical };
+    let column = EulerColumn { load: critical };
     let Err(Error::Undetermined { unknowns, .. }) = equilibrium(&column).find() else { panic!("singular") };
     assert_eq!(unknowns, ["foot", "knee"]);
     // Above the critical load the column is bent, to either side.
-    let column = Column { load: 1.2 * critical };
+    let column = EulerColumn { load: 1.2 * critical };
     let mut problem = equilibrium(&column);
     let bent = problem.find_all([vector![0.5, 0.5], vector![-0.5, -0.5], vector![0.01, -0.01]]).unwrap();
     for found in &bent[..2] {
@@ -62,14 +63,14 @@ fn a_column_buckles_at_eulers_load() {
     // Which load bends the foot by 0.01 rad? It exceeds the critical load by a term of the order of the
     // angle squared.
     let found = equilibrium(&column).from(vector![0.01, 0.006]).fix(["foot"]);
-    let found = found.parameters([("load", 10.0)], |p| Column { load: p[0] }).find().unwrap();
+    let found = found.parameters([("load", 10.0)], |p| EulerColumn { load: p[0] }).find().unwrap();
     let more = found.parameters[0] / critical - 1.0;
     assert!(more > 0.0 && more < 1e-4, "{more}");
 }
 
 /// Test mechanism: a table on three legs that carries a load.
 #[mechanism(gravity = -9.81 * z, derivatives)]
-struct Table {
+struct ThreeLeggedTable {
     px: f64,
     py: f64,
     #[body(mass = 12, inertia = cuboid(12, 1.6, 1, 0.04))]
@@ -87,8 +88,8 @@ struct Table {
 }
 
 #[test]
-fn three_legs_share_what_stands_on_a_table() {
-    let table = Table { px: 0.2, py: -0.1 };
+fn table_legs_share_the_load() {
+    let table = ThreeLeggedTable { px: 0.2, py: -0.1 };
     let problem = constrained_equilibrium(&table).fix(["pose.vx", "pose.vy", "pose.wz"]);
     let found = problem.find().unwrap();
     assert!((found.q[2] - 0.7).abs() < 1e-12);
@@ -110,9 +111,9 @@ fn three_legs_share_what_stands_on_a_table() {
     assert!((nearest.q[2] - 0.7).abs() < 1e-12 && nearest.q[0] > 2.0);
 }
 
-/// Platform on six legs, whose lengths are controlled by forces.
+/// Test mechanism: platform on six legs, whose lengths are controlled by forces.
 #[mechanism(gravity = -9.81 * z, derivatives)]
-struct Platform {
+struct HexapodPlatform {
     #[body(mass = 30, com = 0.05 * x + 0.1 * z, inertia = diagonal(1.5, 1.5, 2.5))]
     platform: Body,
     #[joint(ground -> platform)]
@@ -134,13 +135,13 @@ struct Platform {
 /// Compares with the statics of the legs: each leg transmits part of its weight to the platform perpendicular
 /// to its axis, and each drive balances the axial force at the head and the axial weight of the upper half.
 #[test]
-fn six_legs_hold_a_platform() {
+fn six_legs_support_a_platform() {
     let pose = Isometry3::from_parts(
         Vector3::new(0.1, -0.05, 0.9).into(),
         UnitQuaternion::from_euler_angles(0.15, -0.2, 0.3),
     );
     let weight_of_mass = |mass: f64| Vector3::new(0.0, 0.0, -9.81 * mass);
-    let platform = Platform {};
+    let platform = HexapodPlatform {};
     let mut q = platform.neutral();
     q.fixed_rows_mut::<3>(0).copy_from(&pose.translation.vector);
     q.fixed_rows_mut::<4>(3).copy_from(&pose.rotation.coords);
@@ -172,7 +173,8 @@ fn six_legs_hold_a_platform() {
     }
     let along = axial.lu().solve(&-load).unwrap();
     // The guess differs slightly from the solution.
-    let coordinate_index = |name: &str| Platform::CONFIGURATION.iter().position(|n| *n == name).unwrap();
+    let coordinate_index =
+        |name: &str| HexapodPlatform::CONFIGURATION.iter().position(|n| *n == name).unwrap();
     for (k, (n, length, _)) in legs.iter().enumerate() {
         q[coordinate_index(&format!("foot_{k}.first"))] = (-n.y).atan2(n.z) + 0.02;
         q[coordinate_index(&format!("foot_{k}.second"))] = n.x.asin() - 0.03;

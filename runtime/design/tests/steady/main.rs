@@ -16,7 +16,7 @@ fn assert_relatively_close(found: f64, expected: f64, relative: f64) {
     );
 }
 
-/// Finds a root between two points by bisection.
+/// Finds a root of a function between two points by bisection.
 fn root_by_bisection(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let side = f(low) > 0.0;
     for _ in 0..200 {
@@ -26,9 +26,9 @@ fn root_by_bisection(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64
     0.5 * (low + high)
 }
 
-/// Chain of six links between two pins at the same height.
+/// Test mechanism: chain of six links between two pins at the same height.
 #[mechanism(gravity = -9.81 * y, derivatives)]
-struct Chain {
+struct HangingChain {
     span: f64,
     #[body(mass = 0.3, com = 0.1 * x, inertia = rod(0.3, 0.2, x))]
     link: [Body; 6],
@@ -44,8 +44,8 @@ struct Chain {
 /// `tan φₖ = (k − 5/2) w / H`, where `w` is the weight of a link. The horizontal force `H` is such that the
 /// chain spans the distance of the pins.
 #[test]
-fn a_chain_hangs_in_its_catenary() {
-    let (chain, weight) = (Chain { span: 0.9 }, 0.3 * 9.81);
+fn chain_hangs_in_catenary() {
+    let (chain, weight) = (HangingChain { span: 0.9 }, 0.3 * 9.81);
     let slope_of_link = |pull: f64, k: usize| ((k as f64 - 2.5) * weight / pull).atan();
     let excess_reach = |pull: f64| (0..6).map(|k| 0.2 * slope_of_link(pull, k).cos()).sum::<f64>() - 0.9;
     let pull = root_by_bisection(excess_reach, 0.1, 100.0);
@@ -73,9 +73,9 @@ fn a_chain_hangs_in_its_catenary() {
     assert_eq!(arch.stiffness(&standing).unwrap().verdict(), Verdict::Unstable);
 }
 
-/// Watt's governor: two balls on arms that hang from a rotating shaft.
+/// Test mechanism: Watt's governor, two balls on arms that hang from a rotating shaft.
 #[mechanism(gravity = -9.81 * z, derivatives)]
-struct Governor {
+struct WattGovernor {
     #[body(mass = 1, inertia = diagonal(0.1, 0.1, 0.1))]
     shaft: Body,
     #[body]
@@ -95,23 +95,23 @@ struct Governor {
 }
 
 #[test]
-fn a_governor_opens_with_its_speed() {
+fn governor_arms_rise_with_speed() {
     let speed = 7.0_f64;
     let lifted = (9.81 / (speed * speed * 0.4)).acos();
-    let problem = equilibrium(&Governor {}).fix(["turn"]).moving(vector![speed, 0.0, 0.0]);
+    let problem = equilibrium(&WattGovernor {}).fix(["turn"]).moving(vector![speed, 0.0, 0.0]);
     let found = problem.from(vector![0.0, -0.8, -0.8]).find().unwrap();
     assert_relatively_close(found.q[1], -lifted, 1e-12);
     assert_relatively_close(found.q[2], -lifted, 1e-12);
     // Inverse problem: at which speed are the arms raised by one radian?
-    let problem = equilibrium(&Governor {}).from(vector![0.0, 1.0, 1.0]).coordinates([] as [&str; 0]);
+    let problem = equilibrium(&WattGovernor {}).from(vector![0.0, 1.0, 1.0]).coordinates([] as [&str; 0]);
     let problem = problem.moving(vector![5.0, 0.0, 0.0]).speeds(["turn"]);
     assert_relatively_close(problem.find().unwrap().v[0], (9.81 / (0.4 * 1.0_f64.cos())).sqrt(), 1e-12);
     assert!(matches!(problem.stiffness(&problem.find().unwrap()), Err(Error::NoPotential { .. })));
 }
 
-/// Bead on a hoop that rotates at constant speed.
+/// Test mechanism: bead on a hoop that rotates at constant speed.
 #[mechanism(gravity = -9.81 * z, derivatives)]
-struct Hoop {
+struct RotatingHoop {
     spin: f64,
     theta: Coordinate,
     #[frame(ground, z(spin * t))]
@@ -121,8 +121,8 @@ struct Hoop {
 }
 
 #[test]
-fn a_bead_on_a_hoop_has_four_equilibria() {
-    let hoop = Hoop { spin: 6.0 };
+fn bead_on_hoop_has_four_equilibria() {
+    let hoop = RotatingHoop { spin: 6.0 };
     let lifted = (9.81 / (36.0 * 0.5_f64)).acos();
     let guesses = [-3.0, -2.5, -1.2, -0.3, 0.1, 0.2, 0.9, 1.1, 3.1].map(|x| vector![x]);
     let mut problem = equilibrium(&hoop);
@@ -146,7 +146,7 @@ fn a_bead_on_a_hoop_has_four_equilibria() {
 
 /// Test mechanism: a spinning top in massless gimbals.
 #[mechanism(gravity = -9.81 * z, derivatives)]
-struct Top {
+struct GimballedTop {
     #[body]
     turned: Body,
     #[body]
@@ -163,11 +163,11 @@ struct Top {
     axial_rate: Scalar,
 }
 
-/// Compares with `A Ω² cos θ − C n Ω + m g h = 0`, which has a slow and a fast solution. Nutations about them
-/// have `ω² = Ω² − 2 κ cos θ + κ² / Ω²` with `κ = m g h / A` (Goldstein, Poole and Safko, *Classical
-/// Mechanics*, 2002, § 5.7; Routh, *Advanced Rigid Dynamics*, 1905, § 207).
+/// Compares the steady precessions with the roots of `A Ω² cos θ − C n Ω + m g h = 0`, a slow and a fast one.
+/// Nutations about them have `ω² = Ω² − 2 κ cos θ + κ² / Ω²` with `κ = m g h / A` (Goldstein, Poole and
+/// Safko, *Classical Mechanics*, 2002, § 5.7; Routh, *Advanced Rigid Dynamics*, 1905, § 207).
 #[test]
-fn a_top_precesses_slowly_or_fast() {
+fn top_precesses_slowly_or_fast() {
     let (theta, n) = (0.5_f64, 150.0_f64);
     let (a, c, moment) = (1.8e-4 + 0.3 * 0.05 * 0.05, 2.4e-4, 0.3 * 9.81 * 0.05);
     let discriminant = ((c * n).powi(2) - 4.0 * a * theta.cos() * moment).sqrt();
@@ -175,7 +175,7 @@ fn a_top_precesses_slowly_or_fast() {
         (1.0, 2.0 * moment / (c * n + discriminant)),
         (100.0, (c * n + discriminant) / (2.0 * a * theta.cos())),
     ] {
-        let problem = equilibrium(&Top {})
+        let problem = equilibrium(&GimballedTop {})
             .from(vector![0.0, theta, 0.0])
             .coordinates([] as [&str; 0])
             .moving(vector![guess, 0.0, n])
@@ -190,7 +190,7 @@ fn a_top_precesses_slowly_or_fast() {
         assert_relatively_close(modes.last().unwrap().frequency(), expected, 1e-6);
     }
     // A top that spins too slowly cannot precess at this inclination.
-    let slow = equilibrium(&Top {})
+    let slow = equilibrium(&GimballedTop {})
         .from(vector![0.0, theta, 0.0])
         .coordinates([] as [&str; 0])
         .moving(vector![10.0, 0.0, 50.0])
@@ -201,7 +201,7 @@ fn a_top_precesses_slowly_or_fast() {
     assert_eq!(condition, "nutation''");
 }
 
-/// Cart on a rail with an inverted pendulum.
+/// Test mechanism: cart on a rail with an inverted pendulum.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct CartPole {
     #[body(mass = 2)]
@@ -217,7 +217,7 @@ struct CartPole {
 }
 
 #[test]
-fn what_is_wrong_is_named() {
+fn errors_name_the_wrong_entry() {
     let cart = CartPole {};
     // The position of the cart is not determined.
     let error = equilibrium(&cart).find().unwrap_err();
@@ -255,9 +255,9 @@ fn what_is_wrong_is_named() {
     assert!(matches!(error, Error::NotFinite { .. }), "{error}");
 }
 
-/// Aircraft with lift, drag and pitching moment; aileron and rudder are torques.
+/// Test mechanism: aircraft with lift, drag and pitching moment; aileron and rudder are torques.
 #[mechanism(gravity = 9.81 * z, derivatives)]
-struct Aircraft {
+struct TrimmedAircraft {
     elevator: Input,
     aileron: Input,
     rudder: Input,
@@ -305,15 +305,15 @@ struct Aircraft {
 /// Checks straight climbing and level turning flight: forces along and perpendicular to the path, and
 /// `tan φ = V Ω / g`.
 #[test]
-fn an_aircraft_climbs_and_turns() {
-    let aircraft = Aircraft {};
+fn aircraft_climbs_and_turns() {
+    let aircraft = TrimmedAircraft {};
     let (speed, mass, g) = (50.0, 1050.0, 9.81);
     for (climb, rate) in [(0.0, 0.0), (4.0, 0.0), (0.0, 0.15), (-2.0, 0.1)] {
         let problem = equilibrium(&aircraft)
             .coordinates(["flight.wx", "flight.wy"])
             .moving(vector![speed, 0.0, 0.0, 0.0, 0.0, 0.0])
-            .speeds(Aircraft::VELOCITIES)
-            .inputs(Aircraft::INPUTS)
+            .speeds(TrimmedAircraft::VELOCITIES)
+            .inputs(TrimmedAircraft::INPUTS)
             .output("airspeed", speed)
             .output("slip", 0.0)
             .output("climb", climb)
@@ -326,7 +326,7 @@ fn an_aircraft_climbs_and_turns() {
         let pressure = 1.225 / 2.0 * 16.2 * speed * speed;
         let cl = 0.3 + 4.6 * alpha;
         let drag = pressure * (0.03 + 0.05 * cl * cl);
-        let thrust = found.u[Aircraft::INPUTS.iter().position(|n| *n == "thrust").unwrap()];
+        let thrust = found.u[TrimmedAircraft::INPUTS.iter().position(|n| *n == "thrust").unwrap()];
         let slope = (climb / speed).asin();
         assert_relatively_close(thrust * alpha.cos(), drag + mass * g * slope.sin(), 1e-9);
         // Perpendicular to the path: the weight and the centripetal force.
@@ -350,9 +350,9 @@ fn an_aircraft_climbs_and_turns() {
 /// Checks that a pendulum of a constrained particle and a pendulum on a pin have the same outputs under a
 /// horizontal force.
 #[test]
-fn outputs_under_constraints_are_those_of_independent_coordinates() {
+fn constrained_outputs_match_independent_ones() {
     #[mechanism(gravity = -9.81 * y, derivatives)]
-    struct Held {
+    struct ConstrainedPendulum {
         px: Coordinate,
         py: Coordinate,
         #[particle(mass = 2, at = px * x + py * y)]
@@ -373,7 +373,7 @@ fn outputs_under_constraints_are_those_of_independent_coordinates() {
         mixed: Scalar,
     }
     #[mechanism(gravity = -9.81 * y, derivatives)]
-    struct Pinned {
+    struct PinnedPendulum {
         #[body(mass = 0, inertia = 0)]
         arm: Body,
         #[joint(ground -> arm, about = z)]
@@ -394,8 +394,8 @@ fn outputs_under_constraints_are_those_of_independent_coordinates() {
         mixed: Scalar,
     }
     let push = vector![12.0];
-    let held = constrained_equilibrium(&Held {}).with_inputs(push).from(vector![0.8, -1.2]);
-    let pinned = equilibrium(&Pinned {}).with_inputs(push).from(vector![0.5]);
+    let held = constrained_equilibrium(&ConstrainedPendulum {}).with_inputs(push).from(vector![0.8, -1.2]);
+    let pinned = equilibrium(&PinnedPendulum {}).with_inputs(push).from(vector![0.5]);
     let held = held.measured_system(&held.find().unwrap()).unwrap();
     let pinned = pinned.measured_system(&pinned.find().unwrap()).unwrap();
     assert_eq!(held.outputs().len(), 10);

@@ -11,13 +11,13 @@ use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// A robot with its texts as C reads them.
+/// Loaded robot, with its names and documentation as C strings.
 pub struct LwRobot {
     robot: Robot,
     functions: Vec<Function>,
     /// Names of arguments and results, and documentation, of each function.
     signatures: Vec<Signature>,
-    /// Names and units of the lists of the header.
+    /// Names and units of the lists that the C header declares, such as coordinates and inputs.
     lists: [Vec<(CString, CString)>; 6],
     name: CString,
 }
@@ -32,7 +32,7 @@ struct Signature {
 const FUNCTIONS: usize = 5;
 
 enum Failure {
-    /// A null pointer, or a text that is not UTF-8.
+    /// Failure: a null pointer, or a text that is not UTF-8.
     Null,
     /// Failure: an index for which no entry exists.
     Index(usize),
@@ -78,7 +78,8 @@ fn c_text(text: &str) -> CString {
     CString::new(text.split('\0').next().unwrap_or_default()).unwrap_or_default()
 }
 
-/// Runs a function; keeps the message of its failure and returns its code. No panic passes.
+/// Runs a function, stores the message of its failure and returns its error code. No panic leaves the C
+/// interface.
 fn run_guarded(run: impl FnOnce() -> Result<(), Failure>) -> c_int {
     let internal_error = |_| Err(Failure::Linkwork(Error::Internal("a panic".to_string())));
     match catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(internal_error) {
@@ -438,7 +439,7 @@ pub unsafe extern "C" fn lw_call_many(
     })
 }
 
-/// Settings of a simulation, as the header has them.
+/// Settings of a simulation, in the layout that the C header declares.
 #[repr(C)]
 pub struct LwSimulation {
     start: f64,

@@ -1,11 +1,11 @@
-//! Pointers of callers. The only module that reads and writes through them.
+//! Access to the pointers that C programs pass. This is the only module that reads and writes through them.
 
 #![allow(unsafe_code, reason = "pointers of callers in C")]
 
 use crate::Failure;
 use std::ffi::{CStr, c_char, c_int, c_void};
 
-/// Returns the value behind a pointer.
+/// Returns a reference to the value behind a pointer of the caller, or a failure for a null pointer.
 ///
 /// # Safety
 ///
@@ -15,7 +15,7 @@ pub unsafe fn shared<'a, T>(pointer: *const T) -> Result<&'a T, Failure> {
     unsafe { pointer.as_ref() }.ok_or(Failure::Null)
 }
 
-/// Returns the value behind a pointer for a change.
+/// Returns a mutable reference to the value behind a pointer of the caller, or a failure for a null pointer.
 ///
 /// # Safety
 ///
@@ -25,7 +25,8 @@ pub unsafe fn unique<'a, T>(pointer: *mut T) -> Result<&'a mut T, Failure> {
     unsafe { pointer.as_mut() }.ok_or(Failure::Null)
 }
 
-/// Returns a text.
+/// Returns the text behind a pointer of the caller, or a failure for a null pointer or text that is not
+/// UTF-8.
 ///
 /// # Safety
 ///
@@ -38,7 +39,7 @@ pub unsafe fn text<'a>(pointer: *const c_char) -> Result<&'a str, Failure> {
     unsafe { CStr::from_ptr(pointer) }.to_str().map_err(|_| Failure::Null)
 }
 
-/// Returns an array; an empty one may be null.
+/// Returns the array behind a pointer of the caller. The pointer of an empty array may be null.
 ///
 /// # Safety
 ///
@@ -52,7 +53,8 @@ pub unsafe fn array<'a, T>(pointer: *const T, length: usize) -> Result<&'a [T], 
     }
 }
 
-/// Returns an array to be written; an empty one may be null.
+/// Returns the array behind a pointer of the caller, to be written. The pointer of an empty array may be
+/// null.
 ///
 /// # Safety
 ///
@@ -78,11 +80,11 @@ pub unsafe fn free<T>(pointer: *mut T) {
     }
 }
 
-/// C function of the caller that computes the inputs from time and state.
+/// C function of the calling program that computes the inputs from time and state.
 pub type Control =
     unsafe extern "C" fn(user: *mut c_void, t: f64, q: *const f64, v: *const f64, u: *mut f64) -> c_int;
 
-/// Controller of the caller with its own data.
+/// Controller of the calling program: a C function with a pointer to its own data.
 pub struct Controller {
     pub control: Control,
     pub user: *mut c_void,
@@ -94,7 +96,7 @@ unsafe impl Send for Controller {}
 unsafe impl Sync for Controller {}
 
 impl Controller {
-    /// Calls the controller of the caller, which writes the inputs `u`.
+    /// Calls the controller of the calling program, which writes the inputs `u`.
     pub fn call(&self, t: f64, q: &[f64], v: &[f64], u: &mut [f64]) -> Result<(), String> {
         // SAFETY: the function and its data are those of the caller, and the slices have the lengths that the
         // header says.

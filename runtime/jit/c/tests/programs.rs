@@ -1,4 +1,4 @@
-//! Programs in C and C++, compiled and run with the library.
+//! Test programs in C and C++, compiled and run with the library.
 
 use std::path::Path;
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! Programs as steps on registers and memory, from which machine code is generated.
+//! Translation of programs to steps on registers and memory, from which machine code is generated.
 //!
 //! There are few registers and many values. Instructions come in an order with few live values. If there is
 //! no register for a value, the one whose next use is last goes to memory (Belady 1966), from where
@@ -9,54 +9,55 @@ use linkwork_compiler::expr::{Function, Symbol};
 use linkwork_compiler::lower::{Angles, Op, Operand, Program};
 use std::collections::HashMap;
 
-/// Maximum distance between two uses of a value in memory for which it is loaded into a register.
+/// Maximum distance, in instructions, to the next use of a value in memory for which it is loaded into a
+/// register.
 const SOON: usize = 12;
 /// Number of angles whose sines and cosines are computed together.
 pub const TOGETHER: usize = 8;
 
-/// A number in memory.
+/// Location of a number in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Memory {
-    /// An entry of an input.
+    /// Entry of an input: the index of the input, and the index of the entry in it.
     Input(usize, usize),
-    /// A constant.
+    /// Constant with this index.
     Constant(usize),
-    /// An entry of the angles, followed by their sines, then their cosines.
+    /// Entry of the array of angles, which are followed by their sines, then their cosines.
     Angle(usize),
-    /// An output.
+    /// Output with this index.
     Output(usize),
-    /// An entry of the work space.
+    /// Entry of the workspace with this index.
     Work(usize),
 }
 
-/// A number in a register or in memory.
+/// Location of a number, in a register or in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// A register, counted from zero.
+    /// Register with this index, counted from zero.
     Register(u8),
-    /// Memory.
+    /// Location in memory.
     Memory(Memory),
 }
 
-/// A step of machine code.
+/// Step of machine code on registers and memory.
 #[derive(Clone, Copy, Debug)]
 pub enum Step {
-    /// Loads a number into a register.
+    /// Loads a number from memory into a register.
     Load(u8, Memory),
-    /// Stores a register.
+    /// Stores a register to memory.
     Store(u8, Memory),
     /// Copies a number from memory to memory.
     Copy(Memory, Memory),
     /// Copies a constant to consecutive outputs: the constant, the first output, and their number.
     Fill(usize, usize, usize),
-    /// An operation on places, whose result is in a register, which may be that of an operand. No other
-    /// register has a value if the operation is a call.
+    /// Performs an operation on the numbers at these locations. Its result is in a register, which may be
+    /// that of an operand. No other register has a value if the operation is a call.
     Operation(Op, u8, [Place; 3]),
-    /// Computes sines and cosines of the angles.
+    /// Computes the sines and cosines of all angles.
     Sines,
 }
 
-/// Whether an operation calls a function.
+/// Whether machine code calls a function for this operation.
 pub fn is_call(op: &Op) -> bool {
     match op {
         Op::Call(f, _) => !matches!(f, Function::Sqrt | Function::Abs),
@@ -65,7 +66,7 @@ pub fn is_call(op: &Op) -> bool {
     }
 }
 
-/// Returns the number of angles whose sines and cosines are computed for `count` of them.
+/// Returns the number of angles, including padding, whose sines and cosines are computed for `count` angles.
 pub fn padded(count: usize) -> usize {
     match count {
         0..=2 => count,
@@ -74,24 +75,25 @@ pub fn padded(count: usize) -> usize {
     }
 }
 
-/// Steps of a program, and the memory that they use.
+/// Plan of a program: its steps, and the memory that they use.
 pub struct Allocation {
     pub steps: Vec<Step>,
     pub constants: Vec<f64>,
-    /// Minimum length of each input.
+    /// Minimum length of each input of the program.
     pub lengths: Vec<usize>,
-    /// Number of tables.
+    /// Number of lookup tables of the program.
     pub tables: usize,
-    /// Number of outputs.
+    /// Number of outputs of the program.
     pub outputs: usize,
-    /// Number of angles.
+    /// Number of angles whose sines and cosines the program needs.
     pub angles: usize,
-    /// Number of entries of the work space.
+    /// Number of entries of the program's workspace.
     pub work: usize,
 }
 
 impl Allocation {
-    /// Plans a program whose first `results` outputs are its results, for a number of registers.
+    /// Plans a program whose first `results` outputs are its results, for processors with this number of
+    /// registers.
     pub fn new(
         program: &Program,
         layout: &Layout,
@@ -132,21 +134,21 @@ struct Planner<'a> {
     program: &'a Program,
     layout: &'a Layout,
     plan: Allocation,
-    /// Indices of the constants.
+    /// Index of each constant, by the bits of its value.
     known: HashMap<u64, usize>,
-    /// Positions of sines and cosines that are computed together.
+    /// Index of each value that is a sine or cosine among those that are computed together.
     sines: HashMap<usize, usize>,
-    /// Instructions that use each value, the last one first.
+    /// Indices of the instructions that use each value, the last one first.
     uses: Vec<Vec<usize>>,
-    /// The value in each register.
+    /// Index of the value in each register, if any.
     values: Vec<Option<usize>>,
-    /// Register, and position in memory, of each value.
+    /// Register, and location in memory, of each value.
     places: Vec<Option<Residence>>,
-    /// Entries of the work space without a value.
+    /// Entries of the workspace that contain no value.
     free: Vec<usize>,
 }
 
-/// Register and position in memory of a value, at least one of them.
+/// Register and location in memory of a value; at least one of them exists.
 #[derive(Clone, Copy, Default)]
 struct Residence {
     register: Option<u8>,
@@ -154,7 +156,7 @@ struct Residence {
 }
 
 impl Planner<'_> {
-    /// Plans the angles, their sines and cosines.
+    /// Plans the computation of the angles, their sines and cosines.
     fn angles(&mut self, angles: &Angles) -> Result<(), String> {
         let list = angles.widest_first(self.program, |_| 1);
         let count = padded(list.len());
@@ -184,7 +186,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Plans the outputs.
+    /// Plans the computation of the outputs.
     fn body(&mut self, angles: &Angles, results: usize) -> Result<(), String> {
         let (program, n) = (self.program, self.program.instructions.len());
         let mut stores = vec![Vec::new(); n];
@@ -226,7 +228,7 @@ impl Planner<'_> {
         self.run(&live, &stores)
     }
 
-    /// Plans instructions and the stores of their values.
+    /// Plans the instructions that are needed (`live`) and the stores of their values.
     fn run(&mut self, live: &[bool], stores: &[Vec<Memory>]) -> Result<(), String> {
         let n = self.program.instructions.len();
         self.places.fill(None);
@@ -241,7 +243,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Returns the values that an instruction uses, without sines and cosines that are computed before.
+    /// Returns the values that an instruction uses, without sines and cosines, which are computed before.
     fn operands(&self, k: usize) -> Vec<usize> {
         let mut list = Vec::with_capacity(3);
         self.program.instructions[k].visit_operands(|operand| {
@@ -297,7 +299,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// Returns the places of the operands; one that does not exist repeats the first.
+    /// Returns the locations of the operands of an operation. A missing operand repeats the first one.
     fn places_of(&mut self, op: Op) -> Result<[Place; 3], String> {
         let mut list = Vec::with_capacity(3);
         op.visit_operands(|operand| list.push(operand));
@@ -319,7 +321,7 @@ impl Planner<'_> {
         Ok(std::array::from_fn(|k| places.get(k).copied().unwrap_or(first)))
     }
 
-    /// Returns the position of an operand that is not the value of an instruction of the body.
+    /// Returns the location in memory of an operand that is not the value of an instruction of the body.
     fn leaf(&mut self, operand: Operand) -> Result<Memory, String> {
         match operand {
             Operand::Const(c) => Ok(Memory::Constant(self.constant(c))),
@@ -359,7 +361,8 @@ impl Planner<'_> {
         }
     }
 
-    /// Returns a register without a value. If all have values, the one whose next use is last goes to memory.
+    /// Returns a free register. If all registers have values, the one whose next use is last is moved to
+    /// memory.
     fn take(&mut self) -> u8 {
         let next = |value: Option<usize>| value.and_then(|k| self.uses[k].last().copied());
         let free = self.values.iter().position(Option::is_none);
@@ -370,7 +373,7 @@ impl Planner<'_> {
         register as u8
     }
 
-    /// Takes the value out of a register.
+    /// Removes the value from a register, and moves it to memory if it is used again.
     fn release(&mut self, register: usize) {
         let Some(k) = self.values[register].take() else { return };
         let Some(residence) = &mut self.places[k] else { return };
@@ -385,7 +388,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Releases the register of a value that is not used again. Returns its entry of the work space.
+    /// Frees the register of a value that is not used again, and returns its entry of the workspace.
     fn forget(&mut self, k: usize) -> Option<usize> {
         let Residence { register, memory } = self.places[k].take()?;
         if let Some(register) = register {

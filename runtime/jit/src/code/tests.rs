@@ -1,4 +1,5 @@
-//! Random programs: machine code equals an evaluation of one operation after the other, bit for bit.
+//! Tests with random programs: machine code equals an evaluation of one operation after the other, bit for
+//! bit.
 
 use super::plan::padded;
 use super::{Code, write_sines_and_cosines};
@@ -15,9 +16,9 @@ use std::collections::HashMap;
 #[path = "../../tests/random/mod.rs"]
 mod random;
 
-/// Number of programs; the environment variable `LINKWORK_PROGRAMS` chooses another one.
+/// Number of random programs; the environment variable `LINKWORK_PROGRAMS` chooses another number.
 const PROGRAMS: u64 = 1000;
-/// Numbers of parameters, coordinates and velocities.
+/// Numbers of parameters, coordinates and velocities of the random programs.
 const INPUTS: [usize; 3] = [3, 9, 5];
 const CONSTANTS: [f64; 8] = [0.0, -0.0, 1.0, -1.0, 0.5, 9.81, -1e-3, 1e6];
 const VALUES: [f64; 6] = [0.0, -0.0, 1e5, f64::NAN, f64::INFINITY, 5e-324];
@@ -78,7 +79,8 @@ impl Random {
     }
 }
 
-/// Evaluates a program one operation after the other, some of whose values are known. Returns all values.
+/// Evaluates a program one operation after the other, where some values are already known. Returns all
+/// values.
 fn values(
     program: &Program,
     value: &dyn Fn(&[f64], Operand) -> f64,
@@ -109,7 +111,7 @@ fn values(
     values
 }
 
-/// Evaluates a program; sines and cosines are those of the functions that machine code calls.
+/// Evaluates a program, with the functions for sines and cosines that machine code calls.
 fn evaluate(program: &Program, layout: &Layout, inputs: &[&[f64]], table: &AnyTable) -> Vec<f64> {
     let value = |values: &[f64], operand: Operand| match operand {
         Operand::Const(c) => c,

@@ -4,16 +4,16 @@ use super::plan::{Allocation, Memory, Place, Step, is_call};
 use linkwork_compiler::expr::{Extreme, Function as Elementary};
 use linkwork_compiler::lower::Op;
 
-/// Number of registers of values. The last of the sixteen holds operands that cannot be in memory.
+/// Number of registers for values of a plan. The last of the sixteen holds operands that cannot be in memory.
 pub const REGISTERS: u8 = 15;
 const SCRATCH: u8 = 15;
 
-/// Whether the host has the instructions.
+/// Whether the host has the instructions AVX2 and FMA.
 pub fn is_supported() -> bool {
     std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
 }
 
-/// Returns the address of a function that generated code calls.
+/// Function that returns the address of a function by name, for calls from generated code.
 type Helpers = fn(&str) -> Option<*const u8>;
 
 // General registers. Addresses with the first eight take fewer bytes; those from `RBX` survive calls.
@@ -23,22 +23,23 @@ const RBP: u8 = 5;
 const RDX: u8 = 2;
 const RSI: u8 = 6;
 const RDI: u8 = 7;
-/// Constants, from [`BIAS`] bytes below.
+/// Register with the address of the constants, plus [`BIAS`] bytes.
 const CONSTANTS: u8 = 3;
-/// Work space and angles, from [`BIAS`] bytes below.
+/// Register with the address of workspace and angles, plus [`BIAS`] bytes.
 const FRAME: u8 = RBP;
 const MORE: u8 = 12;
 const RESULTS: u8 = 13;
 const INPUTS: u8 = 14;
 const TABLES: u8 = 15;
-/// Registers that calls preserve, in the order in which they are pushed.
+/// Registers whose values calls preserve, in the order in which they are pushed.
 const SAVED: [u8; 6] = [CONSTANTS, FRAME, MORE, RESULTS, INPUTS, TABLES];
-/// Registers with the addresses of inputs.
+/// Registers that hold the addresses of inputs.
 const POINTERS: [u8; 9] = [0, 1, 2, 6, 7, 8, 9, 10, 11];
 
-/// Distance of an address register from the memory that it is for: displacements of one byte are signed.
+/// Distance of an address register's value from the start of its memory, bytes: displacements of one byte are
+/// signed, so that this centres their range.
 const BIAS: i32 = 128;
-/// Distance of stores to a stack that may grow.
+/// Maximum distance, bytes, between stores to a stack that grows page by page.
 const PAGE: i32 = 4096;
 
 /// Operand of an instruction: a vector register, or memory at a general register and an offset.
@@ -58,17 +59,17 @@ struct Encoding {
     long: bool,
 }
 
-/// An instruction on one number.
+/// Returns the encoding of an instruction on one number.
 const fn scalar(opcode: u8) -> Encoding {
     Encoding { opcode, map: 1, prefix: 3, wide: false, long: false }
 }
 
-/// An instruction on the bits of a register.
+/// Returns the encoding of an instruction on the bits of a register.
 const fn packed(opcode: u8) -> Encoding {
     Encoding { opcode, map: 1, prefix: 1, wide: false, long: false }
 }
 
-/// A fused product and sum.
+/// Returns the encoding of a fused multiply-add instruction.
 const fn fused(opcode: u8) -> Encoding {
     Encoding { opcode, map: 2, prefix: 1, wide: true, long: false }
 }
@@ -86,7 +87,7 @@ const XOR: Encoding = packed(0x57);
 const BROADCAST: Encoding = Encoding { opcode: 0x19, map: 2, prefix: 1, wide: false, long: true };
 const STORE_FOUR: Encoding = Encoding { opcode: 0x11, map: 1, prefix: 1, wide: false, long: true };
 
-/// Writes the code of a plan. Further constants are appended to those of the plan.
+/// Writes the machine code of a plan. Further constants are appended to those of the plan.
 pub fn write(plan: &mut Allocation, results: usize, helpers: Helpers) -> Result<Vec<u8>, String> {
     // Masks of the sign and of everything else, for whole registers.
     let masks = plan.constants.len();
@@ -112,7 +113,7 @@ struct Writer<'a> {
     bytes: Vec<u8>,
     plan: &'a Allocation,
     results: usize,
-    /// Index of the masks among the constants.
+    /// Index of the sign masks among the constants.
     masks: usize,
     helpers: Helpers,
     /// Inputs whose addresses are in registers, in the order of [`POINTERS`].
@@ -120,7 +121,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// Writes the prologue. Returns the size of the frame.
+    /// Writes the prologue of the function. Returns the size of its stack frame, bytes.
     fn enter(&mut self) -> Result<i32, String> {
         for register in SAVED {
             self.general(0x50, register);
@@ -203,7 +204,7 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// Writes an instruction whose operands can be exchanged.
+    /// Writes an instruction whose two operands can be exchanged.
     fn commutative(&mut self, code: Encoding, to: u8, a: Rm, b: Rm) {
         match (a, b) {
             (Rm::Register(a), b) => self.instruction(code, to, a, b),
@@ -226,9 +227,8 @@ impl Writer<'_> {
         self.instruction(code, to, first, b);
     }
 
-    /// Writes a fused product and sum. `first` is the opcode of the form with the factor and the sum in
-    /// exchanged places (132); 16 more is that of a product with the result's register (213), 32 more of a
-    /// sum in the result's register (231).
+    /// Writes a fused multiply-add instruction. `first` is the opcode of the form with the order 132 of its
+    /// operands; the opcode is larger by 16 for the order 213 and by 32 for the order 231.
     fn product(&mut self, first: u8, to: u8, [a, b, c]: [Rm; 3]) {
         use Rm::{Memory, Register};
         let [exchanged, product, sum] = [0, 16, 32].map(|more| fused(first + more));
@@ -266,7 +266,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Writes a call of a function of numbers in memory.
+    /// Writes a call of a function whose arguments are numbers in memory.
     fn call_of(&mut self, op: Op, to: u8, places: [Place; 3]) -> Result<(), String> {
         let (name, count) = match op {
             Op::Call(f, _) => (f.function_name(), 1),
@@ -300,7 +300,7 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// Calls a function, after which no address of an input is in a register.
+    /// Writes a call of a function, after which no address of an input is in a register.
     fn call(&mut self, name: &str) -> Result<(), String> {
         let address = (self.helpers)(name).ok_or("a function is missing")?;
         self.immediate(RAX, address as u64);
@@ -324,7 +324,8 @@ impl Writer<'_> {
         }
     }
 
-    /// Returns the address of a number; loads that of an input, if it is in no register.
+    /// Returns the address operand of a number in memory; loads the address of an input that is in no
+    /// register.
     fn memory(&mut self, memory: Memory) -> Rm {
         let offset = |index: usize| 8 * index as i32;
         match memory {
@@ -348,7 +349,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Loads a number, or copies a register.
+    /// Writes the load of a number from memory, or the copy of a register.
     fn load(&mut self, to: u8, from: Rm) {
         match from {
             Rm::Register(register) if register == to => {}
@@ -362,7 +363,7 @@ impl Writer<'_> {
         self.instruction(STORE, from, 0, to);
     }
 
-    /// Writes an instruction with a prefix VEX: result, first and second operand.
+    /// Writes an instruction with the prefix VEX: result register, first and second operand.
     fn instruction(&mut self, code: Encoding, register: u8, first: u8, second: Rm) {
         let Encoding { opcode, map, prefix, wide, long } = code;
         let base = match second {
@@ -382,7 +383,7 @@ impl Writer<'_> {
         self.operand(register, second);
     }
 
-    /// Writes the bytes that address operands.
+    /// Writes the bytes of an instruction that address its operands.
     fn operand(&mut self, register: u8, second: Rm) {
         let fields = (register & 7) << 3;
         match second {
@@ -407,7 +408,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Writes an instruction of one byte for a general register.
+    /// Writes an instruction with an opcode of one byte for a general-purpose register.
     fn general(&mut self, opcode: u8, register: u8) {
         if register >= 8 {
             self.bytes.push(0x41);
@@ -415,7 +416,7 @@ impl Writer<'_> {
         self.bytes.push(opcode | register & 7);
     }
 
-    /// Writes an instruction on a general register and memory, 64 bits wide.
+    /// Writes an instruction on a general-purpose register and memory, 64 bits wide.
     fn load_general(&mut self, to: u8, base: u8, offset: i32) {
         self.wide(0x8B, to, base);
         self.operand(to, Rm::Memory(base, offset));

@@ -15,7 +15,7 @@ use std::borrow::Borrow;
 /// Accelerations, or changes of velocities, together with constraint multipliers.
 pub(super) type Solution<const NV: usize> = (SVector<f64, NV>, SVector<f64, NV>);
 
-/// Row of a sliding contact that is padding.
+/// Row index that marks a sliding contact as padding.
 const NO_ROW: usize = usize::MAX;
 
 impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded<NQ, NV, NU, R> {
@@ -120,7 +120,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         all
     }
 
-    /// Accelerations and multipliers by an elimination, or `None` where it loses digits.
+    /// Returns accelerations and multipliers from an elimination; `None` if the elimination loses accuracy.
     fn solution_by_elimination(
         &self,
         f: Internal,
@@ -144,7 +144,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         }
     }
 
-    /// Accelerations and multipliers of a mechanism with sliding contacts.
+    /// Returns the accelerations and multipliers of a mechanism with sliding contacts.
     pub(super) fn slipping_dynamics(
         &self,
         t: f64,

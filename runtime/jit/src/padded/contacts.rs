@@ -1,4 +1,4 @@
-//! Unilateral contacts of robots that are padded to constant dimensions.
+//! Adapters for the unilateral contacts of robots that are padded to constant dimensions.
 
 use super::{Padded, write_block};
 use crate::error::Error;
@@ -12,11 +12,11 @@ use linkwork::nalgebra::{SMatrix, SVector};
 use linkwork::{ByMotion, ConstraintError, Contacts, Mechanism};
 use std::borrow::Borrow;
 
-/// Gap of a contact that is padding, m: it never closes.
+/// Gap of a contact that is padding, m: so large that the contact never closes.
 const FAR: f64 = 1e30;
 
-/// A robot with contacts as a [`Mechanism`] of constant dimensions: a [`Padded`] with at most `NK` contacts
-/// that have `NR` rates.
+/// Robot with contacts as a [`Mechanism`] of constant dimensions: a [`Padded`] with at most `NK` contacts
+/// that have `NR` contact velocities.
 #[derive(Clone, Debug)]
 pub struct PaddedContacts<
     const NQ: usize,

@@ -45,8 +45,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         })
     }
 
-    /// Evaluates a function whose results are square matrices. Writes them to the first rows and columns of
-    /// the given larger matrices.
+    /// Evaluates a function whose results are square matrices, and writes them to the first rows and columns
+    /// of the given larger matrices.
     fn evaluate_square_matrices<const K: usize>(
         &self,
         f: Internal,
@@ -60,7 +60,8 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         all
     }
 
-    /// Derivatives of `q ⊕ dv` with joint velocities.
+    /// Returns the derivatives of the displaced configuration `q ⊕ dv` for velocities that are joint
+    /// velocities.
     fn plain_integrate_derivatives(&self, dv: &SVector<f64, NV>) -> (Square<NV>, Square<NV>) {
         let (mut first, mut second) = (Square::identity(), Square::identity());
         for chart in &self.robot().shared.charts {
@@ -81,7 +82,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         (first, second)
     }
 
-    /// Derivatives of the rate of a displacement with joint velocities.
+    /// Returns the derivatives of the rate of a displacement for velocities that are joint velocities.
     fn plain_rate_derivatives(
         &self,
         dv: &SVector<f64, NV>,
@@ -116,7 +117,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         self.robot().shared.has_speeds
     }
 
-    /// Converts a vector between speeds and joint velocities.
+    /// Converts a velocity vector between generalized speeds and joint velocities, by the function `f`.
     fn convert_velocity(&self, f: Internal, q: &SVector<f64, NQ>, v: &SVector<f64, NV>) -> SVector<f64, NV> {
         let state =
             State { q: self.configuration_entries(q), v: self.velocity_entries(v), ..State::default() };
@@ -136,7 +137,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         self.fill_matrix(Internal::RateChanges, state, (n, n), Square::zeros())
     }
 
-    /// Displacement in joint velocities, and the configuration that it leads to.
+    /// Returns the displacement `dv` in joint velocities, and the displaced configuration.
     fn displace_configuration(
         &self,
         q: &SVector<f64, NQ>,
@@ -149,7 +150,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         (way, there)
     }
 
-    /// Derivatives of the equations of motion under constraints.
+    /// Returns the derivatives of the equations of motion with constraints.
     fn motion_derivatives(
         &self,
         t: f64,
@@ -181,7 +182,7 @@ impl<const NQ: usize, const NV: usize, const NU: usize, R: Borrow<Robot>> Padded
         MotionDerivatives { forces_by_q, forces_by_v, bias_by_q, bias_by_v, rates_by_q, turning }
     }
 
-    /// Returns the derivatives of accelerations and multipliers under constraints.
+    /// Returns the derivatives of accelerations and multipliers of constrained motion.
     fn constrained_motion_derivatives(
         &self,
         t: f64,

@@ -1,4 +1,4 @@
-//! Runs of the methods of the runtime on padded robots.
+//! Execution of simulations of padded robots by the integration methods of the runtime.
 
 use super::{Controller, Method, Sample};
 use crate::capacity::{ContactVisitor, Visitor};
@@ -14,7 +14,7 @@ use linkwork::simulate::Overlaps;
 use linkwork::{Mechanism, simulate};
 use std::cell::{Cell, RefCell};
 
-/// Size of the stack of the thread on which large mechanisms move.
+/// Stack size of the thread on which large mechanisms are simulated, bytes.
 const STACK: usize = 64 << 20;
 
 /// Runs a function on a thread with a large stack, and waits for it.
@@ -26,7 +26,7 @@ pub(super) fn on_large_stack(run: impl FnOnce() -> Result<(), Error> + Send) -> 
     })
 }
 
-/// Inputs that do not depend on the state.
+/// Inputs of a simulation that do not depend on the state.
 #[derive(Clone, Copy)]
 pub(super) enum Given<'a> {
     Zero,
@@ -120,7 +120,7 @@ impl ContactVisitor for Moving<'_, '_, '_, '_> {
     }
 }
 
-/// State that is padded with zeros to `N` entries.
+/// State whose vectors are padded with zeros to `N` entries.
 #[derive(Clone, Copy)]
 struct PaddedState<const N: usize> {
     t: f64,
@@ -135,21 +135,21 @@ impl<const N: usize> PaddedState<N> {
     }
 }
 
-/// A section of a run between kinks of the inputs.
+/// Section of a simulation between two times at which the inputs jump or have kinks.
 #[derive(Clone)]
 struct Section<const N: usize> {
     start: PaddedState<N>,
     end: f64,
-    /// Times of the samples in the section, after its start.
+    /// Times of the samples in the section, s, after its start.
     times: Vec<f64>,
-    /// Inputs at the start, and their constant rate.
+    /// Inputs at the start of the section. The field below is their constant rate.
     u: SVector<f64, N>,
     rate: SVector<f64, N>,
     overlaps: Overlaps,
 }
 
 impl Settings<'_> {
-    /// Returns the inputs at a time; at a jump the limit before or after it.
+    /// Returns the inputs of the section at a time; at a jump the limit before or after it.
     fn inputs_at_time<const N: usize>(&self, t: f64, is_before: bool) -> SVector<f64, N> {
         let n = self.robot.nu();
         let row =
@@ -174,7 +174,8 @@ impl Settings<'_> {
         }
     }
 
-    /// Returns the ends of the sections: the times at which inputs jump or have kinks, and the end.
+    /// Returns the ends of the sections: the times at which inputs jump or have kinks, and the end of the
+    /// simulation.
     fn section_ends(&self) -> Vec<f64> {
         let mut stops = match self.inputs {
             Given::Samples(times, _) => times.to_vec(),
@@ -186,7 +187,7 @@ impl Settings<'_> {
         stops
     }
 
-    /// Returns the time of the sample with an index.
+    /// Returns the time of the sample with an index, s.
     fn sample_time(&self, index: u64) -> Option<f64> {
         let every = self.every?;
         let t = self.start + index as f64 * every;
@@ -223,7 +224,7 @@ struct Feed<'f, 'i, const N: usize> {
 }
 
 impl<const N: usize> Feed<'_, '_, N> {
-    /// Calls the function of the inputs. Inputs that are NaN end the run.
+    /// Calls the controller. Inputs that are NaN end the simulation.
     fn call_control(&mut self, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
         let Some((_, function)) = &mut self.controller else { return SVector::zeros() };
         let robot = self.settings.robot;
@@ -257,12 +258,12 @@ impl<const N: usize> integrate::Inputs<f64, N, N, N> for Feed<'_, '_, N> {
     }
 }
 
-/// State at the end of an integration; after an error that of the last sample before it.
+/// State at the end of an integration; after an error, the state of the last sample before it.
 type Reached<const N: usize> = (PaddedState<N>, Result<(), Error>);
 
 /// Maximum number of steps of an explicit method before an implicit method is tried.
 const MOST_STEPS: u64 = 200_000;
-/// Maximum number of steps of an implicit method in the comparison.
+/// Maximum number of steps of an implicit method when its cost is compared with that of an explicit method.
 const MOST_IMPLICIT_STEPS: u64 = 20_000;
 /// Minimum step size of an explicit method, s.
 const SHORTEST: f64 = 1e-10;
@@ -431,7 +432,8 @@ impl Driver<'_, '_, '_> {
         })
     }
 
-    /// Whether the implicit method reaches a time of a section with fewer evaluations.
+    /// Whether an implicit method reaches a time of a section with fewer evaluations of the dynamics than an
+    /// explicit method.
     fn is_cheaper<const N: usize>(
         &mut self,
         m: &Padded<N, N, N, &Robot>,

@@ -2,13 +2,13 @@
 
 use crate::error::Error;
 
-/// Integration method, with its tolerance (relative and absolute) or its step, s.
+/// Integration method, with its tolerance (relative and absolute) or its step size, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Method {
-    /// [`DormandPrince`](linkwork::integrate::DormandPrince) with a tolerance, and
-    /// [`Rodas`](linkwork::integrate::Rodas) from where the motion is stiff. Mechanisms with contacts have
-    /// [`TimeStepping`](linkwork::integrate::TimeStepping) with steps of 1 ms.
+    /// Automatic choice: [`DormandPrince`](linkwork::integrate::DormandPrince) with a tolerance, and
+    /// [`Rodas`](linkwork::integrate::Rodas) from the time at which the motion is stiff. Mechanisms with
+    /// contacts use [`TimeStepping`](linkwork::integrate::TimeStepping) with steps of 1 ms.
     Automatic(f64),
     /// Method [`DormandPrince`](linkwork::integrate::DormandPrince), with its tolerance.
     DormandPrince(f64),
@@ -57,8 +57,8 @@ impl Method {
         ("event_driven", false, true),
     ];
 
-    /// Returns the method of a name of [`NAMES`](Self::NAMES) with its tolerance or step; without one the
-    /// tolerance is `1e-9`, and the step 1 ms.
+    /// Returns the method with a name of [`NAMES`](Self::NAMES), with its tolerance or step size. Without a
+    /// setting, the tolerance is `1e-9` and the step size 1 ms.
     ///
     /// # Errors
     ///

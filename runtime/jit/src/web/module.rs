@@ -1,4 +1,4 @@
-//! WebAssembly of straight-line programs.
+//! Translation of straight-line programs to WebAssembly.
 //!
 //! A module imports its memory and the elementary functions that WebAssembly has no instruction for. Each
 //! exported function takes the addresses of its inputs, then the address of its result.
@@ -28,7 +28,7 @@ const DIV: u8 = 0xa3;
 const MIN: u8 = 0xa4;
 const MAX: u8 = 0xa5;
 
-/// Maximum depth of operations whose results stay on the stack.
+/// Maximum nesting depth of operations whose results stay on the stack of WebAssembly.
 const DEPTH: usize = 32;
 
 /// WebAssembly module under construction.
@@ -37,14 +37,14 @@ pub struct BinaryModule {
     types: Vec<(Vec<u8>, Vec<u8>)>,
     /// Name and type index of each imported function.
     imports: Vec<(String, usize)>,
-    /// Name, type and code of each exported function.
+    /// Name, type index and code of each exported function.
     functions: Vec<(String, usize, Vec<u8>)>,
-    /// Number of interpolation tables that the module looks up.
+    /// Number of interpolation tables that the module reads.
     pub tables: usize,
 }
 
 impl BinaryModule {
-    /// Adds a function.
+    /// Adds a program to the WebAssembly module, as a function with a name.
     ///
     /// # Errors
     ///
@@ -121,14 +121,14 @@ impl BinaryModule {
         index_of(&mut self.types, kind)
     }
 
-    /// Returns the index of an imported function of numbers.
+    /// Returns the index of an imported function with these parameters, which is added if it is new.
     fn import_function(&mut self, name: &str, parameters: Vec<u8>) -> usize {
         let kind = self.type_index(parameters, vec![F64]);
         index_of(&mut self.imports, (name.to_string(), kind))
     }
 }
 
-/// Returns the index of an entry, which is added if it is absent.
+/// Returns the index of an entry of a list, to which it is appended if it is absent.
 fn index_of<T: PartialEq>(list: &mut Vec<T>, entry: T) -> usize {
     list.iter().position(|known| *known == entry).unwrap_or_else(|| {
         list.push(entry);
@@ -141,7 +141,7 @@ fn index_of<T: PartialEq>(list: &mut Vec<T>, entry: T) -> usize {
 enum Value {
     Missing,
     Local(usize),
-    /// Computed where it is used, with operations nested this deep.
+    /// The result is computed where it is used, with operations nested this deep.
     Nested(usize),
 }
 
@@ -187,7 +187,7 @@ impl BinaryWriter<'_> {
         Ok(())
     }
 
-    /// Returns the index of a local behind the parameters.
+    /// Returns the index of a local variable in WebAssembly, whose numbering begins with the parameters.
     fn local_index(&self, index: usize) -> usize {
         self.layout.len() + 1 + index
     }
@@ -240,8 +240,8 @@ impl BinaryWriter<'_> {
         Ok(())
     }
 
-    /// Writes the lookup of a table: its index, orders of differentiation of two bits each, and three
-    /// variables, of which a table may use fewer.
+    /// Writes the lookup of an interpolation table: its index, orders of differentiation of two bits each,
+    /// and three variables, of which a table may use fewer.
     fn write_table_lookup(&mut self, lookup: Lookup, variables: [Operand; 3]) -> Result<(), String> {
         let count = lookup.variable_count();
         let orders = (0..count).fold(0, |all, k| all | lookup.derivative_order(k) << (2 * k));
@@ -290,7 +290,7 @@ impl BinaryWriter<'_> {
     }
 }
 
-/// Writes an unsigned integer in LEB128 encoding.
+/// Writes an unsigned integer in the variable-length encoding LEB128.
 fn write_unsigned(out: &mut Vec<u8>, mut x: usize) {
     while x >= 0x80 {
         out.push((x & 0x7f) as u8 | 0x80);
@@ -299,7 +299,7 @@ fn write_unsigned(out: &mut Vec<u8>, mut x: usize) {
     out.push(x as u8);
 }
 
-/// Writes a signed integer, which is not negative, in LEB128.
+/// Writes a nonnegative integer in the signed variable-length encoding LEB128.
 fn write_signed(out: &mut Vec<u8>, mut x: usize) {
     while x >= 0x40 {
         out.push((x & 0x7f) as u8 | 0x80);
@@ -314,7 +314,7 @@ fn write_text(out: &mut Vec<u8>, name: &str) {
     out.extend(name.bytes());
 }
 
-/// Writes a section: its number, its length, and a list with this number of entries.
+/// Writes a section of a WebAssembly module: its number, its length, and a list with this number of entries.
 fn write_section(out: &mut Vec<u8>, number: u8, count: usize, entries: &[u8]) {
     let mut list = Vec::new();
     write_unsigned(&mut list, count);
@@ -328,7 +328,7 @@ fn write_section(out: &mut Vec<u8>, number: u8, count: usize, entries: &[u8]) {
 mod tests {
     use super::*;
 
-    /// The examples of the WebAssembly specification and of DWARF, appendix C.
+    /// Checks the examples of LEB128 in the WebAssembly specification and in DWARF, appendix C.
     #[test]
     fn integers_have_variable_lengths() {
         let encoded_integer = |write: fn(&mut Vec<u8>, usize), x: usize| {

@@ -96,7 +96,7 @@ impl Signature {
         failed
     }
 
-    /// Returns the computation of derivatives, for the given frame if the function takes one.
+    /// Returns the computation of derivatives, for the given frame if the function takes a frame.
     fn adjoint(&self, robot: &linkwork_jit::Robot, frame: usize) -> Result<Adjoint, Error> {
         Ok(match &self.kind {
             Kind::Generated(f) => Adjoint::Product(robot.clone(), f.vector_jacobian()?),

@@ -3,7 +3,7 @@
 use super::{Kind, OnConstraints, Output, Signature};
 use linkwork_jit::{Error, Stepper};
 
-/// Computation of a function's results for one state, with its work space.
+/// Computation of a function's results for one state, with its workspace.
 pub(super) enum Evaluator {
     Generated(linkwork_jit::Robot, linkwork_jit::Function),
     Placement(linkwork_jit::Robot, linkwork_jit::Function),
@@ -13,7 +13,7 @@ pub(super) enum Evaluator {
 }
 
 impl Signature {
-    /// Returns the computation of results, for the given frame if the function takes one.
+    /// Returns the computation of results, for the given frame if the function takes a frame.
     pub(super) fn evaluator(&self, robot: &linkwork_jit::Robot, frame: usize) -> Result<Evaluator, Error> {
         let cloned_robot = || robot.clone();
         Ok(match &self.kind {
@@ -66,7 +66,7 @@ impl Evaluator {
     }
 }
 
-/// Writes the placement of a frame as a matrix of four rows.
+/// Writes the placement of a frame as a 4 × 4 matrix by rows.
 pub(super) fn placement(
     robot: &linkwork_jit::Robot,
     f: &linkwork_jit::Function,

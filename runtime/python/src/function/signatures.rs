@@ -108,7 +108,7 @@ impl Function {
     }
 }
 
-/// Whether steps exist once all parameters have values.
+/// Whether a result is available, or will be once all parameters have values.
 trait OkOrMissing {
     fn is_ok_or_missing(&self) -> bool;
 }
@@ -119,7 +119,7 @@ impl<T> OkOrMissing for Result<T, Error> {
     }
 }
 
-/// Returns the function that takes the name of a frame, if there are frames.
+/// Returns the function that takes the name of a frame, if the mechanism has frames.
 fn of_frames(robot: &linkwork_jit::Robot, name: &str, documentation: &str) -> Option<Function> {
     let names = robot.frames();
     let own = names.iter().map(|frame| robot.function(&format!("{name}({frame})")).ok());
@@ -140,7 +140,7 @@ fn of_frames(robot: &linkwork_jit::Robot, name: &str, documentation: &str) -> Op
     })
 }
 
-/// Returns the functions for steps of the classical Runge–Kutta method.
+/// Returns the functions that compute steps of the classical Runge–Kutta method.
 fn steps(robot: &linkwork_jit::Robot, with_jacobians: bool) -> Vec<Function> {
     let [nq, nv, nu] = [robot.nq(), robot.nv(), robot.nu()];
     let scalar_argument = |name: &str| Argument { name: name.to_string(), length: None };
@@ -220,5 +220,5 @@ fn on_constraints(robot: &linkwork_jit::Robot) -> [Function; 4] {
     ]
 }
 
-/// Name of an argument that selects velocities by nonzero entries.
+/// Name of the argument that selects velocities by nonzero entries.
 const HELD: &str = "held";

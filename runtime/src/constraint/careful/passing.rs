@@ -1,20 +1,22 @@
 //! Accelerations in singular configurations, from the motion that passes through them.
 
-use super::{Structure, System, Triangle, Weak, safe_distance, well_conditioned_threshold};
+use super::{
+    DependentRows, DynamicsEquations, Structure, TriangularFactor, safe_distance, well_conditioned_threshold,
+};
 use crate::Real;
 use crate::constraint::Constrained;
-use crate::constraint::span::{Metric, Span, norm, rounding_threshold};
+use crate::constraint::span::{ColumnSpan, MassFactorisation, norm, rounding_threshold};
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
 
 /// Maximum number of Newton steps for the projection of a point of a path.
 const MOST_STEPS: usize = 12;
 
-/// Acceleration and jerk, which describe the motion to third order about an instant.
-type Course<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
+/// Acceleration and jerk, which describe a motion to third order about an instant.
+type AccelerationAndJerk<T, const NV: usize> = (SVector<T, NV>, SVector<T, NV>);
 
 /// Path along the branch of the constraints on which a state is.
-struct Way<T, const NQ: usize, const NV: usize> {
+struct BranchPath<T, const NQ: usize, const NV: usize> {
     t: T,
     q: SVector<T, NQ>,
     v: SVector<T, NV>,
@@ -50,7 +52,7 @@ pub(super) fn acceleration_past_singularity<
     structure: &Structure<'_, NC>,
     t: T,
     (q, v): (&SVector<T, NQ>, &SVector<T, NV>),
-    system: &System<T, NV, NC>,
+    system: &DynamicsEquations<T, NV, NC>,
     least: &SVector<T, NV>,
 ) -> Option<SVector<T, NV>>
 where
@@ -62,10 +64,10 @@ where
     let driven = largest_magnitude(&mechanism.constraint_rates(t, q, &SVector::zeros())) > T::zero();
     let clear = speed > epsilon::<T>().cbrt();
     let moves = clear && (!driven || speed * speed > rate * safe_distance::<T>() * constant(0.03));
-    let way = Way { t, q: *q, v: *v, heading: if moves { *v } else { *least }, moves };
+    let way = BranchPath { t, q: *q, v: *v, heading: if moves { *v } else { *least }, moves };
     let (clear, within) =
         (safe_distance::<T>() * constant(0.4), well_conditioned_threshold::<T>() * constant(0.5));
-    let acceleration_past_singularity = |way: &Way<T, NQ, NV>, parts: &[f64], clear: T| {
+    let acceleration_past_singularity = |way: &BranchPath<T, NQ, NV>, parts: &[f64], clear: T| {
         let pace = safe_distance::<T>() / largest_magnitude(&way.heading);
         let goes = pace > T::zero() && pace.is_finite();
         let steps = parts.iter().filter(|_| goes).map(|part| pace * constant(*part));
@@ -94,14 +96,14 @@ where
         .permitted_acceleration(structure, system)
 }
 
-impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
-    fn points_on_path(&self, step: T, clear: T) -> Points<'_, T, NQ, NV> {
-        Points { way: self, step, clear }
+impl<T: Real, const NQ: usize, const NV: usize> BranchPath<T, NQ, NV> {
+    fn points_on_path(&self, step: T, clear: T) -> PathPoints<'_, T, NQ, NV> {
+        PathPoints { way: self, step, clear }
     }
 
-    /// Returns another path along the branch, for states with velocities that leave the singular
-    /// configuration slowly in comparison with other coordinates. Its direction has components along all
-    /// motions that are free shortly before and after.
+    /// Returns another path along the branch of the constraints, for states with velocities that leave the
+    /// singular configuration slowly in comparison with other coordinates. Its direction has components along
+    /// all motions that are free shortly before and after.
     fn deviating_path<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
@@ -112,7 +114,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
     {
         let own = safe_distance::<T>() / largest_magnitude(&self.heading);
         let any = SVector::from_fn(|k, _| constant::<T>([1.0, -0.7, 0.9, 0.6, -0.8][k % 5]));
-        let still = Way { v: SVector::zeros(), moves: false, ..*self };
+        let still = BranchPath { v: SVector::zeros(), moves: false, ..*self };
         let heading = [0.1, 0.3, 1.0, 3.0, 10.0].into_iter().find_map(|part| {
             let points = still.points_on_path(own * constant(part), epsilon::<T>().cbrt());
             let course = (SVector::zeros(), SVector::zeros());
@@ -121,13 +123,13 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
             Some((free_acceleration_at(-points.step)?.free + free_acceleration_at(points.step)?.free) * any)
         })?;
         let size = largest_magnitude(&heading);
-        (size > T::zero()).then(|| Way { heading: heading / size, moves: false, ..*self })
+        (size > T::zero()).then(|| BranchPath { heading: heading / size, moves: false, ..*self })
     }
 
-    /// Returns the path without its component along another path.
+    /// Returns the path with its component along another path removed from the direction.
     fn component_across_path(&self, other: &Self) -> Self {
         let part = self.heading.dot(&other.heading) / other.heading.norm_squared();
-        Way { heading: self.heading - other.heading * part, ..*self }
+        BranchPath { heading: self.heading - other.heading * part, ..*self }
     }
 
     /// Returns time and state at distance `h` along the path, projected on the constraints. The projection
@@ -138,7 +140,7 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
         mechanism: &M,
         structure: &Structure<'_, NC>,
         h: T,
-        (a, jerk): &Course<T, NV>,
+        (a, jerk): &AccelerationAndJerk<T, NV>,
     ) -> Option<(T, SVector<T, NQ>, SVector<T, NV>)>
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
@@ -153,8 +155,11 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
             let residuals = mechanism.constraint_residuals(t, &q);
             let gap = SVector::<T, NC>::from_fn(|k, _| residuals.get(k).copied().unwrap_or(T::zero()));
             let off = largest_magnitude(&gap);
-            let room =
-                Room::new(structure, &mechanism.constraint_jacobian(t, &q), well_conditioned_threshold());
+            let room = EuclideanRows::new(
+                structure,
+                &mechanism.constraint_jacobian(t, &q),
+                well_conditioned_threshold(),
+            );
             q = mechanism.integrate(&q, &room.minimum_norm_correction(&gap));
             // The last correction is applied even if the residual before it is a rounding error.
             if off <= rounding_threshold() || last.is_some_and(|last| off * constant(2.0) > last) {
@@ -162,7 +167,11 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
             }
             last = Some(off);
         }
-        let room = Room::new(structure, &mechanism.constraint_jacobian(t, &q), well_conditioned_threshold());
+        let room = EuclideanRows::new(
+            structure,
+            &mechanism.constraint_jacobian(t, &q),
+            well_conditioned_threshold(),
+        );
         let mut v = later;
         for _ in 0..2 {
             v += room.minimum_norm_correction(&mechanism.constraint_rates(t, &q, &v));
@@ -172,54 +181,58 @@ impl<T: Real, const NQ: usize, const NV: usize> Way<T, NQ, NV> {
     }
 }
 
-/// Points of a path at multiples of `step`; rows above the relative magnitude `clear` are well-conditioned.
-struct Points<'a, T, const NQ: usize, const NV: usize> {
-    way: &'a Way<T, NQ, NV>,
+/// Equally spaced points on a path along a branch of the constraints, at multiples of `step`. Constraint rows
+/// above the relative magnitude `clear` count as well-conditioned.
+struct PathPoints<'a, T, const NQ: usize, const NV: usize> {
+    way: &'a BranchPath<T, NQ, NV>,
     step: T,
     clear: T,
 }
 
-impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
-    /// Returns the permitted accelerations at distance `h` along the path.
+impl<T: Real, const NQ: usize, const NV: usize> PathPoints<'_, T, NQ, NV> {
+    /// Returns the accelerations that the constraints permit at distance `h` along the path.
     fn permitted_accelerations<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
         structure: &Structure<'_, NC>,
         h: T,
-        course: &Course<T, NV>,
-    ) -> Option<Possible<T, NV>>
+        course: &AccelerationAndJerk<T, NV>,
+    ) -> Option<PermittedAccelerations<T, NV>>
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
     {
         let (t, q, v) = self.way.projected_state_on_path(mechanism, structure, h, course)?;
-        let room = Room::new(structure, &mechanism.constraint_jacobian(t, &q), self.clear);
+        let room = EuclideanRows::new(structure, &mechanism.constraint_jacobian(t, &q), self.clear);
         let bend = room.minimum_norm_correction(&mechanism.constraint_bias(t, &q, &v));
-        let possible = Possible { free: room.null_space_projection(), bend };
+        let possible = PermittedAccelerations { free: room.null_space_projection(), bend };
         (room.regular && possible.bend.iter().all(|a| a.is_finite())).then_some(possible)
     }
 
-    /// Returns the value at the state of the fifth-degree polynomial through six points of the path.
+    /// Returns the permitted accelerations at the state itself, interpolated by the polynomial of degree five
+    /// through six points of the path.
     fn interpolate_at_state<M, const NU: usize, const NH: usize, const NC: usize>(
         &self,
         mechanism: &M,
         structure: &Structure<'_, NC>,
-    ) -> Option<Possible<T, NV>>
+    ) -> Option<PermittedAccelerations<T, NV>>
     where
         M: Constrained<NQ, NV, NU, NH, NC, Scalar = T> + ?Sized,
     {
         let (step, half) = (self.step, constant::<T>(0.5));
-        let accelerations =
-            |h: T, course: &Course<T, NV>| self.permitted_accelerations(mechanism, structure, h, course);
+        let accelerations_at = |h: T, course: &AccelerationAndJerk<T, NV>| {
+            self.permitted_accelerations(mechanism, structure, h, course)
+        };
         let mut course = (SVector::zeros(), SVector::zeros());
         // The path has the smallest curvature that the branch permits.
         for _ in 0..if self.way.moves { 2 } else { 0 } {
-            let (before, after) = (accelerations(-step, &course)?.bend, accelerations(step, &course)?.bend);
+            let (before, after) =
+                (accelerations_at(-step, &course)?.bend, accelerations_at(step, &course)?.bend);
             course = ((before + after) * half, (after - before) * (half / step));
         }
-        let mut sum = Possible { free: SMatrix::zeros(), bend: SVector::zeros() };
+        let mut sum = PermittedAccelerations { free: SMatrix::zeros(), bend: SVector::zeros() };
         for (k, weight) in [(1.0, 0.75), (2.0, -0.3), (3.0, 0.05)] {
             for side in [-k, k] {
-                let possible = accelerations(step * constant(side), &course)?;
+                let possible = accelerations_at(step * constant(side), &course)?;
                 sum.free += possible.free * constant::<T>(weight);
                 sum.bend += possible.bend * constant::<T>(weight);
             }
@@ -229,58 +242,63 @@ impl<T: Real, const NQ: usize, const NV: usize> Points<'_, T, NQ, NV> {
 }
 
 /// Rows of constraints in the Euclidean metric of the coordinates.
-struct Room<T, const NV: usize, const NC: usize> {
-    span: Span<T, NV, NC>,
-    triangle: Triangle<T, NC>,
+struct EuclideanRows<T, const NV: usize, const NC: usize> {
+    span: ColumnSpan<T, NV, NC>,
+    triangle: TriangularFactor<T, NC>,
     /// Whether the well-conditioned rows have the rank of regular configurations.
     regular: bool,
 }
 
-impl<T: Real, const NV: usize, const NC: usize> Room<T, NV, NC> {
+impl<T: Real, const NV: usize, const NC: usize> EuclideanRows<T, NV, NC> {
     /// Factorises the constraint rows above the relative magnitude `clear`, then the smaller ones down to
     /// rounding errors.
     fn new(structure: &Structure<'_, NC>, jacobian: &SMatrix<T, NC, NV>, clear: T) -> Self {
-        let mut span = Span::new(&Metric::new(&SMatrix::identity().data.0), jacobian, &structure.groups);
-        span.extend(clear, structure.rank);
+        let mut span = ColumnSpan::new(
+            &MassFactorisation::new(&SMatrix::identity().data.0),
+            jacobian,
+            &structure.groups,
+        );
+        span.extend_basis(clear, structure.rank);
         let regular = span.rank >= structure.rank;
-        span.extend(rounding_threshold(), structure.rank);
-        let triangle = Triangle::new(&span);
+        span.extend_basis(rounding_threshold(), structure.rank);
+        let triangle = TriangularFactor::new(&span);
         Self { span, triangle, regular }
     }
 
-    /// Returns the `x` of minimum norm with `J x = −gap`.
+    /// Returns the `x` of minimum norm with `J x = −gap`, for the constraint Jacobian `J`.
     fn minimum_norm_correction(&self, gap: &SVector<T, NC>) -> SVector<T, NV> {
         let known = self.triangle.particular_solution(&self.span, &gap.data.0[0]);
         let mut x = [T::zero(); NV];
         x.iter_mut().zip(&known).take(self.span.rank).for_each(|(x, known)| *x = *known);
-        SVector::from(self.span.backward(x))
+        SVector::from(self.span.undo_reflections(x))
     }
 
-    /// Returns the projection `P` on the null space of the rows.
+    /// Returns the projection `P` onto the null space of the constraint rows.
     fn null_space_projection(&self) -> SMatrix<T, NV, NV> {
         let mut free = SMatrix::<T, NV, NV>::identity();
         for column in &mut free.data.0 {
-            let mut x = self.span.forward(column);
+            let mut x = self.span.apply_reflections(column);
             x.iter_mut().take(self.span.rank).for_each(|x| *x = T::zero());
-            *column = self.span.backward(x);
+            *column = self.span.undo_reflections(x);
         }
         free
     }
 }
 
-/// Permitted accelerations: `P y + c` for any `y`.
-struct Possible<T, const NV: usize> {
+/// Accelerations that the constraints permit: `P y + c` for any `y`, with the projection `P` onto the null
+/// space of the constraints.
+struct PermittedAccelerations<T, const NV: usize> {
     free: SMatrix<T, NV, NV>,
     bend: SVector<T, NV>,
 }
 
-impl<T: Real, const NV: usize> Possible<T, NV> {
+impl<T: Real, const NV: usize> PermittedAccelerations<T, NV> {
     /// Returns the permitted acceleration that follows from masses and forces (Gauss's principle). Rows that
     /// span the complement of the permitted accelerations are treated as constraints.
     fn permitted_acceleration<const NC: usize>(
         &self,
         structure: &Structure<'_, NC>,
-        system: &System<T, NV, NC>,
+        system: &DynamicsEquations<T, NV, NC>,
     ) -> Option<SVector<T, NV>> {
         let mut rest = (SMatrix::identity() - self.free).data.0;
         let (mut jacobian, mut bias) = (SMatrix::<T, NC, NV>::zeros(), [T::zero(); NC]);
@@ -308,9 +326,14 @@ impl<T: Real, const NV: usize> Possible<T, NV> {
         let (mass, force) = system.loaded_mass_and_forces(structure);
         let groups = core::array::from_fn(|k| k);
         let open = Structure { groups, determining: &[], rank: structure.rank };
-        let system =
-            System { mass: SMatrix::from_array_storage(nalgebra::ArrayStorage(mass)), jacobian, force, bias };
-        let ((a, _), regular) = system.solve_above_magnitude(&open, rounding_threshold(), Weak::Dropped);
+        let system = DynamicsEquations {
+            mass: SMatrix::from_array_storage(nalgebra::ArrayStorage(mass)),
+            jacobian,
+            force,
+            bias,
+        };
+        let ((a, _), regular) =
+            system.solve_above_magnitude(&open, rounding_threshold(), DependentRows::Dropped);
         (regular && a.iter().all(|a| a.is_finite())).then_some(a)
     }
 }

@@ -7,64 +7,65 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 /// Number with about 32 digits, represented as a sum of two (Dekker, *A floating-point technique for
 /// extending the available precision*, Numer. Math. 18, 1971).
 #[derive(Clone, Copy)]
-struct Double(f64, f64);
+struct DoubleDouble(f64, f64);
 
-impl Double {
-    fn sum_of_doubles(a: f64, b: f64) -> Double {
+impl DoubleDouble {
+    fn sum_of_doubles(a: f64, b: f64) -> DoubleDouble {
         let s = a + b;
         let part = s - a;
-        Double(s, (a - (s - part)) + (b - part))
+        DoubleDouble(s, (a - (s - part)) + (b - part))
     }
 }
 
-impl Add for Double {
-    type Output = Double;
-    fn add(self, o: Double) -> Double {
-        let (high, low) = (Double::sum_of_doubles(self.0, o.0), Double::sum_of_doubles(self.1, o.1));
-        let middle = Double::sum_of_doubles(high.0, high.1 + low.0);
-        Double::sum_of_doubles(middle.0, middle.1 + low.1)
+impl Add for DoubleDouble {
+    type Output = DoubleDouble;
+    fn add(self, o: DoubleDouble) -> DoubleDouble {
+        let (high, low) =
+            (DoubleDouble::sum_of_doubles(self.0, o.0), DoubleDouble::sum_of_doubles(self.1, o.1));
+        let middle = DoubleDouble::sum_of_doubles(high.0, high.1 + low.0);
+        DoubleDouble::sum_of_doubles(middle.0, middle.1 + low.1)
     }
 }
 
-impl Neg for Double {
-    type Output = Double;
-    fn neg(self) -> Double {
-        Double(-self.0, -self.1)
+impl Neg for DoubleDouble {
+    type Output = DoubleDouble;
+    fn neg(self) -> DoubleDouble {
+        DoubleDouble(-self.0, -self.1)
     }
 }
 
-impl Sub for Double {
-    type Output = Double;
-    fn sub(self, o: Double) -> Double {
+impl Sub for DoubleDouble {
+    type Output = DoubleDouble;
+    fn sub(self, o: DoubleDouble) -> DoubleDouble {
         self + -o
     }
 }
 
-impl Mul for Double {
-    type Output = Double;
-    fn mul(self, o: Double) -> Double {
+impl Mul for DoubleDouble {
+    type Output = DoubleDouble;
+    fn mul(self, o: DoubleDouble) -> DoubleDouble {
         let p = self.0 * o.0;
-        Double::sum_of_doubles(p, self.0.mul_add(o.0, -p) + (self.0 * o.1 + self.1 * o.0))
+        DoubleDouble::sum_of_doubles(p, self.0.mul_add(o.0, -p) + (self.0 * o.1 + self.1 * o.0))
     }
 }
 
-impl Div for Double {
-    type Output = Double;
-    fn div(self, o: Double) -> Double {
+impl Div for DoubleDouble {
+    type Output = DoubleDouble;
+    fn div(self, o: DoubleDouble) -> DoubleDouble {
         let first = self.0 / o.0;
-        let rest = self - o * Double(first, 0.0);
+        let rest = self - o * DoubleDouble(first, 0.0);
         let second = rest.0 / o.0;
-        let rest = rest - o * Double(second, 0.0);
-        Double::sum_of_doubles(first, second) + Double(rest.0 / o.0, 0.0)
+        let rest = rest - o * DoubleDouble(second, 0.0);
+        DoubleDouble::sum_of_doubles(first, second) + DoubleDouble(rest.0 / o.0, 0.0)
     }
 }
 
 /// Random number generator SplitMix64 (Steele, Lea and Flood, 2014).
-struct Random(u64);
+struct SplitMix64(u64);
 
-impl Random {
+impl SplitMix64 {
     /// Returns a uniformly distributed number in `[-1, 1)`.
-    fn next(&mut self) -> f64 {
+    fn next_number(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -75,50 +76,51 @@ impl Random {
 
 /// Random system of constrained dynamics: mass matrix, Jacobian, forces and biases.
 #[derive(Clone, Copy)]
-struct Sample<const NV: usize, const NC: usize> {
+struct RandomSystem<const NV: usize, const NC: usize> {
     mass: SMatrix<f64, NV, NV>,
     jacobian: SMatrix<f64, NC, NV>,
     force: [f64; NV],
     bias: [f64; NC],
 }
 
-impl<const NV: usize, const NC: usize> Sample<NV, NC> {
+impl<const NV: usize, const NC: usize> RandomSystem<NV, NC> {
     /// Returns a random system of point masses on a chain of coordinates; masses differ by up to a factor of
     /// `10^(2 spread)`. Half of the systems have a constraint that differs from another one by at least
     /// `10^-near`.
-    fn random_system(random: &mut Random, spread: f64, near: f64) -> Self {
+    fn generate_system(random: &mut SplitMix64, spread: f64, near: f64) -> Self {
         let mut mass = SMatrix::<f64, NV, NV>::zeros();
         for link in 0..NV {
-            let weight = 10_f64.powf(spread * random.next());
+            let weight = 10_f64.powf(spread * random.next_number());
             for _ in 0..2 {
-                let moves = SVector::<f64, NV>::from_fn(|i, _| if i <= link { random.next() } else { 0.0 });
+                let moves =
+                    SVector::<f64, NV>::from_fn(|i, _| if i <= link { random.next_number() } else { 0.0 });
                 mass += moves * moves.transpose() * weight;
             }
         }
-        let mut jacobian = SMatrix::<f64, NC, NV>::from_fn(|i, j| match random.next() < -0.4 {
+        let mut jacobian = SMatrix::<f64, NC, NV>::from_fn(|i, j| match random.next_number() < -0.4 {
             true if i != j => 0.0,
-            _ => random.next(),
+            _ => random.next_number(),
         });
-        if NC > 1 && random.next() > 0.0 {
-            let part = 10_f64.powf(-near * random.next().abs());
-            let other = jacobian.row(0) * random.next() + jacobian.row(NC - 1) * part;
+        if NC > 1 && random.next_number() > 0.0 {
+            let part = 10_f64.powf(-near * random.next_number().abs());
+            let other = jacobian.row(0) * random.next_number() + jacobian.row(NC - 1) * part;
             jacobian.set_row(NC - 1, &other);
         }
-        let force = core::array::from_fn(|_| random.next());
-        Self { mass, jacobian, force, bias: core::array::from_fn(|_| random.next()) }
+        let force = core::array::from_fn(|_| random.next_number());
+        Self { mass, jacobian, force, bias: core::array::from_fn(|_| random.next_number()) }
     }
 
     /// Returns the system with a random rounding error in every number.
-    fn rounded_system(&self, random: &mut Random, epsilon: f64) -> Self {
+    fn rounded_system(&self, random: &mut SplitMix64, epsilon: f64) -> Self {
         let mut other = *self;
         for i in 0..NV {
             for j in 0..=i {
                 let size = (self.mass[(i, i)] * self.mass[(j, j)]).sqrt();
-                other.mass[(i, j)] += epsilon * size * random.next();
+                other.mass[(i, j)] += epsilon * size * random.next_number();
                 other.mass[(j, i)] = other.mass[(i, j)];
             }
         }
-        let mut shake = |x: &mut f64| *x *= 1.0 + epsilon * random.next();
+        let mut shake = |x: &mut f64| *x *= 1.0 + epsilon * random.next_number();
         other.jacobian.iter_mut().for_each(&mut shake);
         other.force.iter_mut().for_each(&mut shake);
         other.bias.iter_mut().for_each(&mut shake);
@@ -128,7 +130,7 @@ impl<const NV: usize, const NC: usize> Sample<NV, NC> {
     /// Returns accelerations and multipliers from elimination with complete pivoting.
     fn exact_solution(&self) -> (SVector<f64, NV>, SVector<f64, NC>) {
         let n = NV + NC;
-        let mut rows: Vec<Vec<Double>> = (0..n)
+        let mut rows: Vec<Vec<DoubleDouble>> = (0..n)
             .map(|i| {
                 let entry_of_system = |j: usize| match (i < NV, j < NV) {
                     (true, true) => self.mass[(i, j)],
@@ -137,7 +139,7 @@ impl<const NV: usize, const NC: usize> Sample<NV, NC> {
                     (false, false) => 0.0,
                 };
                 let right = if i < NV { self.force[i] } else { -self.bias[i - NV] };
-                (0..n).map(entry_of_system).chain([right]).map(|x| Double(x, 0.0)).collect()
+                (0..n).map(entry_of_system).chain([right]).map(|x| DoubleDouble(x, 0.0)).collect()
             })
             .collect();
         let mut order: Vec<usize> = (0..n).collect();
@@ -156,7 +158,7 @@ impl<const NV: usize, const NC: usize> Sample<NV, NC> {
                 }
             }
         }
-        let mut x = vec![Double(0.0, 0.0); n];
+        let mut x = vec![DoubleDouble(0.0, 0.0); n];
         for k in (0..n).rev() {
             let rest = (k + 1..n).fold(rows[k][n], |sum, j| sum - rows[k][j] * x[j]);
             x[k] = rest / rows[k][k];
@@ -169,13 +171,13 @@ impl<const NV: usize, const NC: usize> Sample<NV, NC> {
         let convert_number = |x: f64| constant::<T>(x);
         let structure = Structure { groups: core::array::from_fn(|k| k), determining: &[], rank };
         let (mass, jacobian) = (self.mass.map(convert_number), self.jacobian.map(convert_number));
-        let (a, lambda) = System {
+        let (a, lambda) = DynamicsEquations {
             mass,
             jacobian,
             force: self.force.map(convert_number),
             bias: self.bias.map(convert_number),
         }
-        .solve_above_magnitude(&structure, well_conditioned_threshold(), Weak::Taken)
+        .solve_above_magnitude(&structure, well_conditioned_threshold(), DependentRows::Taken)
         .0;
         (a.map(crate::private::to_f64), lambda.map(crate::private::to_f64))
     }
@@ -184,13 +186,13 @@ impl<const NV: usize, const NC: usize> Sample<NV, NC> {
 /// Checks that the solution of a random constrained system is as close to the exact solution as rounding
 /// errors of the system permit.
 fn check_against_exact<T: Real, const NV: usize, const NC: usize>(seed: u64, spread: f64, near: f64) {
-    let mut random = Random(seed);
+    let mut random = SplitMix64(seed);
     let epsilon = crate::private::to_f64(epsilon::<T>());
     for case in 0..300 {
-        let all = Sample::<NV, NC>::random_system(&mut random, spread, near);
+        let all = RandomSystem::<NV, NC>::generate_system(&mut random, spread, near);
         // Numbers rounded to `T`.
         let round_to_scalar = |x: f64| crate::private::to_f64(constant::<T>(x));
-        let system = Sample {
+        let system = RandomSystem {
             mass: all.mass.map(round_to_scalar),
             jacobian: all.jacobian.map(round_to_scalar),
             force: all.force.map(round_to_scalar),
@@ -226,28 +228,33 @@ fn light_and_heavy_bodies_lose_no_digits() {
 }
 
 #[test]
-fn nearly_dependent_constraints_are_kept() {
+fn nearly_dependent_constraints_are_satisfied() {
     check_against_exact::<f64, 5, 3>(7, 0.5, 12.0);
     check_against_exact::<f64, 8, 6>(8, 2.0, 12.0);
     check_against_exact::<f64, 8, 6>(9, 6.0, 10.0);
     check_against_exact::<f32, 5, 3>(10, 0.5, 4.0);
 }
 
-/// An exactly redundant constraint. The motion is that without this constraint, and the multipliers have
-/// minimum norm.
+/// Compares a system with an exactly redundant constraint with the system without it: the motions are equal,
+/// and the multipliers have minimum norm.
 #[test]
-fn what_follows_from_others_changes_nothing() {
-    let mut random = Random(11);
+fn dependent_constraint_preserves_the_motion() {
+    let mut random = SplitMix64(11);
     for case in 0..300 {
-        let less = Sample::<6, 3>::random_system(&mut random, if case % 2 == 0 { 6.0 } else { 0.5 }, 0.0);
+        let less =
+            RandomSystem::<6, 3>::generate_system(&mut random, if case % 2 == 0 { 6.0 } else { 0.5 }, 0.0);
         let (a, _) = less.exact_solution();
         let mut error = 1e-15 * a.amax();
         for _ in 0..4 {
             error = error.max((a - less.rounded_system(&mut random, 1e-16).exact_solution().0).amax());
         }
         let combination = [0.5, -2.0, 1.0, -1.0];
-        let mut all =
-            Sample::<6, 4> { mass: less.mass, jacobian: SMatrix::zeros(), force: less.force, bias: [0.0; 4] };
+        let mut all = RandomSystem::<6, 4> {
+            mass: less.mass,
+            jacobian: SMatrix::zeros(),
+            force: less.force,
+            bias: [0.0; 4],
+        };
         for k in 0..3 {
             // Fewer digits, so that sums are exact.
             let round_to_few_bits = |x: f64| (x * 1024.0).round() / 1024.0;
@@ -258,7 +265,7 @@ fn what_follows_from_others_changes_nothing() {
         let sum = (0..3).fold(all.jacobian.row(3) * 0.0, |sum, k| sum + all.jacobian.row(k) * combination[k]);
         all.jacobian.set_row(3, &sum);
         all.bias[3] = (0..3).map(|k| all.bias[k] * combination[k]).sum();
-        let short = Sample::<6, 3> {
+        let short = RandomSystem::<6, 3> {
             jacobian: all.jacobian.fixed_rows::<3>(0).into_owned(),
             bias: [all.bias[0], all.bias[1], all.bias[2]],
             ..less
@@ -277,11 +284,11 @@ fn what_follows_from_others_changes_nothing() {
     }
 }
 
-/// A particle on a line in the plane with the same constraint twice. Each constraint exerts half of the
-/// force.
+/// Checks a particle on a line in the plane with the same constraint twice: each constraint exerts half of
+/// the force.
 #[test]
 fn redundant_constraints_share_the_force() {
-    let system = Sample::<2, 2> {
+    let system = RandomSystem::<2, 2> {
         mass: SMatrix::identity() * 2.0,
         jacobian: SMatrix::<f64, 2, 2>::new(0.0, 1.0, 0.0, 1.0),
         force: [3.0, -20.0],
@@ -292,15 +299,15 @@ fn redundant_constraints_share_the_force() {
     assert!((lambda - SVector::from([10.0, 10.0])).norm() < 1e-14);
 }
 
-/// A mass on a line, and a coordinate without inertia that equals twice the mass's position. Forces on both
-/// accelerate the mass.
+/// Checks a mass on a line with a coordinate without inertia that equals twice the position of the mass:
+/// forces on both accelerate the mass.
 #[test]
 fn coordinates_without_inertia_are_determined() {
     let structure = Structure { groups: [0], determining: &[0], rank: 1 };
     let mass = SMatrix::<f64, 2, 2>::new(4.0, 0.0, 0.0, 0.0);
     let jacobian = SMatrix::<f64, 1, 2>::new(-2.0, 1.0);
-    let (a, lambda) = System { mass, jacobian, force: [1.0, 3.0], bias: [0.5] }
-        .solve_above_magnitude(&structure, well_conditioned_threshold(), Weak::Taken)
+    let (a, lambda) = DynamicsEquations { mass, jacobian, force: [1.0, 3.0], bias: [0.5] }
+        .solve_above_magnitude(&structure, well_conditioned_threshold(), DependentRows::Taken)
         .0;
     assert!((a - SVector::from([1.75, 3.0])).norm() < 1e-14, "{a}");
     assert!((lambda[0] + 3.0).abs() < 1e-14, "{lambda}");

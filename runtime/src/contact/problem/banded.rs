@@ -1,12 +1,15 @@
 //! Linear equations of the velocity change: `(1 + Bᵀ H B) Δw = Bᵀ c`.
 
-use super::basis::{add, dot};
-use super::{List, Square};
+use super::basis::{add_multiple, dot};
+use super::{RowList, RowMatrix};
 use crate::Real;
 
 /// Makes the first `size` rows those of the unit matrix, and returns the index behind the last entry of each.
-pub(super) fn identify<T: Real, const NR: usize>(system: &mut Square<T, NR>, size: usize) -> List<usize, NR> {
-    let mut ends = List::repeat(0);
+pub(super) fn set_unit_rows<T: Real, const NR: usize>(
+    system: &mut RowMatrix<T, NR>,
+    size: usize,
+) -> RowList<usize, NR> {
+    let mut ends = RowList::repeat_entry(0);
     for (i, (row, end)) in system.iter_mut().zip(ends.iter_mut()).enumerate().take(size) {
         row.iter_mut().take(size).for_each(|entry| *entry = T::zero());
         (row[i], *end) = (T::one(), i + 1);
@@ -17,8 +20,8 @@ pub(super) fn identify<T: Real, const NR: usize>(system: &mut Square<T, NR>, siz
 /// Solves a system of `size` equations in place by Gaussian elimination with pivots of the columns. The
 /// matrix has its entries at symmetric places, in each row up to its end. Unknowns without a pivot are zero.
 pub(super) fn eliminate_banded<T: Real, const NR: usize>(
-    system: &mut Square<T, NR>,
-    (right, ends): (&mut List<T, NR>, &mut List<usize, NR>),
+    system: &mut RowMatrix<T, NR>,
+    (right, ends): (&mut RowList<T, NR>, &mut RowList<usize, NR>),
     size: usize,
 ) {
     let mut limit = 0;
@@ -38,8 +41,8 @@ pub(super) fn eliminate_banded<T: Real, const NR: usize>(
                 let (one, other) = (one.get_mut(part.clone()), other.get_mut(part));
                 one.unwrap_or_default().swap_with_slice(other.unwrap_or_default());
             }
-            right.exchange(best, column);
-            ends.exchange(best, column);
+            right.exchange_entries(best, column);
+            ends.exchange_entries(best, column);
         }
         let end = ends[column];
         let (done, rows) = system.split_at_mut_checked(column + 1).unwrap_or_default();
@@ -53,7 +56,7 @@ pub(super) fn eliminate_banded<T: Real, const NR: usize>(
         for (row, (other, own)) in rows.iter_mut().zip(others).take(limit - column - 1) {
             let factor = row[column] * inverse;
             if factor != T::zero() {
-                add(row.get_mut(column + 1..end).unwrap_or_default(), -factor, pivots);
+                add_multiple(row.get_mut(column + 1..end).unwrap_or_default(), -factor, pivots);
                 *other -= factor * value;
                 *own = (*own).max(end);
             }

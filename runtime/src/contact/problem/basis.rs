@@ -1,8 +1,8 @@
 //! Rows of `B` in `W = B Bᵀ`.
 
-use super::{List, Problem, Square};
+use super::{ContactProblem, RowList, RowMatrix};
 use crate::Real;
-use crate::contact::total::Total;
+use crate::contact::total::TotalArray;
 use crate::private::{constant, epsilon};
 use core::ops::Range;
 use nalgebra::SVector;
@@ -13,14 +13,14 @@ const ROUNDINGS: f64 = 64.0;
 /// `B`, row by row: the effect of each impulse on `w`, the velocity in the metric of the kinetic energy. A
 /// contact has entries in the columns of its bodies.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct Basis<T, const NR: usize> {
-    rows: Square<T, NR>,
+pub(in super::super) struct BasisRows<T, const NR: usize> {
+    rows: RowMatrix<T, NR>,
     /// Columns of the first entry of each row that is not zero, and behind the last.
-    reach: Total<(usize, usize), NR>,
+    reach: TotalArray<(usize, usize), NR>,
     /// Number of rows.
     size: usize,
     /// Entry of `w` for each column.
-    columns: Total<usize, NR>,
+    columns: TotalArray<usize, NR>,
     /// Number of columns; zero if `B` is not computed yet.
     rank: usize,
     /// Whether `B Bᵀ` equals `W` to rounding of each entry.
@@ -28,16 +28,16 @@ pub(in super::super) struct Basis<T, const NR: usize> {
 }
 
 /// Entries of `w` that a matrix `B` has columns for.
-pub(in super::super) struct Columns<const N: usize> {
+pub(in super::super) struct UsedColumns<const N: usize> {
     is_used: [bool; N],
     /// Number of used entries before each.
     index: [usize; N],
     count: usize,
 }
 
-impl<const N: usize> Columns<N> {
+impl<const N: usize> UsedColumns<N> {
     /// Returns the columns for the used entries.
-    pub(in super::super) fn of(is_used: [bool; N]) -> Self {
+    pub(in super::super) fn of_used_entries(is_used: [bool; N]) -> Self {
         let (mut index, mut count) = ([0; N], 0);
         for (index, is_used) in index.iter_mut().zip(&is_used) {
             *index = count;
@@ -66,8 +66,8 @@ impl<T: Real> ContactBlock<T> {
         Self { rows: [row; ROWS], count: 1, entries: [[T::zero(); ROWS]; ROWS] }
     }
 
-    /// Adds rows of friction with zeros, and returns the index of the first.
-    pub(super) fn push(&mut self, rows: Range<usize>) -> usize {
+    /// Adds rows of friction to the block, filled with zeros, and returns the index of the first.
+    pub(super) fn push_friction_rows(&mut self, rows: Range<usize>) -> usize {
         let first = self.count;
         for row in rows {
             if let Some(entry) = self.rows.get_mut(self.count) {
@@ -79,7 +79,7 @@ impl<T: Real> ContactBlock<T> {
     }
 
     /// Adds to the derivative of an impulse with respect to a contact velocity.
-    pub(super) fn add(&mut self, i: usize, j: usize, value: T) {
+    pub(super) fn add_entry(&mut self, i: usize, j: usize, value: T) {
         if let Some(entry) = self.entries.get_mut(i).and_then(|row| row.get_mut(j)) {
             *entry += value;
         }
@@ -87,23 +87,23 @@ impl<T: Real> ContactBlock<T> {
 
     /// Adds the product of a column and a row of values to the rows of friction from `first` on.
     pub(super) fn add_product(&mut self, first: usize, factor: T, [x, y]: [T; 2]) {
-        self.add(first, first, factor * x * x);
-        self.add(first, first + 1, factor * x * y);
-        self.add(first + 1, first, factor * x * y);
-        self.add(first + 1, first + 1, factor * y * y);
+        self.add_entry(first, first, factor * x * x);
+        self.add_entry(first, first + 1, factor * x * y);
+        self.add_entry(first + 1, first, factor * x * y);
+        self.add_entry(first + 1, first + 1, factor * y * y);
     }
 }
 
-impl<T: Real, const NR: usize> Basis<T, NR> {
+impl<T: Real, const NR: usize> BasisRows<T, NR> {
     /// Returns `B` without columns, which is not computed yet.
-    pub(in super::super) fn none() -> Self {
-        let rows = Square::repeat(List::repeat(T::zero()));
-        let (reach, columns) = (Total::repeat((0, 0)), Total::repeat(0));
+    pub(in super::super) fn without_columns() -> Self {
+        let rows = RowMatrix::repeat_entry(RowList::repeat_entry(T::zero()));
+        let (reach, columns) = (TotalArray::repeat_entry((0, 0)), TotalArray::repeat_entry(0));
         Self { rows, reach, size: 0, columns, rank: 0, is_exact: false }
     }
 
     /// Begins `B` with columns, and without rows; false if the columns are more than the arrays have.
-    pub(in super::super) fn begin<const N: usize>(&mut self, columns: &Columns<N>) -> bool {
+    pub(in super::super) fn begin_columns<const N: usize>(&mut self, columns: &UsedColumns<N>) -> bool {
         (self.size, self.rank, self.is_exact) = (0, 0, false);
         if columns.count == 0 || columns.count > NR {
             return false;
@@ -114,9 +114,14 @@ impl<T: Real, const NR: usize> Basis<T, NR> {
         true
     }
 
-    /// Adds a row with the entries of `w` from `first` on, zeros elsewhere.
-    pub(in super::super) fn push<const N: usize>(&mut self, columns: &Columns<N>, first: usize, w: &[T]) {
-        let Columns { is_used, index, .. } = columns;
+    /// Appends a row to `B`: the entries `w` from column `first` of the mechanism on, zeros before them.
+    pub(in super::super) fn push_row<const N: usize>(
+        &mut self,
+        columns: &UsedColumns<N>,
+        first: usize,
+        w: &[T],
+    ) {
+        let UsedColumns { is_used, index, .. } = columns;
         let (row, mut reach) = (&mut self.rows[self.size], (NR, 0));
         let places = index.iter().zip(is_used).skip(first);
         for (entry, (index, _)) in
@@ -130,18 +135,21 @@ impl<T: Real, const NR: usize> Basis<T, NR> {
     }
 
     /// Sets the rows to `chosen` ones of another matrix `B`.
-    pub(super) fn select<const N: usize>(&mut self, from: &Basis<T, N>, chosen: &[usize]) {
+    pub(super) fn select_rows<const N: usize>(&mut self, from: &BasisRows<T, N>, chosen: &[usize]) {
         if from.rank == 0 {
             return;
         }
         let mut is_used = [false; N];
-        for (first, row) in chosen.iter().map(|i| from.row(*i)) {
+        for (first, row) in chosen.iter().map(|i| from.nonzero_part_of_row(*i)) {
             let entries = is_used.iter_mut().skip(first).zip(row);
             entries.for_each(|(is_used, entry)| *is_used |= *entry != T::zero());
         }
-        let columns = Columns::of(is_used);
-        if self.begin(&columns) {
-            chosen.iter().map(|i| from.row(*i)).for_each(|(first, row)| self.push(&columns, first, row));
+        let columns = UsedColumns::of_used_entries(is_used);
+        if self.begin_columns(&columns) {
+            chosen
+                .iter()
+                .map(|i| from.nonzero_part_of_row(*i))
+                .for_each(|(first, row)| self.push_row(&columns, first, row));
             self.columns.iter_mut().take(self.rank).for_each(|column| *column = from.columns[*column]);
             self.is_exact = from.is_exact;
         }
@@ -152,9 +160,9 @@ impl<T: Real, const NR: usize> Basis<T, NR> {
         self.size = size;
         for (row, reach) in self.rows.iter().zip(self.reach.iter_mut()).take(size) {
             let row = row.get(..self.rank).unwrap_or_default();
-            let is_any = |entry: &T| *entry != T::zero();
-            let first = row.iter().position(is_any).unwrap_or(0);
-            *reach = (first, row.iter().rposition(is_any).map_or(first, |last| last + 1));
+            let is_nonzero = |entry: &T| *entry != T::zero();
+            let first = row.iter().position(is_nonzero).unwrap_or(0);
+            *reach = (first, row.iter().rposition(is_nonzero).map_or(first, |last| last + 1));
         }
     }
 
@@ -164,12 +172,12 @@ impl<T: Real, const NR: usize> Basis<T, NR> {
     }
 
     /// Returns the number of columns.
-    pub(super) fn rank(&self) -> usize {
+    pub(super) fn column_count(&self) -> usize {
         self.rank
     }
 
     /// Returns the first column of a row that has an entry, and the entries from there to the last.
-    pub(super) fn row(&self, i: usize) -> (usize, &[T]) {
+    pub(super) fn nonzero_part_of_row(&self, i: usize) -> (usize, &[T]) {
         let (first, last) = self.reach[i];
         (first, self.rows[i].get(first..last).unwrap_or_default())
     }
@@ -178,29 +186,29 @@ impl<T: Real, const NR: usize> Basis<T, NR> {
     pub(super) fn add_block(
         &self,
         block: &ContactBlock<T>,
-        matrix: &mut Square<T, NR>,
-        ends: &mut List<usize, NR>,
+        matrix: &mut RowMatrix<T, NR>,
+        ends: &mut RowList<usize, NR>,
     ) {
         let ContactBlock { rows, count, entries } = block;
         let (mut first, mut last) = (NR, 0);
         for i in rows.iter().take(*count) {
-            let (start, row) = self.row(*i);
+            let (start, row) = self.nonzero_part_of_row(*i);
             if !row.is_empty() {
                 (first, last) = (first.min(start), last.max(start + row.len()));
             }
         }
-        let columns = |i: usize| self.rows[i].get(first..last).unwrap_or_default();
+        let row_columns = |i: usize| self.rows[i].get(first..last).unwrap_or_default();
         for top in (0..*count).step_by(AT_ONCE) {
-            let mut products = [List::<T, NR>::repeat(T::zero()); AT_ONCE];
+            let mut products = [RowList::<T, NR>::repeat_entry(T::zero()); AT_ONCE];
             let mut left = [&[] as &[T]; AT_ONCE];
             let mut is_any = false;
             for ((product, left), i) in products.iter_mut().zip(&mut left).zip(top..*count) {
                 let product = product.get_mut(..last.saturating_sub(first)).unwrap_or_default();
                 let (Some(row), Some(factors)) = (rows.get(i), entries.get(i)) else { continue };
-                *left = columns(*row);
+                *left = row_columns(*row);
                 for (factor, j) in factors.iter().zip(rows).take(*count) {
                     if *factor != T::zero() {
-                        add(product, *factor, columns(*j));
+                        add_multiple(product, *factor, row_columns(*j));
                         is_any = true;
                     }
                 }
@@ -222,22 +230,22 @@ impl<T: Real, const NR: usize> Basis<T, NR> {
     }
 
     /// Returns `B w`.
-    pub(super) fn rates(&self, w: &List<T, NR>) -> List<T, NR> {
-        let mut rates = List::repeat(T::zero());
+    pub(super) fn rates_of_velocity(&self, w: &RowList<T, NR>) -> RowList<T, NR> {
+        let mut rates = RowList::repeat_entry(T::zero());
         for (i, rate) in rates.iter_mut().enumerate().take(self.size) {
-            let (first, row) = self.row(i);
+            let (first, row) = self.nonzero_part_of_row(i);
             *rate = dot(row, w.get(first..first + row.len()).unwrap_or_default());
         }
         rates
     }
 
     /// Returns `Bᵀ Λ`.
-    pub(super) fn velocity(&self, impulses: &List<T, NR>) -> List<T, NR> {
-        let mut w = List::repeat(T::zero());
+    pub(super) fn velocity_of_impulses(&self, impulses: &RowList<T, NR>) -> RowList<T, NR> {
+        let mut w = RowList::repeat_entry(T::zero());
         for (i, impulse) in impulses.iter().enumerate().take(self.size) {
             if *impulse != T::zero() {
-                let (first, row) = self.row(i);
-                add(w.get_mut(first..first + row.len()).unwrap_or_default(), *impulse, row);
+                let (first, row) = self.nonzero_part_of_row(i);
+                add_multiple(w.get_mut(first..first + row.len()).unwrap_or_default(), *impulse, row);
             }
         }
         w
@@ -245,11 +253,14 @@ impl<T: Real, const NR: usize> Basis<T, NR> {
 
     /// Writes the entries of `w` that impulses change.
     pub(in super::super) fn write_velocity<const N: usize>(&self, impulses: &SVector<T, NR>, w: &mut [T; N]) {
-        self.scatter(&self.velocity(&List::new(impulses.data.0[0], T::zero())), w);
+        self.write_all_velocities(
+            &self.velocity_of_impulses(&RowList::new(impulses.data.0[0], T::zero())),
+            w,
+        );
     }
 
     /// Writes the entries of `w` of all columns.
-    pub(super) fn scatter<const N: usize>(&self, own: &List<T, NR>, w: &mut [T; N]) {
+    pub(super) fn write_all_velocities<const N: usize>(&self, own: &RowList<T, NR>, w: &mut [T; N]) {
         for (column, value) in self.columns.iter().zip(own.iter()).take(self.rank) {
             if let Some(entry) = w.get_mut(*column) {
                 *entry = *value;
@@ -258,8 +269,8 @@ impl<T: Real, const NR: usize> Basis<T, NR> {
     }
 
     /// Returns the values of `w` for all columns.
-    pub(super) fn gather<const N: usize>(&self, w: &[T; N]) -> List<T, NR> {
-        let mut own = List::repeat(T::zero());
+    pub(super) fn velocities_of_columns<const N: usize>(&self, w: &[T; N]) -> RowList<T, NR> {
+        let mut own = RowList::repeat_entry(T::zero());
         for (value, column) in own.iter_mut().zip(self.columns.iter()).take(self.rank) {
             *value = w.get(*column).copied().unwrap_or(T::zero());
         }
@@ -267,8 +278,8 @@ impl<T: Real, const NR: usize> Basis<T, NR> {
     }
 
     /// Returns the entry of `B Bᵀ` for two rows.
-    pub(super) fn product(&self, i: usize, j: usize) -> T {
-        let ((first, row), (start, other)) = (self.row(i), self.row(j));
+    pub(super) fn row_product(&self, i: usize, j: usize) -> T {
+        let ((first, row), (start, other)) = (self.nonzero_part_of_row(i), self.nonzero_part_of_row(j));
         let from = first.max(start);
         let (row, other) = (row.get(from - first..), other.get(from - start..));
         dot(row.unwrap_or_default(), other.unwrap_or_default())
@@ -276,22 +287,22 @@ impl<T: Real, const NR: usize> Basis<T, NR> {
 
     /// Returns the largest sum of the magnitudes of the terms of a contact velocity, from magnitudes `free`
     /// on.
-    pub(super) fn magnitude(&self, free: &List<T, NR>, impulses: &List<T, NR>) -> T {
-        let mut w = List::<T, NR>::repeat(T::zero());
-        let rows = || (0..self.size).map(|i| self.row(i));
-        for ((first, row), impulse) in rows().zip(impulses.iter()) {
+    pub(super) fn largest_magnitude(&self, free: &RowList<T, NR>, impulses: &RowList<T, NR>) -> T {
+        let mut w = RowList::<T, NR>::repeat_entry(T::zero());
+        let stored_rows = || (0..self.size).map(|i| self.nonzero_part_of_row(i));
+        for ((first, row), impulse) in stored_rows().zip(impulses.iter()) {
             if *impulse != T::zero() {
                 w.iter_mut().skip(first).zip(row).for_each(|(w, entry)| *w += (*impulse * *entry).abs());
             }
         }
-        rows().zip(free.iter()).fold(T::zero(), |most, ((first, row), free)| {
+        stored_rows().zip(free.iter()).fold(T::zero(), |most, ((first, row), free)| {
             let terms = row.iter().zip(w.iter().skip(first));
             most.max(terms.fold(free.abs(), |sum, (entry, w)| sum + entry.abs() * *w))
         })
     }
 }
 
-impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
+impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Computes `B` from `W` (Cholesky with pivots), unless it is known.
     pub(super) fn prepare_basis(&mut self) {
         let size = self.size;
@@ -299,9 +310,9 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             return;
         }
         // Columns first, one after another.
-        let mut columns = Square::<T, NR>::repeat(List::repeat(T::zero()));
-        let mut left = List::<T, NR>::repeat(T::zero());
-        (0..size).for_each(|i| left[i] = self.weight(i, i));
+        let mut columns = RowMatrix::<T, NR>::repeat_entry(RowList::repeat_entry(T::zero()));
+        let mut left = RowList::<T, NR>::repeat_entry(T::zero());
+        (0..size).for_each(|i| left[i] = self.weight_entry(i, i));
         let reach = left.iter().take(size).fold(T::zero(), |most, x| most.max(*x));
         let mut rank = 0;
         while rank < size {
@@ -319,11 +330,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             let reciprocal = T::one() / pivot.sqrt();
             let (done, rest) = columns.split_at_mut_checked(rank).unwrap_or_default();
             let Some(column) = rest.first_mut().and_then(|column| column.get_mut(..size)) else { break };
-            column.iter_mut().enumerate().for_each(|(i, to)| *to = self.weight(best, i));
+            column.iter_mut().enumerate().for_each(|(i, to)| *to = self.weight_entry(best, i));
             for before in done.iter() {
                 let factor = before[best];
                 if factor != T::zero() {
-                    add(column, -factor, before.get(..size).unwrap_or_default());
+                    add_multiple(column, -factor, before.get(..size).unwrap_or_default());
                 }
             }
             for (i, entry) in column.iter_mut().enumerate() {
@@ -347,6 +358,6 @@ pub(in super::super) fn dot<T: Real>(a: &[T], b: &[T]) -> T {
 }
 
 /// Adds a multiple of a vector to another.
-pub(super) fn add<T: Real>(to: &mut [T], factor: T, from: &[T]) {
+pub(super) fn add_multiple<T: Real>(to: &mut [T], factor: T, from: &[T]) {
     to.iter_mut().zip(from).for_each(|(to, from)| *to += factor * *from);
 }

@@ -17,11 +17,11 @@
 //! adds none. If the violation of Coulomb's law is small, Newton's method for the natural map continues from
 //! the impulses of a problem.
 
-use super::super::total::Total;
-use super::banded::identify;
-use super::basis::{ContactBlock, ROWS, add, dot};
-use super::trial::Trial;
-use super::{List, Problem, Square};
+use super::super::total::TotalArray;
+use super::banded::set_unit_rows;
+use super::basis::{ContactBlock, ROWS, add_multiple, dot};
+use super::trial::ImpulseTrial;
+use super::{ContactProblem, RowList, RowMatrix};
 use crate::Real;
 use crate::private::{constant, epsilon};
 
@@ -53,22 +53,22 @@ struct TangentRows<T> {
     friction: T,
 }
 
-/// Friction cone of a contact: the normal impulse and those that it bounds.
+/// Friction cone of a contact: the normal impulse, and the tangential impulses that it bounds.
 #[derive(Clone, Copy)]
-struct Cone<T> {
+struct FrictionCone<T> {
     normal: usize,
     parts: [TangentRows<T>; PARTS],
     /// Normal impulse that acts in addition and bounds friction as well.
     floor: T,
-    /// Smallest normal rate.
+    /// Smallest permitted normal velocity of the contact after the impulses.
     least: T,
-    /// Increase `s` of the normal rate.
+    /// Increase `s` of the normal velocity that makes the contact problem convex.
     raised: T,
 }
 
 /// Result of the projection of a contact impulse onto its friction cone.
 #[derive(Clone, Copy)]
-struct Projection<T> {
+struct ConeProjection<T> {
     normal: T,
     is_pressed: bool,
     /// Regularisation of the impulse along the cone.
@@ -78,22 +78,26 @@ struct Projection<T> {
     bounded: [bool; PARTS],
 }
 
-impl<T: Real> Cone<T> {
+impl<T: Real> FrictionCone<T> {
     /// Returns the kinds of friction that exist, with their indices.
-    fn parts(&self) -> impl Iterator<Item = (usize, TangentRows<T>)> {
+    fn friction_parts(&self) -> impl Iterator<Item = (usize, TangentRows<T>)> {
         self.parts.into_iter().enumerate().filter(|(_, part)| part.count > 0)
     }
 
     /// Returns the sum of the slip speeds times their coefficients of friction.
-    fn slip<const NR: usize>(&self, rates: &List<T, NR>) -> T {
-        self.parts().fold(T::zero(), |sum, (_, part)| {
+    fn weighted_slip<const NR: usize>(&self, rates: &RowList<T, NR>) -> T {
+        self.friction_parts().fold(T::zero(), |sum, (_, part)| {
             let rows = part.first..part.first + part.count;
             sum + part.friction * rows.fold(T::zero(), |sum, i| sum + rates[i] * rates[i]).sqrt()
         })
     }
 
     /// Returns the projection of `wanted` onto the cone in the metric of the regularisation.
-    fn project<const NR: usize>(&self, wanted: &List<T, NR>, weights: &List<T, NR>) -> Projection<T> {
+    fn project_impulse<const NR: usize>(
+        &self,
+        wanted: &RowList<T, NR>,
+        weights: &RowList<T, NR>,
+    ) -> ConeProjection<T> {
         let none = T::zero();
         let mut sizes = [none; PARTS];
         for ((_, part), size) in self.parts.into_iter().enumerate().zip(sizes.iter_mut()) {
@@ -108,7 +112,7 @@ impl<T: Real> Cone<T> {
         // Each bounded part raises the normal impulse. The part that needs the largest one is bounded first.
         for _ in 0..PARTS {
             let mut most: Option<(T, usize)> = None;
-            for (k, part) in self.parts() {
+            for (k, part) in self.friction_parts() {
                 let (Some(size), Some(false)) = (sizes.get(k), bounded.get(k)) else { continue };
                 let needed = *size / part.friction - self.floor;
                 let exceeds = *size > part.friction * (normal + self.floor);
@@ -131,24 +135,24 @@ impl<T: Real> Cone<T> {
         let is_pressed = normal > none;
         if !is_pressed {
             normal = none;
-            for (k, part) in self.parts() {
+            for (k, part) in self.friction_parts() {
                 if let (Some(bounded), Some(size)) = (bounded.get_mut(k), sizes.get(k)) {
                     *bounded = *size > part.friction * self.floor;
                 }
             }
         }
-        Projection { normal, is_pressed, along, sizes, bounded }
+        ConeProjection { normal, is_pressed, along, sizes, bounded }
     }
 
     /// Writes the impulses of a projection.
-    fn place<const NR: usize>(
+    fn write_impulses<const NR: usize>(
         &self,
-        found: &Projection<T>,
-        wanted: &List<T, NR>,
-        impulses: &mut List<T, NR>,
+        found: &ConeProjection<T>,
+        wanted: &RowList<T, NR>,
+        impulses: &mut RowList<T, NR>,
     ) {
         impulses[self.normal] = found.normal;
-        for (k, part) in self.parts() {
+        for (k, part) in self.friction_parts() {
             let (Some(size), Some(bounded)) = (found.sizes.get(k), found.bounded.get(k)) else { continue };
             let bound = part.friction * (found.normal + self.floor);
             let factor = if *bounded { bound / *size } else { T::one() };
@@ -159,7 +163,7 @@ impl<T: Real> Cone<T> {
 
 /// Factorises a symmetric positive definite matrix of `size` rows in place, of which the lower half is read:
 /// `L` with the reciprocals of its diagonal.
-pub(super) fn cholesky<T: Real, const NR: usize>(matrix: &mut Square<T, NR>, size: usize) {
+pub(super) fn cholesky_in_place<T: Real, const NR: usize>(matrix: &mut RowMatrix<T, NR>, size: usize) {
     for i in 0..size {
         let (done, rest) = matrix.split_at_mut_checked(i).unwrap_or_default();
         let Some(own) = rest.first_mut() else { return };
@@ -175,7 +179,11 @@ pub(super) fn cholesky<T: Real, const NR: usize>(matrix: &mut Square<T, NR>, siz
 }
 
 /// Solves for `x` with the factor of [`cholesky`].
-pub(super) fn substitute<T: Real, const NR: usize>(factor: &Square<T, NR>, size: usize, x: &mut List<T, NR>) {
+pub(super) fn substitute_factor<T: Real, const NR: usize>(
+    factor: &RowMatrix<T, NR>,
+    size: usize,
+    x: &mut RowList<T, NR>,
+) {
     for (i, own) in factor.iter().enumerate().take(size) {
         let sum = dot(own.get(..i).unwrap_or_default(), x.get(..i).unwrap_or_default());
         x[i] = (x[i] - sum) * own[i];
@@ -183,100 +191,101 @@ pub(super) fn substitute<T: Real, const NR: usize>(factor: &Square<T, NR>, size:
     for (i, own) in factor.iter().enumerate().take(size).rev() {
         x[i] *= own[i];
         let value = x[i];
-        add(x.get_mut(..i).unwrap_or_default(), -value, own.get(..i).unwrap_or_default());
+        add_multiple(x.get_mut(..i).unwrap_or_default(), -value, own.get(..i).unwrap_or_default());
     }
 }
 
 /// A convex problem, and the state of its solution.
-struct Convex<'a, T, const NK: usize, const NR: usize> {
-    problem: &'a Problem<T, NK, NR>,
-    cones: Total<Cone<T>, NK>,
+struct ConvexProblem<'a, T, const NK: usize, const NR: usize> {
+    problem: &'a ContactProblem<T, NK, NR>,
+    cones: TotalArray<FrictionCone<T>, NK>,
     count: usize,
     /// `R` and `Λ̄`.
-    weights: List<T, NR>,
-    center: List<T, NR>,
-    w: List<T, NR>,
-    rates: List<T, NR>,
-    impulses: List<T, NR>,
+    weights: RowList<T, NR>,
+    center: RowList<T, NR>,
+    w: RowList<T, NR>,
+    rates: RowList<T, NR>,
+    impulses: RowList<T, NR>,
 }
 
-impl<'a, T: Real, const NK: usize, const NR: usize> Convex<'a, T, NK, NR> {
+impl<'a, T: Real, const NK: usize, const NR: usize> ConvexProblem<'a, T, NK, NR> {
     /// Returns the first problem of a sequence, which begins without impulses.
-    fn new(problem: &'a Problem<T, NK, NR>) -> Self {
-        let zeros = List::repeat(T::zero());
-        let (cones, count) = problem.cones();
+    fn new(problem: &'a ContactProblem<T, NK, NR>) -> Self {
+        let zeros = RowList::repeat_entry(T::zero());
+        let (cones, count) = problem.list_friction_cones();
         let weights = problem.cone_weights(&cones, count);
         Self { problem, cones, count, weights, center: zeros, w: zeros, rates: zeros, impulses: zeros }
     }
 
-    fn cones(&self) -> impl Iterator<Item = &Cone<T>> {
+    fn friction_cones(&self) -> impl Iterator<Item = &FrictionCone<T>> {
         self.cones.iter().take(self.count)
     }
 
     /// Writes the impulses before their projection for contact velocities `rates`.
-    fn predict(&self, cone: &Cone<T>, rates: &List<T, NR>, wanted: &mut List<T, NR>) {
-        let prediction = |i: usize, rate: T| self.center[i] - rate / self.weights[i];
+    fn predict_impulses(&self, cone: &FrictionCone<T>, rates: &RowList<T, NR>, wanted: &mut RowList<T, NR>) {
+        let predicted_impulse = |i: usize, rate: T| self.center[i] - rate / self.weights[i];
         let n = cone.normal;
-        wanted[n] = prediction(n, rates[n] + cone.raised - cone.least);
-        for (_, part) in cone.parts() {
-            (part.first..part.first + part.count).for_each(|i| wanted[i] = prediction(i, rates[i]));
+        wanted[n] = predicted_impulse(n, rates[n] + cone.raised - cone.least);
+        for (_, part) in cone.friction_parts() {
+            (part.first..part.first + part.count).for_each(|i| wanted[i] = predicted_impulse(i, rates[i]));
         }
     }
 
     /// Returns the impulses for contact velocities `rates`.
-    fn impulses_at(&self, rates: &List<T, NR>) -> List<T, NR> {
-        let (mut wanted, mut impulses) = (List::repeat(T::zero()), List::repeat(T::zero()));
-        for cone in self.cones() {
-            self.predict(cone, rates, &mut wanted);
-            cone.place(&cone.project(&wanted, &self.weights), &wanted, &mut impulses);
+    fn impulses_at(&self, rates: &RowList<T, NR>) -> RowList<T, NR> {
+        let (mut wanted, mut impulses) = (RowList::repeat_entry(T::zero()), RowList::repeat_entry(T::zero()));
+        for cone in self.friction_cones() {
+            self.predict_impulses(cone, rates, &mut wanted);
+            cone.write_impulses(&cone.project_impulse(&wanted, &self.weights), &wanted, &mut impulses);
         }
         impulses
     }
 
     /// Begins at given impulses `Λ`: `Λ̄ = Λ` and `w = Bᵀ Λ`.
-    fn begin(&mut self, impulses: &List<T, NR>) {
-        (self.center, self.w) = (*impulses, self.problem.basis.velocity(impulses));
+    fn begin_at_impulses(&mut self, impulses: &RowList<T, NR>) {
+        (self.center, self.w) = (*impulses, self.problem.basis.velocity_of_impulses(impulses));
     }
 
     /// Sets the increases of the normal rates to those for contact velocities `rates`.
-    fn raise(&mut self, rates: &List<T, NR>) {
-        (0..self.count).for_each(|k| self.cones[k].raised = self.cones[k].slip(rates));
+    fn raise_normal_rates(&mut self, rates: &RowList<T, NR>) {
+        (0..self.count).for_each(|k| self.cones[k].raised = self.cones[k].weighted_slip(rates));
     }
 
     /// Evaluates contact velocities and impulses at `w`.
-    fn evaluate(&mut self) {
-        self.rates = self.problem.basis.rates(&self.w);
+    fn evaluate_at_velocity(&mut self) {
+        self.rates = self.problem.basis.rates_of_velocity(&self.w);
         for i in 0..self.problem.size {
             self.rates[i] += self.problem.free[i];
         }
         self.impulses = self.impulses_at(&self.rates);
     }
 
-    /// Makes `matrix` the derivative of the gradient by `w`: `1 + Bᵀ H B`.
-    fn curvature(&self, matrix: &mut Square<T, NR>) {
-        let mut ends = identify(matrix, self.problem.basis.rank());
-        let mut wanted = List::repeat(T::zero());
-        for cone in self.cones() {
-            self.predict(cone, &self.rates, &mut wanted);
-            let block = self.block(cone, &wanted);
+    /// Writes `1 + Bᵀ H B` to `matrix`, the derivative of the gradient with respect to `w`.
+    fn write_curvature(&self, matrix: &mut RowMatrix<T, NR>) {
+        let mut ends = set_unit_rows(matrix, self.problem.basis.column_count());
+        let mut wanted = RowList::repeat_entry(T::zero());
+        for cone in self.friction_cones() {
+            self.predict_impulses(cone, &self.rates, &mut wanted);
+            let block = self.cone_block(cone, &wanted);
             self.problem.basis.add_block(&block, matrix, &mut ends);
         }
     }
 
-    /// Returns the block of `H` of a cone, with the impulses `wanted` before their projection.
-    fn block(&self, cone: &Cone<T>, wanted: &List<T, NR>) -> ContactBlock<T> {
-        let (found, one, none) = (cone.project(wanted, &self.weights), T::one(), T::zero());
+    /// Returns the block of the matrix `H` that belongs to one friction cone. `wanted` are the impulses
+    /// before their projection onto the cone.
+    fn cone_block(&self, cone: &FrictionCone<T>, wanted: &RowList<T, NR>) -> ContactBlock<T> {
+        let (found, one, none) = (cone.project_impulse(wanted, &self.weights), T::one(), T::zero());
         let mut block = ContactBlock::new(cone.normal);
         // Along the cone: the normal rate, and the rates of friction at its bound.
         let mut along = [none; ROWS];
         along[0] = one;
-        for (k, part) in cone.parts() {
+        for (k, part) in cone.friction_parts() {
             let (Some(size), Some(bounded)) = (found.sizes.get(k), found.bounded.get(k)) else { continue };
             let weight = self.weights[part.first];
-            let first = block.push(part.first..part.first + part.count);
+            let first = block.push_friction_rows(part.first..part.first + part.count);
             if !bounded {
                 if found.is_pressed || cone.floor > none {
-                    (first..first + part.count).for_each(|i| block.add(i, i, one / weight));
+                    (first..first + part.count).for_each(|i| block.add_entry(i, i, one / weight));
                 }
                 continue;
             }
@@ -295,38 +304,38 @@ impl<'a, T: Real, const NK: usize, const NR: usize> Convex<'a, T, NK, NR> {
                 along
                     .iter()
                     .enumerate()
-                    .for_each(|(j, column)| block.add(i, j, *row * *column / found.along));
+                    .for_each(|(j, column)| block.add_entry(i, j, *row * *column / found.along));
             }
         }
         block
     }
 
     /// Returns the negative gradient, `Bᵀ Λ − w`.
-    fn descent(&self) -> List<T, NR> {
-        let mut descent = self.problem.basis.velocity(&self.impulses);
+    fn negative_gradient(&self) -> RowList<T, NR> {
+        let mut descent = self.problem.basis.velocity_of_impulses(&self.impulses);
         descent.iter_mut().zip(self.w.iter()).for_each(|(x, w)| *x -= *w);
         descent
     }
 
     /// Takes steps of Newton's method, at most this number, until the gradient is below a part of `w`;
     /// returns their number.
-    fn minimise(&mut self, matrix: &mut Square<T, NR>, most: usize, enough: T) -> usize {
-        let (rank, size) = (self.problem.basis.rank(), self.problem.size);
+    fn minimise_by_newton(&mut self, matrix: &mut RowMatrix<T, NR>, most: usize, enough: T) -> usize {
+        let (rank, size) = (self.problem.basis.column_count(), self.problem.size);
         let little = epsilon::<T>().powf(constant(0.72));
-        let largest = |x: &List<T, NR>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
+        let largest_magnitude = |x: &RowList<T, NR>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
         for step in 0..most {
-            let gradient = self.descent();
-            let (left, reach) = (largest(&gradient), largest(&self.w));
+            let gradient = self.negative_gradient();
+            let (left, reach) = (largest_magnitude(&gradient), largest_magnitude(&self.w));
             if left <= reach * little || (step > 0 && left <= reach * enough) {
                 return step;
             }
             self.problem.count_iteration();
             let mut change = gradient;
-            self.curvature(matrix);
-            cholesky(matrix, rank);
-            substitute(matrix, rank, &mut change);
-            let rates = self.problem.basis.rates(&change);
-            let slope = |part: T| {
+            self.write_curvature(matrix);
+            cholesky_in_place(matrix, rank);
+            substitute_factor(matrix, rank, &mut change);
+            let rates = self.problem.basis.rates_of_velocity(&change);
+            let slope_at = |part: T| {
                 let mut at = self.rates;
                 (0..size).for_each(|i| at[i] += rates[i] * part);
                 let impulses = self.impulses_at(&at);
@@ -335,16 +344,16 @@ impl<'a, T: Real, const NK: usize, const NR: usize> Convex<'a, T, NK, NR> {
                 (0..size).fold(kinetic, |sum, i| sum - impulses[i] * rates[i])
             };
             let start = -(0..rank).fold(T::zero(), |sum, i| sum + gradient[i] * change[i]);
-            let part = root(start, slope);
+            let part = step_by_slope(start, slope_at);
             (0..rank).for_each(|i| self.w[i] += change[i] * part);
-            self.evaluate();
+            self.evaluate_at_velocity();
         }
         most
     }
 }
 
 /// Returns a step length, at most one, at which the slope along a convex function is small.
-fn root<T: Real>(start: T, slope: impl Fn(T) -> T) -> T {
+fn step_by_slope<T: Real>(start: T, slope: impl Fn(T) -> T) -> T {
     let (mut low, mut high) = ((T::zero(), start), (T::one(), slope(T::one())));
     let little = start.abs() * constant(0.25);
     if high.1 <= little {
@@ -369,18 +378,23 @@ fn root<T: Real>(start: T, slope: impl Fn(T) -> T) -> T {
     part
 }
 
-impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
+impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns the friction cones, and their number.
-    fn cones(&self) -> (Total<Cone<T>, NK>, usize) {
+    fn list_friction_cones(&self) -> (TotalArray<FrictionCone<T>, NK>, usize) {
         let none = TangentRows { first: 0, count: 0, friction: T::zero() };
-        let cone =
-            Cone { normal: 0, parts: [none; PARTS], floor: T::zero(), least: T::zero(), raised: T::zero() };
-        let (mut cones, mut count) = (Total::<_, NK>::repeat(cone), 0);
+        let cone = FrictionCone {
+            normal: 0,
+            parts: [none; PARTS],
+            floor: T::zero(),
+            least: T::zero(),
+            raised: T::zero(),
+        };
+        let (mut cones, mut count) = (TotalArray::<_, NK>::repeat_entry(cone), 0);
         for k in (0..self.count).filter(|k| self.is_gap(*k)) {
             let mut parts = [none; PARTS];
             let others = (k..self.count).filter(|other| self.pressed_by[*other] == k);
             for (part, other) in parts.iter_mut().zip(others) {
-                let tangents = self.of(other).1;
+                let tangents = self.rows_of_contact(other).1;
                 *part = TangentRows {
                     first: tangents.start,
                     count: tangents.len(),
@@ -388,22 +402,22 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 };
             }
             let (normal, floor, least) = (self.rows[k].first, self.floor[k], self.least[k]);
-            cones[count] = Cone { normal, parts, floor, least, ..cone };
+            cones[count] = FrictionCone { normal, parts, floor, least, ..cone };
             count += 1;
         }
         (cones, count)
     }
 
     /// Returns the diagonal entry of `W` for each impulse, the largest one for all of a contact's friction.
-    fn cone_weights(&self, cones: &Total<Cone<T>, NK>, count: usize) -> List<T, NR> {
-        let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weight(i, i)));
+    fn cone_weights(&self, cones: &TotalArray<FrictionCone<T>, NK>, count: usize) -> RowList<T, NR> {
+        let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weight_entry(i, i)));
         let least = reach * epsilon::<T>().sqrt() + epsilon();
-        let mut weights = List::repeat(T::one());
+        let mut weights = RowList::repeat_entry(T::one());
         for cone in cones.iter().take(count) {
-            weights[cone.normal] = self.weight(cone.normal, cone.normal).max(least);
-            for (_, part) in cone.parts() {
+            weights[cone.normal] = self.weight_entry(cone.normal, cone.normal).max(least);
+            for (_, part) in cone.friction_parts() {
                 let rows = part.first..part.first + part.count;
-                let most = rows.clone().fold(least, |most, i| most.max(self.weight(i, i)));
+                let most = rows.clone().fold(least, |most, i| most.max(self.weight_entry(i, i)));
                 rows.for_each(|i| weights[i] = most);
             }
         }
@@ -413,29 +427,29 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// Returns the best impulses of a sequence of convex problems that begins at given impulses; `matrix` is
     /// workspace.
     #[inline(never)]
-    pub(super) fn by_convex_problems(
+    pub(super) fn solve_convex_sequence(
         &self,
-        start: &List<T, NR>,
-        matrix: &mut Square<T, NR>,
-    ) -> Trial<T, NK, NR> {
-        let mut convex = Convex::new(self);
+        start: &RowList<T, NR>,
+        matrix: &mut RowMatrix<T, NR>,
+    ) -> ImpulseTrial<T, NK, NR> {
+        let mut convex = ConvexProblem::new(self);
         let weights = convex.weights;
-        let mut best = self.tried(*start);
-        convex.begin(start);
+        let mut best = self.tried_impulses(*start);
+        convex.begin_at_impulses(start);
         if (0..self.size).any(|i| start[i] != T::zero()) {
-            convex.raise(&best.rates);
+            convex.raise_normal_rates(&best.rates);
         }
-        let speed = self.speed();
+        let speed = self.largest_rate();
         let mut near = NEAR.into_iter().map(|part| speed * constant(part)).peekable();
         let (mut steps, mut left) = (0, speed);
         let [first, factor, last, smallest] = REGULARISATIONS.map(constant::<T>);
         let mut regularisation = first;
         for _ in 0..PROBLEMS {
-            convex.weights = weights.each(|weight| weight * regularisation);
-            convex.evaluate();
+            convex.weights = weights.map_entries(|weight| weight * regularisation);
+            convex.evaluate_at_velocity();
             let enough = (left / speed).min(T::one()) * constant(1e-2);
-            steps += 1 + convex.minimise(matrix, STEPS_OF_ONE, enough);
-            let found = self.tried(convex.impulses);
+            steps += 1 + convex.minimise_by_newton(matrix, STEPS_OF_ONE, enough);
+            let found = self.tried_impulses(convex.impulses);
             let is_slow = found.worst.0 > left * constant(0.5);
             left = found.worst.0;
             // Comparisons with a violation that is not a number are false.
@@ -443,7 +457,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 best = found;
             }
             if near.next_if(|near| left <= *near).is_some() {
-                let exact = self.newton(found, matrix);
+                let exact = self.newton_impulses(found, matrix);
                 if exact.worst.0 < best.worst.0 {
                     best = exact;
                 }
@@ -452,12 +466,12 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             if steps >= STEPS
                 || is_stalled
                 || best.worst.0 <= speed * constant(ENOUGH)
-                || self.solves(&best)
-                || self.is_enough(&best)
+                || self.is_solved_by(&best)
+                || self.is_small_violation(&best)
             {
                 break;
             }
-            convex.raise(&found.rates);
+            convex.raise_normal_rates(&found.rates);
             convex.center = convex.impulses;
             // Impulses that hardly affect the motion converge slowly with a large regularisation.
             regularisation = match is_slow && regularisation <= last {

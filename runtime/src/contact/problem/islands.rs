@@ -1,22 +1,22 @@
 //! Groups of contacts that impulses do not couple, such as those of bodies that do not touch each other.
 
 use super::super::Rows;
-use super::super::total::Total;
-use super::linear::Equations;
-use super::{List, Problem};
+use super::super::total::TotalArray;
+use super::linear::ImpulseEquations;
+use super::{ContactProblem, RowList};
 use crate::Real;
 
 /// Number of rows up to which a group has small arrays.
 const SMALL: usize = super::super::selection::FEW;
 
-impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
+impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns the group of each contact, and the number of groups.
-    pub(super) fn groups(&self) -> (Total<usize, NK>, usize) {
+    pub(super) fn contact_groups(&self) -> (TotalArray<usize, NK>, usize) {
         if self.basis.is_exact() {
             return self.groups_by_columns();
         }
-        let (mut group, mut count) = (Total::repeat(usize::MAX), 0);
-        let mut reached = Total::<usize, NK>::repeat(0);
+        let (mut group, mut count) = (TotalArray::repeat_entry(usize::MAX), 0);
+        let mut reached = TotalArray::<usize, NK>::repeat_entry(0);
         for first in 0..self.count {
             if group[first] != usize::MAX {
                 continue;
@@ -40,27 +40,27 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Returns the group of each contact, and the number of groups: contacts with entries in common columns
     /// of `B` are in one group.
-    fn groups_by_columns(&self) -> (Total<usize, NK>, usize) {
+    fn groups_by_columns(&self) -> (TotalArray<usize, NK>, usize) {
         // Each column refers to an earlier one of its group, the first one to itself.
-        let mut earlier = List::<usize, NR>::repeat(0);
+        let mut earlier = RowList::<usize, NR>::repeat_entry(0);
         earlier.iter_mut().enumerate().for_each(|(column, earlier)| *earlier = column);
-        let first_of = |earlier: &List<usize, NR>, mut column: usize| {
+        let root_column = |earlier: &RowList<usize, NR>, mut column: usize| {
             while earlier[column] != column {
                 column = earlier[column];
             }
             column
         };
-        let mut own = Total::<usize, NK>::repeat(0);
+        let mut own = TotalArray::<usize, NK>::repeat_entry(0);
         for k in 0..self.count {
             let mut known = if self.is_gap(k) { None } else { Some(own[self.pressed_by[k]]) };
-            for i in self.all_of(k) {
-                let (start, row) = self.basis.row(i);
+            for i in self.all_rows_of(k) {
+                let (start, row) = self.basis.nonzero_part_of_row(i);
                 for (column, _) in (start..).zip(row).filter(|(_, entry)| **entry != T::zero()) {
                     let known = known.get_or_insert(column);
                     if earlier[column] == *known {
                         continue;
                     }
-                    let (one, other) = (first_of(&earlier, column), first_of(&earlier, *known));
+                    let (one, other) = (root_column(&earlier, column), root_column(&earlier, *known));
                     *known = one.min(other);
                     earlier[one.max(other)] = *known;
                     earlier[column] = *known;
@@ -68,10 +68,10 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             }
             own[k] = known.unwrap_or_default();
         }
-        let (mut group, mut count) = (Total::repeat(0), 0);
-        let mut known = List::<usize, NR>::repeat(usize::MAX);
+        let (mut group, mut count) = (TotalArray::repeat_entry(0), 0);
+        let mut known = RowList::<usize, NR>::repeat_entry(usize::MAX);
         for k in 0..self.count {
-            let column = first_of(&earlier, own[k]);
+            let column = root_column(&earlier, own[k]);
             if known[column] == usize::MAX {
                 known[column] = count;
                 count += 1;
@@ -84,17 +84,19 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// Whether impulses at one contact change contact velocities of the other, or press its friction.
     fn are_coupled(&self, k: usize, other: usize) -> bool {
         self.pressed_by[k] == self.pressed_by[other]
-            || self.all_of(k).any(|i| self.all_of(other).any(|j| self.weight(i, j) != T::zero()))
+            || self
+                .all_rows_of(k)
+                .any(|i| self.all_rows_of(other).any(|j| self.weight_entry(i, j) != T::zero()))
     }
 
     /// Returns the impulses that are found for each group of contacts alone; the search begins at the
     /// impulses of `start`.
     pub(super) fn solve_groups(
         &self,
-        (group, count): &(Total<usize, NK>, usize),
-        start: Option<&List<T, NR>>,
-    ) -> List<T, NR> {
-        let mut impulses = List::repeat(T::zero());
+        (group, count): &(TotalArray<usize, NK>, usize),
+        start: Option<&RowList<T, NR>>,
+    ) -> RowList<T, NR> {
+        let mut impulses = RowList::repeat_entry(T::zero());
         for g in 0..*count {
             let members = (0..self.count).filter(|k| group[*k] == g);
             let rows = members.fold(0, |rows, k| rows + self.rows[k].count);
@@ -110,11 +112,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     #[inline(never)]
     fn solve_group<const GK: usize, const GR: usize>(
         &self,
-        (group, g): (&Total<usize, NK>, usize),
-        start: Option<&List<T, NR>>,
-        impulses: &mut List<T, NR>,
+        (group, g): (&TotalArray<usize, NK>, usize),
+        start: Option<&RowList<T, NR>>,
+        impulses: &mut RowList<T, NR>,
     ) {
-        let mut own = Problem::<T, GK, GR>::empty(self.is_relaxed);
+        let mut own = ContactProblem::<T, GK, GR>::without_contacts(self.is_relaxed);
         for k in (0..self.count).filter(|k| group[*k] == g) {
             let (c, first, Rows { count, .. }) = (own.count, own.size, self.rows[k]);
             let by = (0..c).find(|c| own.contacts[*c].0 == self.pressed_by[k]).unwrap_or(c);
@@ -125,7 +127,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             (own.least[c], own.floor[c]) = (self.least[k], self.floor[k]);
             (own.friction[c], own.kinetic[c], own.step[c]) =
                 (self.friction[k], self.kinetic[k], self.step[k]);
-            for (i, row) in self.all_of(k).enumerate() {
+            for (i, row) in self.all_rows_of(k).enumerate() {
                 own.places[first + i] = row;
                 own.free[first + i] = self.free[row];
                 own.given[first + i] = self.given[row];
@@ -135,15 +137,15 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             own.size += count;
         }
         let places = own.places;
-        own.weigh_selected(self, places.get(..own.size).unwrap_or_default());
+        own.copy_selected_weights(self, places.get(..own.size).unwrap_or_default());
         // A part of the velocities, as an estimate.
         own.velocities = (self.velocities.saturating_mul(own.size) / self.size.max(1)).max(1);
         let start = start.map(|start| {
-            let mut impulses = List::repeat(T::zero());
+            let mut impulses = RowList::repeat_entry(T::zero());
             (0..own.size).for_each(|i| impulses[i] = start[places[i]]);
             impulses
         });
-        let found = own.solve_from(start.as_ref(), &mut Equations::new());
+        let found = own.solve_from(start.as_ref(), &mut ImpulseEquations::new());
         let found = found.unwrap_or(own.closest);
         self.iterations.set(self.iterations.get().saturating_add(own.iterations.get()));
         (0..own.size).for_each(|i| impulses[places[i]] = found[i]);

@@ -6,14 +6,14 @@
 //! as well. Sticking and pressed contacts have the regularised equation `u + ε ΔΛ = 0`; impulses that no
 //! motion depends on then stay the same.
 
-use super::super::total::Total;
-use super::banded::{eliminate_banded, identify};
+use super::super::total::TotalArray;
+use super::banded::{eliminate_banded, set_unit_rows};
 use super::basis::ContactBlock;
 use super::convex::PARTS;
-use super::linear::square;
+use super::linear::zero_matrix;
 use super::search::PATIENCE;
-use super::trial::{Mode, Trial};
-use super::{List, Problem, Square};
+use super::trial::{ContactMode, ImpulseTrial};
+use super::{ContactProblem, RowList, RowMatrix};
 use crate::Real;
 use crate::private::{constant, epsilon};
 
@@ -26,46 +26,50 @@ const STALLED: f64 = 0.25;
 /// Smallest part of a step that is tried.
 const SHORTEST: f64 = 1e-2;
 
-impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
+impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns the best impulses that Newton's method finds. A step is halved until the residual falls; if it
     /// does not, the whole step is taken, a limited number of times; `matrix` is workspace.
-    pub(super) fn newton(&self, start: Trial<T, NK, NR>, matrix: &mut Square<T, NR>) -> Trial<T, NK, NR> {
+    pub(super) fn newton_impulses(
+        &self,
+        start: ImpulseTrial<T, NK, NR>,
+        matrix: &mut RowMatrix<T, NR>,
+    ) -> ImpulseTrial<T, NK, NR> {
         self.newton_within(STEPS, start, matrix)
     }
 
-    /// Returns the result of [`newton`](Self::newton) after a given number of iterations at most.
+    /// Returns the result of [`newton_impulses`](Self::newton_impulses) after a given number of iterations at most.
     pub(super) fn newton_within(
         &self,
         steps: usize,
-        start: Trial<T, NK, NR>,
-        matrix: &mut Square<T, NR>,
-    ) -> Trial<T, NK, NR> {
+        start: ImpulseTrial<T, NK, NR>,
+        matrix: &mut RowMatrix<T, NR>,
+    ) -> ImpulseTrial<T, NK, NR> {
         let (mut best, mut rises) = ((start.left, start.impulses), 0);
         let mut trial = start;
         for _ in 0..steps {
-            if self.solves(&trial) {
+            if self.is_solved_by(&trial) {
                 // Sums of changes accumulate rounding errors.
-                trial = self.tried(trial.impulses);
-                if self.solves(&trial) {
+                trial = self.tried_impulses(trial.impulses);
+                if self.is_solved_by(&trial) {
                     return trial;
                 }
             }
             self.count_iteration();
             let change = self.newton_step(&trial, matrix);
-            let rates = self.changes(&change);
-            let after = |part: T| {
-                let impulses = moved(&trial.impulses, &change, part);
-                self.tried_with(impulses, moved(&trial.rates, &rates, part))
+            let rates = self.velocity_changes(&change);
+            let trial_after = |part: T| {
+                let impulses = moved_by_part(&trial.impulses, &change, part);
+                self.tried_with(impulses, moved_by_part(&trial.rates, &rates, part))
             };
-            let mut next = after(T::one());
-            let falls = |next: &Trial<T, NK, NR>| next.left < trial.left;
-            if !falls(&next) {
+            let mut next = trial_after(T::one());
+            let is_smaller_residual = |next: &ImpulseTrial<T, NK, NR>| next.left < trial.left;
+            if !is_smaller_residual(&next) {
                 let (whole, mut part) = (next, T::one());
                 while next.left >= trial.left && part > constant(SHORTEST) {
                     part *= constant(0.5);
-                    next = after(part);
+                    next = trial_after(part);
                 }
-                if !falls(&next) {
+                if !is_smaller_residual(&next) {
                     rises += 1;
                     next = whole;
                 }
@@ -78,78 +82,94 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             if trial.left < best.0 {
                 best = (trial.left, trial.impulses);
             }
-            if (is_stalled || self.iterations.get() > PATIENCE) && self.is_enough(&trial) {
+            if (is_stalled || self.iterations.get() > PATIENCE) && self.is_small_violation(&trial) {
                 break;
             }
         }
-        self.tried(best.1)
+        self.tried_impulses(best.1)
     }
 
-    /// Returns the result of [`newton`](Self::newton) from impulses that satisfy the contact conditions with
-    /// the friction `before`: the first step assumes their contact modes.
-    pub(super) fn follow(&self, start: List<T, NR>, before: &Total<T, NK>) -> Trial<T, NK, NR> {
-        let mut trial = self.tried(start);
-        trial.modes = self.modes(before, &start, &trial.rates);
-        let mut matrix = square();
+    /// Returns the result of [`newton_impulses`](Self::newton_impulses) from impulses that satisfy the
+    /// contact conditions for the coefficients of friction `before`: the first step assumes the contact modes
+    /// of these impulses.
+    pub(super) fn follow_modes(
+        &self,
+        start: RowList<T, NR>,
+        before: &TotalArray<T, NK>,
+    ) -> ImpulseTrial<T, NK, NR> {
+        let mut trial = self.tried_impulses(start);
+        trial.modes = self.natural_map_modes(before, &start, &trial.rates);
+        let mut matrix = zero_matrix();
         let change = self.newton_step(&trial, &mut matrix);
-        self.newton(self.tried(moved(&start, &change, T::one())), &mut matrix)
+        self.newton_impulses(self.tried_impulses(moved_by_part(&start, &change, T::one())), &mut matrix)
     }
 
     /// Returns the impulses after one more step, if the smallest normal velocities of pressed contacts are
     /// not yet exact to their own rounding errors.
-    pub(super) fn refined(&self, trial: Trial<T, NK, NR>, matrix: &mut Square<T, NR>) -> Trial<T, NK, NR> {
-        let Trial { impulses, left, worst, .. } = &trial;
+    pub(super) fn refined_trial(
+        &self,
+        trial: ImpulseTrial<T, NK, NR>,
+        matrix: &mut RowMatrix<T, NR>,
+    ) -> ImpulseTrial<T, NK, NR> {
+        let ImpulseTrial { impulses, left, worst, .. } = &trial;
         let half = epsilon::<T>().sqrt();
         let little = half * half.sqrt();
-        let pressed = (0..self.count).filter(|k| self.is_gap(*k) && impulses[self.of(*k).0] > T::zero());
-        if pressed.map(|k| self.free[self.of(k).0].abs() * little).all(|most| worst.0 <= most) {
+        let pressed =
+            (0..self.count).filter(|k| self.is_gap(*k) && impulses[self.rows_of_contact(*k).0] > T::zero());
+        if pressed.map(|k| self.free[self.rows_of_contact(k).0].abs() * little).all(|most| worst.0 <= most) {
             return trial;
         }
         let change = self.newton_step(&trial, matrix);
-        let next = self.tried(moved(impulses, &change, T::one()));
+        let next = self.tried_impulses(moved_by_part(impulses, &change, T::one()));
         if next.left < *left { next } else { trial }
     }
 
     /// Returns the change of the impulses in a step; `matrix` is workspace.
-    fn newton_step(&self, trial: &Trial<T, NK, NR>, matrix: &mut Square<T, NR>) -> List<T, NR> {
-        let constant_part = self.impulse_changes(trial, &List::repeat(T::zero()));
-        let mut change = self.basis.velocity(&constant_part);
+    fn newton_step(&self, trial: &ImpulseTrial<T, NK, NR>, matrix: &mut RowMatrix<T, NR>) -> RowList<T, NR> {
+        let constant_part = self.impulse_changes(trial, &RowList::repeat_entry(T::zero()));
+        let mut change = self.basis.velocity_of_impulses(&constant_part);
         let mut ends = self.fill_derivative(trial, matrix);
-        eliminate_banded(matrix, (&mut change, &mut ends), self.basis.rank());
-        self.impulse_changes(trial, &self.basis.rates(&change))
+        eliminate_banded(matrix, (&mut change, &mut ends), self.basis.column_count());
+        self.impulse_changes(trial, &self.basis.rates_of_velocity(&change))
     }
 
-    /// Makes `matrix` `1 + Bᵀ H B`, and returns the index behind the last entry of each row.
-    fn fill_derivative(&self, trial: &Trial<T, NK, NR>, matrix: &mut Square<T, NR>) -> List<usize, NR> {
-        let mut ends = identify(matrix, self.basis.rank());
+    /// Writes `1 + Bᵀ H B` to `matrix`, and returns the index behind the last entry of each row.
+    fn fill_derivative(
+        &self,
+        trial: &ImpulseTrial<T, NK, NR>,
+        matrix: &mut RowMatrix<T, NR>,
+    ) -> RowList<usize, NR> {
+        let mut ends = set_unit_rows(matrix, self.basis.column_count());
         for k in (0..self.count).filter(|k| self.is_gap(*k)) {
-            self.basis.add_block(&self.derivative(trial, k), matrix, &mut ends);
+            self.basis.add_block(&self.derivative_block(trial, k), matrix, &mut ends);
         }
         ends
     }
 
-    /// Returns the block of `H` of a contact.
-    fn derivative(&self, trial: &Trial<T, NK, NR>, k: usize) -> ContactBlock<T> {
-        let presses = self.presses(trial, k);
-        let pressed = if presses { self.stiffness(k) } else { T::zero() };
-        let mut block = ContactBlock::new(self.of(k).0);
-        block.add(0, 0, pressed);
+    /// Returns one contact's block of the matrix `H` in `ΔΛ = c − H B Δw`: changes of its impulses by changes
+    /// of its contact velocities.
+    fn derivative_block(&self, trial: &ImpulseTrial<T, NK, NR>, k: usize) -> ContactBlock<T> {
+        let presses = self.is_pressed(trial, k);
+        let pressed = if presses { self.impulse_stiffness(k) } else { T::zero() };
+        let mut block = ContactBlock::new(self.rows_of_contact(k).0);
+        block.add_entry(0, 0, pressed);
         // Friction moments follow their contact.
         for part in (k..self.count.min(k + PARTS)).filter(|part| self.pressed_by[*part] == k) {
-            let tangents = self.of(part).1;
+            let tangents = self.rows_of_contact(part).1;
             match trial.modes[part].1 {
-                Mode::Open => {}
-                Mode::Stick => {
-                    let (factor, first) = (self.stiffness(part), block.push(tangents.clone()));
-                    (first..first + tangents.len()).for_each(|i| block.add(i, i, factor));
+                ContactMode::Open => {}
+                ContactMode::Stick => {
+                    let (factor, first) =
+                        (self.impulse_stiffness(part), block.push_friction_rows(tangents.clone()));
+                    (first..first + tangents.len()).for_each(|i| block.add_entry(i, i, factor));
                 }
-                Mode::Slip { size, direction } => {
-                    let first = block.push(tangents.clone());
+                ContactMode::Slip { size, direction } => {
+                    let first = block.push_friction_rows(tangents.clone());
                     // The friction at its bound follows the normal impulse.
                     for (i, d) in (first..first + tangents.len()).zip(direction) {
-                        block.add(i, 0, pressed * self.friction[part] * d);
+                        block.add_entry(i, 0, pressed * self.friction[part] * d);
                     }
-                    let (bound, factor) = self.across(trial, part, size);
+                    let (bound, factor) = self.sliding_bound_and_factor(trial, part, size);
                     if tangents.len() == 2 && bound > T::zero() {
                         let [x, y] = direction;
                         block.add_product(first, bound / size * factor, [-y, x]);
@@ -161,31 +181,31 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Returns the changes of the impulses in a step that changes the contact velocities by `rates`.
-    fn impulse_changes(&self, trial: &Trial<T, NK, NR>, rates: &List<T, NR>) -> List<T, NR> {
-        let Trial { impulses, rates: now, modes, .. } = trial;
-        let mut changes = List::repeat(T::zero());
+    fn impulse_changes(&self, trial: &ImpulseTrial<T, NK, NR>, rates: &RowList<T, NR>) -> RowList<T, NR> {
+        let ImpulseTrial { impulses, rates: now, modes, .. } = trial;
+        let mut changes = RowList::repeat_entry(T::zero());
         for k in 0..self.count {
-            let (n, tangents) = self.of(k);
+            let (n, tangents) = self.rows_of_contact(k);
             if self.is_gap(k) {
-                changes[n] = match self.presses(trial, k) {
-                    true => -(now[n] - self.least[k] + rates[n]) * self.stiffness(k),
+                changes[n] = match self.is_pressed(trial, k) {
+                    true => -(now[n] - self.least[k] + rates[n]) * self.impulse_stiffness(k),
                     false => -impulses[n],
                 };
             }
             match modes[k].1 {
-                Mode::Open => tangents.for_each(|i| changes[i] = -impulses[i]),
-                Mode::Stick => {
-                    tangents.for_each(|i| changes[i] = -(now[i] + rates[i]) * self.stiffness(k));
+                ContactMode::Open => tangents.for_each(|i| changes[i] = -impulses[i]),
+                ContactMode::Stick => {
+                    tangents.for_each(|i| changes[i] = -(now[i] + rates[i]) * self.impulse_stiffness(k));
                 }
-                Mode::Slip { size, direction: [x, y] } => {
+                ContactMode::Slip { size, direction: [x, y] } => {
                     let normal = impulses[n] + changes[n] + self.floor[self.pressed_by[k]];
                     let along = normal * self.friction[k];
                     let i = tangents.start;
                     if tangents.len() == 2 {
-                        let (bound, factor) = self.across(trial, k, size);
-                        let component = |list: &List<T, NR>| x * list[i + 1] - y * list[i];
-                        let across =
-                            component(impulses) - (component(now) + bound / size * component(rates)) * factor;
+                        let (bound, factor) = self.sliding_bound_and_factor(trial, k, size);
+                        let cross_component = |list: &RowList<T, NR>| x * list[i + 1] - y * list[i];
+                        let across = cross_component(impulses)
+                            - (cross_component(now) + bound / size * cross_component(rates)) * factor;
                         changes[i] = x * along - y * across - impulses[i];
                         changes[i + 1] = y * along + x * across - impulses[i + 1];
                     } else {
@@ -197,34 +217,39 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         changes
     }
 
-    /// Whether the natural map has a normal impulse.
-    fn presses(&self, trial: &Trial<T, NK, NR>, k: usize) -> bool {
+    /// Whether the normal impulse of the natural map is positive.
+    fn is_pressed(&self, trial: &ImpulseTrial<T, NK, NR>, k: usize) -> bool {
         trial.modes[k].0 > T::zero() && self.step[k] > T::zero()
     }
 
-    /// Returns `1/ε` of a contact.
-    fn stiffness(&self, k: usize) -> T {
-        self.step[k] * self.scale / self.regularisation()
+    /// Returns `1/ε` of a contact: the impulse per contact velocity in the regularised equation
+    /// `u + ε ΔΛ = 0`.
+    fn impulse_stiffness(&self, k: usize) -> T {
+        self.step[k] * self.scale / self.impulse_regularisation()
     }
 
-    /// Returns the largest friction of a slipping contact, whose impulse before the projection has the
-    /// magnitude `size`, and the factor of the slip across its direction.
-    fn across(&self, trial: &Trial<T, NK, NR>, k: usize, size: T) -> (T, T) {
-        let bound = self.friction[k] * self.bearing(k, trial.modes[k].0);
-        (bound, self.step[k] * self.scale / (T::one() - bound / size + self.regularisation()))
+    /// Returns the friction bound of a sliding contact, whose tangential impulse before the projection has
+    /// the magnitude `size`, and the factor of the slip velocity across its direction.
+    fn sliding_bound_and_factor(&self, trial: &ImpulseTrial<T, NK, NR>, k: usize, size: T) -> (T, T) {
+        let bound = self.friction[k] * self.bearing_impulse(k, trial.modes[k].0);
+        (bound, self.step[k] * self.scale / (T::one() - bound / size + self.impulse_regularisation()))
     }
 
     /// Returns the regularisation `ε` of an impulse, relative to the trace of its contact's block of `W`: a
     /// step leaves this part of a contact velocity. Smaller values amplify the rounding errors of the
     /// redundant contact velocities of many bodies more.
-    fn regularisation(&self) -> T {
+    fn impulse_regularisation(&self) -> T {
         let factor = if self.is_relaxed { constant(64.0) } else { T::one() };
         epsilon::<T>().sqrt() * factor
     }
 }
 
 /// Returns values after a part of a change.
-fn moved<T: Real, const NR: usize>(from: &List<T, NR>, change: &List<T, NR>, part: T) -> List<T, NR> {
+fn moved_by_part<T: Real, const NR: usize>(
+    from: &RowList<T, NR>,
+    change: &RowList<T, NR>,
+    part: T,
+) -> RowList<T, NR> {
     let mut to = *from;
     to.iter_mut().zip(change.iter()).for_each(|(to, change)| *to += *change * part);
     to

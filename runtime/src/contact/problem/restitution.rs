@@ -1,46 +1,52 @@
-//! What is left of an impact after compression, and the energy of both.
+//! Restitution phase of an impact after its compression phase, and the energy of both.
 
 use super::super::{Law, Restitution, Rows};
-use super::{List, Problem, ROUNDINGS, entry};
+use super::{ContactProblem, ROUNDINGS, RowList, entry_or_zero};
 use crate::Real;
 use crate::private::{constant, epsilon, positive_part};
 use nalgebra::SVector;
 
-impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
-    /// Finds the impulses of compression, where surfaces approached each other whose restitution is a ratio
-    /// of them.
+impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
+    /// Computes the impulses of the compression phase, if any approaching contact has Poisson's coefficient
+    /// of restitution.
     ///
     /// # Errors
     ///
     /// As [`solve`](Self::solve).
-    pub(in super::super) fn compress(
+    pub(in super::super) fn find_compression(
         &mut self,
         laws: &[Law<T>; NK],
         before: &SVector<T, NR>,
     ) -> Result<(), usize> {
-        let bounces = |k: usize| {
+        let bounces_by_impulse = |k: usize| {
             let (contact, Rows { first, .. }) = self.contacts[k];
             let poisson =
                 |law: &Law<T>| law.hypothesis == Restitution::Poisson && law.restitution > T::zero();
-            laws.get(contact).is_some_and(poisson) && entry(before, first) < T::zero()
+            laws.get(contact).is_some_and(poisson) && entry_or_zero(before, first) < T::zero()
         };
-        if !(0..self.count).any(|k| self.is_gap(k) && bounces(k)) {
+        if !(0..self.count).any(|k| self.is_gap(k) && bounces_by_impulse(k)) {
             return Ok(());
         }
         let places = self.places;
         for i in 0..self.size {
-            self.free[i] = entry(before, places[i]);
+            self.free[i] = entry_or_zero(before, places[i]);
         }
-        let found = self.solve();
+        let found = self.solve_impulses();
         self.free = self.given;
-        self.compression = self.relaxed(found)?;
+        self.compression = self.accept_if_relaxed(found)?;
         self.is_compressed = true;
         Ok(())
     }
 
-    /// What contacts do after compression: this `part` of the restitution. Normal rates are at least that of
-    /// those before, and no less than zero, or normal impulses that of those of compression.
-    pub(in super::super) fn aim(&mut self, laws: &[Law<T>; NK], before: &SVector<T, NR>, part: T) {
+    /// Sets the demands on contacts after compression, for the fraction `part` of the restitution. Newton's
+    /// hypothesis demands a minimum normal velocity from the normal velocity before the impact; Poisson's
+    /// adds a normal impulse in proportion to that of compression.
+    pub(in super::super) fn set_restitution_demands(
+        &mut self,
+        laws: &[Law<T>; NK],
+        before: &SVector<T, NR>,
+        part: T,
+    ) {
         let none = T::zero();
         self.base = self.compression;
         for k in (0..self.count).filter(|k| self.pressed_by[*k] == *k) {
@@ -50,34 +56,36 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 .map_or((none, Restitution::Newton), |law| (law.restitution, law.hypothesis));
             let n = self.rows[k].first;
             (self.least[k], self.floor[k]) = match law {
-                (e, Restitution::Newton) => ((-(e * part * entry(before, first))).max(none), none),
+                (e, Restitution::Newton) => ((-(e * part * entry_or_zero(before, first))).max(none), none),
                 (e, Restitution::Poisson) => (none, e * part * self.compression[n]),
             };
             self.base[n] += self.floor[k];
         }
         if self.is_compressed {
             self.free = self.given;
-            self.free = self.rates(&self.base);
+            self.free = self.rates_after(&self.base);
         }
     }
 
-    /// The normal impulse that bounds friction, if `normal` is that beside what acts anyway.
-    pub(super) fn bearing(&self, k: usize, normal: T) -> T {
+    /// Returns the total normal impulse that bounds friction: the positive part of `normal`, and the impulse
+    /// of restitution that acts in addition.
+    pub(super) fn bearing_impulse(&self, k: usize, normal: T) -> T {
         positive_part(normal) + self.floor[self.pressed_by[k]]
     }
 
-    /// Whether restitution is asked for.
-    pub(in super::super) fn rebounds(&self) -> bool {
+    /// Whether any contact demands restitution.
+    pub(in super::super) fn demands_restitution(&self) -> bool {
         let asked = self.least.iter().zip(self.floor.iter()).take(self.count);
         asked.fold(false, |any, (least, floor)| any || *least > T::zero() || *floor > T::zero())
     }
 
-    /// Whether impulses give energy: their work is that of the mean rates.
-    pub(in super::super) fn gains(&self, impulses: &List<T, NR>) -> bool {
-        if !self.rebounds() {
+    /// Whether impulses increase the energy. Their work is the impulse times the mean of the contact
+    /// velocities before and after.
+    pub(in super::super) fn adds_energy(&self, impulses: &RowList<T, NR>) -> bool {
+        if !self.demands_restitution() {
             return false;
         }
-        let rates = self.rates(impulses);
+        let rates = self.rates_after(impulses);
         let (mut work, mut size) = (T::zero(), T::zero());
         for i in 0..self.size {
             let impulse = self.base[i] + impulses[i];

@@ -1,10 +1,10 @@
 //! Search for impulses that satisfy the conditions of all contacts.
 
-use super::super::total::Total;
-use super::linear::{Equations, square};
+use super::super::total::TotalArray;
+use super::linear::{ImpulseEquations, zero_matrix};
 use super::newton::STEPS;
-use super::trial::Trial;
-use super::{List, Problem, Square};
+use super::trial::ImpulseTrial;
+use super::{ContactProblem, RowList, RowMatrix};
 use crate::Real;
 use crate::private::{constant, epsilon, positive_part};
 use core::ops::Range;
@@ -22,12 +22,12 @@ const SCALES: [f64; 5] = [1.0, 8.0, 0.125, 64.0, 1.0 / 64.0];
 const STEPS_OF_SCALE: usize = 10;
 /// Increments in which friction grows if all else fails.
 const DEGREES: u32 = 24;
-/// The friction up to which it grows by its angle, in the first half; what is stronger grows by equal factors
-/// in the second.
+/// Coefficient of friction up to which the angle of the friction cone grows in equal increments. Beyond it,
+/// the coefficient grows by equal factors.
 const STEEP: f64 = 4.0;
 /// Maximum number of contacts whose subsets are all tried if all else fails.
 const GUESSED: usize = 6;
-/// Number of rows above which groups of contacts are solved apart.
+/// Number of rows above which groups of contacts are solved separately.
 const DENSE: usize = 36;
 /// Violation of the contact conditions that ends the search in a step of a simulation, relative to the
 /// largest contact velocity.
@@ -46,7 +46,7 @@ const NEAR: f64 = 0.1;
 const PAIRED: usize = 24;
 
 /// Returns reduced friction, which grows with `share` from zero.
-fn part_of<T: Real>(friction: T, share: T) -> T {
+fn reduced_friction<T: Real>(friction: T, share: T) -> T {
     let (steep, twice) = (constant::<T>(STEEP), share + share);
     if friction <= steep {
         return (friction.atan() * share).tan();
@@ -57,15 +57,15 @@ fn part_of<T: Real>(friction: T, share: T) -> T {
     }
 }
 
-impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
+impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns impulses that satisfy the contact conditions.
     ///
     /// # Errors
     ///
     /// The contact of the mechanism whose conditions are violated most, if by more than half of the digits;
     /// [`closest`](Self::closest) then has the impulses that violate them least of all that were found.
-    pub(in super::super) fn solve(&mut self) -> Result<List<T, NR>, usize> {
-        self.solve_from(None, &mut Equations::new())
+    pub(in super::super) fn solve_impulses(&mut self) -> Result<RowList<T, NR>, usize> {
+        self.solve_from(None, &mut ImpulseEquations::new())
     }
 
     /// Solves with given equations; the search begins at the impulses of `start`.
@@ -75,38 +75,41 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// As [`solve`](Self::solve).
     pub(in super::super) fn solve_from(
         &mut self,
-        start: Option<&List<T, NR>>,
-        equations: &mut Equations<T, NR>,
-    ) -> Result<List<T, NR>, usize> {
+        start: Option<&RowList<T, NR>>,
+        equations: &mut ImpulseEquations<T, NR>,
+    ) -> Result<RowList<T, NR>, usize> {
         if const { NR > DENSE } && self.size > DENSE {
-            let groups = self.groups();
+            let groups = self.contact_groups();
             if groups.1 > 1 {
-                let found = self.tried(self.solve_groups(&groups, start));
+                let found = self.tried_impulses(self.solve_groups(&groups, start));
                 self.violation = found.worst.0;
-                if found.worst.0 <= self.speed() * epsilon::<T>().sqrt() || self.solves(&found) {
+                if found.worst.0 <= self.largest_rate() * epsilon::<T>().sqrt() || self.is_solved_by(&found) {
                     return Ok(found.impulses);
                 }
                 self.closest = found.impulses;
                 return Err(self.contacts[found.worst.1].0);
             }
         }
-        let mut found = self.search(start, equations);
-        let is_found = |problem: &Self, found: &Trial<T, NK, NR>| {
-            found.worst.0 <= problem.speed() * epsilon::<T>().sqrt() || problem.solves(found)
+        let mut found = self.search_impulses(start, equations);
+        let is_solution = |problem: &Self, found: &ImpulseTrial<T, NK, NR>| {
+            found.worst.0 <= problem.largest_rate() * epsilon::<T>().sqrt() || problem.is_solved_by(found)
         };
-        if self.is_exhaustive() && !(self.is_relaxed && is_found(self, &found)) && !self.solves(&found) {
-            let other = self.exhaustive(found.impulses);
-            let other = self.tried(other);
+        if self.is_exhaustive_search()
+            && !(self.is_relaxed && is_solution(self, &found))
+            && !self.is_solved_by(&found)
+        {
+            let other = self.search_exhaustively(found.impulses);
+            let other = self.tried_impulses(other);
             // The rates of the map are dominated by rounding errors if masses differ by many powers of ten.
-            let is_better = self.is_smooth() && is_found(self, &other);
+            let is_better = self.is_frictionless() && is_solution(self, &other);
             if is_better || other.worst.0 < found.worst.0 {
                 found = other;
             }
         }
         let (left, worst) = found.worst;
-        let impulses = self.in_cones(found.impulses);
+        let impulses = self.project_onto_cones(found.impulses);
         self.violation = left;
-        if is_found(self, &found) {
+        if is_solution(self, &found) {
             return Ok(impulses);
         }
         self.closest = impulses;
@@ -114,11 +117,11 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Projects impulses onto their friction cones, from which rounding may have moved them.
-    fn in_cones(&self, mut impulses: List<T, NR>) -> List<T, NR> {
+    fn project_onto_cones(&self, mut impulses: RowList<T, NR>) -> RowList<T, NR> {
         for k in 0..self.count {
-            let (n, tangents) = self.of(k);
+            let (n, tangents) = self.rows_of_contact(k);
             impulses[n] = positive_part(impulses[n]);
-            let most = self.friction[k] * self.bearing(k, impulses[n]);
+            let most = self.friction[k] * self.bearing_impulse(k, impulses[n]);
             let size = tangents.clone().fold(T::zero(), |sum, i| sum + impulses[i] * impulses[i]).sqrt();
             if size > most {
                 tangents.for_each(|i| impulses[i] *= most / size);
@@ -128,36 +131,41 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 
     /// Returns the impulses that violate the contact conditions least.
-    fn search(&mut self, start: Option<&List<T, NR>>, equations: &mut Equations<T, NR>) -> Trial<T, NK, NR> {
+    fn search_impulses(
+        &mut self,
+        start: Option<&RowList<T, NR>>,
+        equations: &mut ImpulseEquations<T, NR>,
+    ) -> ImpulseTrial<T, NK, NR> {
         let start = start.map(|start| {
             let mut impulses = *start;
             impulses.iter_mut().zip(self.base.iter()).for_each(|(impulse, base)| *impulse -= *base);
-            self.tried(impulses)
+            self.tried_impulses(impulses)
         });
-        let near = start.filter(|start| self.size > FEW && start.worst.0 <= self.speed() * constant(NEAR));
+        let near =
+            start.filter(|start| self.size > FEW && start.worst.0 <= self.largest_rate() * constant(NEAR));
         // In most steps few contacts slip or separate, or all keep their modes.
         let start = match near {
             Some(near) => near,
             None => self.sticking_impulses(start, equations),
         };
-        if self.solves(&start) {
+        if self.is_solved_by(&start) {
             return start;
         }
         self.prepare_basis();
-        let matrix = equations.workspace();
+        let matrix = equations.take_workspace();
         let found = self.newton_with_all_scales(start, matrix);
-        if self.solves(&found) || self.is_enough(&found) {
+        if self.is_solved_by(&found) || self.is_small_violation(&found) {
             // Compared with fast slip, residuals of slow normal velocities are small.
-            return self.refined(found, matrix);
+            return self.refined_trial(found, matrix);
         }
-        let convex = self.by_convex_problems(&start.impulses, matrix);
-        if self.solves(&convex) || self.is_enough(&convex) {
+        let convex = self.solve_convex_sequence(&start.impulses, matrix);
+        if self.is_solved_by(&convex) || self.is_small_violation(&convex) {
             return convex;
         }
         let best = if found.worst.0 < convex.worst.0 { found } else { convex };
-        let found = self.newton(best, matrix);
+        let found = self.newton_impulses(best, matrix);
         match found.worst.0 < best.worst.0 {
-            true => self.refined(found, matrix),
+            true => self.refined_trial(found, matrix),
             false => best,
         }
     }
@@ -167,18 +175,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// sets of contact modes with one factor, it often converges with another.
     fn newton_with_all_scales(
         &mut self,
-        start: Trial<T, NK, NR>,
-        matrix: &mut Square<T, NR>,
-    ) -> Trial<T, NK, NR> {
+        start: ImpulseTrial<T, NK, NR>,
+        matrix: &mut RowMatrix<T, NR>,
+    ) -> ImpulseTrial<T, NK, NR> {
         let mut best = self.newton_within(STEPS_OF_SCALE, start, matrix);
-        if self.size <= FEW && self.is_smooth() && !self.solves(&best) {
-            let pressed = self.tried(self.press_in_turn());
+        if self.size <= FEW && self.is_frictionless() && !self.is_solved_by(&best) {
+            let pressed = self.tried_impulses(self.active_set_impulses());
             if pressed.worst.0 < best.worst.0 {
                 best = pressed;
             }
         }
         for scale in SCALES.into_iter().skip(1) {
-            if self.solves(&best) || self.is_enough(&best) {
+            if self.is_solved_by(&best) || self.is_small_violation(&best) {
                 break;
             }
             let next = self.newton_scaled(STEPS_OF_SCALE, best.impulses, scale, matrix);
@@ -193,17 +201,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// those of `start` if they violate the conditions less.
     fn sticking_impulses(
         &self,
-        start: Option<Trial<T, NK, NR>>,
-        equations: &mut Equations<T, NR>,
-    ) -> Trial<T, NK, NR> {
-        let approach = self.those(|k| self.free[self.of(k).0] < self.least[self.pressed_by[k]]);
-        let stuck = self.tried(self.together_with(&approach, equations));
+        start: Option<ImpulseTrial<T, NK, NR>>,
+        equations: &mut ImpulseEquations<T, NR>,
+    ) -> ImpulseTrial<T, NK, NR> {
+        let approach =
+            self.contacts_where(|k| self.free[self.rows_of_contact(k).0] < self.least[self.pressed_by[k]]);
+        let stuck = self.tried_impulses(self.impulses_closing_with(&approach, equations));
         // Nearly dependent rows may have impulses that are worse than none.
-        let stuck = match stuck.worst.0 <= self.speed() {
+        let stuck = match stuck.worst.0 <= self.largest_rate() {
             true => stuck,
-            false => self.tried(List::repeat(T::zero())),
+            false => self.tried_impulses(RowList::repeat_entry(T::zero())),
         };
-        match start.filter(|start| !self.solves(&stuck) && start.worst.0 < stuck.worst.0) {
+        match start.filter(|start| !self.is_solved_by(&stuck) && start.worst.0 < stuck.worst.0) {
             Some(start) => start,
             None => stuck,
         }
@@ -213,16 +222,16 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// several bodies. Velocities of redundant contacts contradict each other by rounding errors of the
     /// geometry, so that no impulses may satisfy all conditions. The accepted violation grows with the number
     /// of iterations, which bounds the duration of a step.
-    pub(super) fn is_enough(&self, trial: &Trial<T, NK, NR>) -> bool {
+    pub(super) fn is_small_violation(&self, trial: &ImpulseTrial<T, NK, NR>) -> bool {
         let iterations = self.iterations.get().saturating_sub(PATIENCE);
         let decades = iterations.div_ceil(PER_DECADE).min(MAX_DECADES);
         let enough = (0..decades).fold(constant::<T>(ENOUGH), |enough, _| enough * constant(10.0));
-        self.is_relaxed && self.size > FEW && trial.worst.0 <= self.speed() * enough
+        self.is_relaxed && self.size > FEW && trial.worst.0 <= self.largest_rate() * enough
     }
 
     /// Returns the contacts that satisfy a condition.
-    fn those(&self, is_so: impl Fn(usize) -> bool) -> Total<bool, NK> {
-        let mut those = Total::repeat(false);
+    fn contacts_where(&self, is_so: impl Fn(usize) -> bool) -> TotalArray<bool, NK> {
+        let mut those = TotalArray::repeat_entry(false);
         for k in 0..self.count {
             those[k] = is_so(k);
         }
@@ -231,76 +240,76 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
 
     /// Whether the search goes on after convex problems have failed. For many contacts, and in most steps of
     /// a simulation, it would take too long. In a step it goes on for few contacts and for strong friction.
-    fn is_exhaustive(&self) -> bool {
-        self.count <= PAIRED && (!self.is_relaxed || self.count <= GUESSED || self.is_steep())
+    fn is_exhaustive_search(&self) -> bool {
+        self.count <= PAIRED && (!self.is_relaxed || self.count <= GUESSED || self.has_steep_friction())
     }
 
     /// Whether a coefficient of friction is so large that convex problems seldom find impulses.
-    fn is_steep(&self) -> bool {
+    fn has_steep_friction(&self) -> bool {
         self.friction.iter().take(self.count).any(|friction| *friction > constant(STEEP))
     }
 
     /// Searches impulses by all further methods.
-    fn exhaustive(&mut self, start: List<T, NR>) -> List<T, NR> {
+    fn search_exhaustively(&mut self, start: RowList<T, NR>) -> RowList<T, NR> {
         let mut impulses = start;
-        if self.is_smooth() {
-            impulses = self.press_in_turn();
+        if self.is_frictionless() {
+            impulses = self.active_set_impulses();
             if self.is_solved(&impulses) {
                 return impulses;
             }
         }
-        let is_short = self.is_relaxed && self.size > FEW && !self.is_steep();
+        let is_short = self.is_relaxed && self.size > FEW && !self.has_steep_friction();
         let rounds = if is_short { ROUNDS_OF_STEP } else { ROUNDS };
         for round in 0..rounds {
-            self.relax(&mut impulses, SWEEPS + round);
-            let relaxed = self.tried(impulses);
-            if self.solves(&relaxed) {
+            self.relax_by_gradient(&mut impulses, SWEEPS + round);
+            let relaxed = self.tried_impulses(impulses);
+            if self.is_solved_by(&relaxed) {
                 return impulses;
             }
             // The step of the map that leads to the solution differs between problems.
             let scale = SCALES[round % SCALES.len()];
-            let found = self.newton_scaled(STEPS, impulses, scale, &mut square());
-            if self.solves(&found) {
+            let found = self.newton_scaled(STEPS, impulses, scale, &mut zero_matrix());
+            if self.is_solved_by(&found) {
                 return found.impulses;
             }
             if found.worst.0 < relaxed.worst.0 {
                 impulses = found.impulses;
             }
         }
-        if is_short || self.rebounds() {
+        if is_short || self.demands_restitution() {
             // With less restitution impulses exist.
             return impulses;
         }
-        if let Some(found) = self.by_degrees() {
+        if let Some(found) = self.continuation_in_friction() {
             return found;
         }
         // With strong friction, only the set of closed contacts is unknown.
         for kept in 0_u32..1 << self.count.min(GUESSED) {
-            let start = self.together(&self.those(|k| k >= GUESSED || kept >> k & 1 == 1));
-            let guess = self.newton(self.tried(start), &mut square());
-            if self.solves(&guess) {
+            let start = self.impulses_closing(&self.contacts_where(|k| k >= GUESSED || kept >> k & 1 == 1));
+            let guess = self.newton_impulses(self.tried_impulses(start), &mut zero_matrix());
+            if self.is_solved_by(&guess) {
                 return guess.impulses;
             }
         }
-        self.in_pairs().unwrap_or(impulses)
+        self.impulses_by_pairs().unwrap_or(impulses)
     }
 
     /// Whether no contact has friction.
-    fn is_smooth(&self) -> bool {
+    fn is_frictionless(&self) -> bool {
         self.friction.iter().take(self.count).all(|friction| *friction == T::zero())
     }
 
-    /// The impulses without friction, by an active set (Lawson and Hanson, *Solving Least Squares Problems*,
-    /// 1974, ch. 23): the contact whose surfaces approach each other most is taken in, and those that would
-    /// pull are let go on the way.
-    fn press_in_turn(&self) -> List<T, NR> {
-        let mut impulses = List::repeat(T::zero());
-        let mut is_in = Total::<bool, NK>::repeat(false);
+    /// Returns the impulses without friction by an active-set method (Lawson and Hanson, *Solving Least
+    /// Squares Problems*, 1974, ch. 23): adds the contact with the largest approach velocity, and removes
+    /// contacts whose impulse would become negative.
+    fn active_set_impulses(&self) -> RowList<T, NR> {
+        let mut impulses = RowList::repeat_entry(T::zero());
+        let mut is_in = TotalArray::<bool, NK>::repeat_entry(false);
         for _ in 0..3 * self.count {
-            let rates = self.rates(&impulses);
-            let mut entering = (-self.rounding(&impulses), None);
+            let rates = self.rates_after(&impulses);
+            let mut entering = (-self.rate_rounding(&impulses), None);
             for k in (0..self.count).filter(|k| self.is_gap(*k) && self.step[*k] > T::zero() && !is_in[*k]) {
-                let short = rates[self.of(k).0] - self.least[k];
+                let short = rates[self.rows_of_contact(k).0] - self.least[k];
                 if short < entering.0 {
                     entering = (short, Some(k));
                 }
@@ -308,18 +317,19 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             let Some(entering) = entering.1 else { break };
             is_in[entering] = true;
             for _ in 0..self.count {
-                let wanted = self.together(&is_in);
+                let wanted = self.impulses_closing(&is_in);
                 // How far the way there leads until the first would pull.
                 let mut part = T::one();
                 for k in (0..self.count).filter(|k| is_in[*k]) {
-                    let (now, then) = (impulses[self.of(k).0], wanted[self.of(k).0]);
+                    let (now, then) =
+                        (impulses[self.rows_of_contact(k).0], wanted[self.rows_of_contact(k).0]);
                     if then <= T::zero() {
                         part = part.min(if now > T::zero() { now / (now - then) } else { T::zero() });
                     }
                 }
                 let mut is_done = true;
                 for k in 0..self.count {
-                    let n = self.of(k).0;
+                    let n = self.rows_of_contact(k).0;
                     if !is_in[k] {
                         continue;
                     }
@@ -338,8 +348,8 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         impulses
     }
 
-    fn is_solved(&self, impulses: &List<T, NR>) -> bool {
-        self.solves(&self.tried(*impulses))
+    fn is_solved(&self, impulses: &RowList<T, NR>) -> bool {
+        self.is_solved_by(&self.tried_impulses(*impulses))
     }
 
     /// Returns the result of Newton's method after a given number of iterations at most, with a factor of the
@@ -347,39 +357,43 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     fn newton_scaled(
         &mut self,
         steps: usize,
-        impulses: List<T, NR>,
+        impulses: RowList<T, NR>,
         scale: f64,
-        matrix: &mut Square<T, NR>,
-    ) -> Trial<T, NK, NR> {
+        matrix: &mut RowMatrix<T, NR>,
+    ) -> ImpulseTrial<T, NK, NR> {
         self.scale = constant(scale);
-        let found = self.newton_within(steps, self.tried(impulses), matrix).impulses;
+        let found = self.newton_within(steps, self.tried_impulses(impulses), matrix).impulses;
         self.scale = T::one();
-        self.tried(found)
+        self.tried_impulses(found)
     }
 
-    /// The impulses by way of those with less friction.
-    fn by_degrees(&mut self) -> Option<List<T, NR>> {
+    /// Returns impulses by continuation in the coefficients of friction: from zero in increments to their
+    /// full values.
+    fn continuation_in_friction(&mut self) -> Option<RowList<T, NR>> {
         let friction = self.friction;
-        let mut impulses = List::repeat(T::zero());
+        let mut impulses = RowList::repeat_entry(T::zero());
         for part in 1..=DEGREES {
             let share = constant::<T>(f64::from(part) / f64::from(DEGREES));
             let before = self.friction;
-            self.friction =
-                if part < DEGREES { friction.each(|friction| part_of(friction, share)) } else { friction };
+            self.friction = if part < DEGREES {
+                friction.map_entries(|friction| reduced_friction(friction, share))
+            } else {
+                friction
+            };
             // What is near already is not left for gradients of strong friction.
-            let near = self.follow(impulses, if part > 1 { &before } else { &self.friction });
-            if self.solves(&near) {
+            let near = self.follow_modes(impulses, if part > 1 { &before } else { &self.friction });
+            if self.is_solved_by(&near) {
                 impulses = near.impulses;
                 continue;
             }
-            self.relax(&mut impulses, SWEEPS);
-            let mut best = self.tried(impulses);
+            self.relax_by_gradient(&mut impulses, SWEEPS);
+            let mut best = self.tried_impulses(impulses);
             for scale in SCALES {
-                let found = self.newton_scaled(STEPS, best.impulses, scale, &mut square());
+                let found = self.newton_scaled(STEPS, best.impulses, scale, &mut zero_matrix());
                 if found.worst.0 < best.worst.0 {
                     best = found;
                 }
-                if self.solves(&best) {
+                if self.is_solved_by(&best) {
                     break;
                 }
             }
@@ -388,22 +402,22 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         self.is_solved(&impulses).then_some(impulses)
     }
 
-    /// Impulses that Newton's method finds from those with which two contacts stick, or one: a body that
-    /// touches at many points with strong friction turns about few of them. Of all that it finds those that
-    /// leave the least energy, so that the order of contacts decides nothing.
-    fn in_pairs(&self) -> Option<List<T, NR>> {
+    /// Returns impulses by Newton's method from each guess in which one or two contacts stick, as a body with
+    /// many contact points and strong friction rotates about few of them. Of the solutions, the one with the
+    /// least energy is returned, so that the result does not depend on the order of the contacts.
+    fn impulses_by_pairs(&self) -> Option<RowList<T, NR>> {
         if self.count > PAIRED {
             return None;
         }
-        let mut best: Option<(T, List<T, NR>)> = None;
+        let mut best: Option<(T, RowList<T, NR>)> = None;
         for one in 0..self.count {
             for other in one..self.count {
-                let start = self.together(&self.those(|k| k == one || k == other));
-                let found = self.newton(self.tried(start), &mut square());
-                if !self.solves(&found) {
+                let start = self.impulses_closing(&self.contacts_where(|k| k == one || k == other));
+                let found = self.newton_impulses(self.tried_impulses(start), &mut zero_matrix());
+                if !self.is_solved_by(&found) {
                     continue;
                 }
-                let Trial { impulses, rates, .. } = found;
+                let ImpulseTrial { impulses, rates, .. } = found;
                 let all = impulses.iter().zip(rates.iter().zip(self.free.iter())).take(self.size);
                 let work = all
                     .fold(T::zero(), |sum, (impulse, (after, before))| sum + *impulse * (*after + *before));
@@ -415,52 +429,54 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         best.map(|(_, found)| found)
     }
 
-    /// Steps for the impulses that are short enough for all to be taken at once, whatever the directions of
-    /// the tangents: the inverse of what the sizes of the parts of `W` between contacts add up to.
-    fn short_steps(&self) -> List<T, NR> {
-        let mut steps = List::<T, NR>::repeat(T::zero());
+    /// Returns steps for the impulses that are short enough for all contacts to be updated simultaneously:
+    /// inverses of sums of block norms of `W`, which do not depend on the directions of the tangents.
+    fn short_steps(&self) -> RowList<T, NR> {
+        let mut steps = RowList::<T, NR>::repeat_entry(T::zero());
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
-            let (n, tangents) = self.of(k);
-            let size = |rows: Range<usize>| {
+            let (n, tangents) = self.rows_of_contact(k);
+            let block_row_norm = |rows: Range<usize>| {
                 (0..self.count).fold(T::zero(), |sum, other| {
-                    let part = |columns: Range<usize>| {
+                    let block_norm = |columns: Range<usize>| {
                         let square = rows.clone().fold(T::zero(), |sum, i| {
-                            columns.clone().fold(sum, |sum, j| sum + self.weight(i, j) * self.weight(i, j))
+                            columns
+                                .clone()
+                                .fold(sum, |sum, j| sum + self.weight_entry(i, j) * self.weight_entry(i, j))
                         });
                         square.sqrt()
                     };
-                    let (normal, along) = self.of(other);
-                    let pressed = if self.is_gap(other) { part(normal..normal + 1) } else { T::zero() };
-                    sum + pressed + part(along)
+                    let (normal, along) = self.rows_of_contact(other);
+                    let pressed = if self.is_gap(other) { block_norm(normal..normal + 1) } else { T::zero() };
+                    sum + pressed + block_norm(along)
                 })
             };
-            let inverse = |sum: T| if sum > T::zero() { T::one() / sum } else { T::zero() };
+            let inverse_or_zero = |sum: T| if sum > T::zero() { T::one() / sum } else { T::zero() };
             if self.is_gap(k) {
-                steps[n] = inverse(size(n..n + 1));
+                steps[n] = inverse_or_zero(block_row_norm(n..n + 1));
             }
-            let along = inverse(size(tangents.clone()));
+            let along = inverse_or_zero(block_row_norm(tangents.clone()));
             tangents.for_each(|i| steps[i] = along);
         }
         steps
     }
 
-    /// Sweeps of projected gradient steps with momentum (Nesterov): all contacts at once are brought towards
-    /// their laws, so that the order in which they stand decides nothing.
-    fn relax(&self, impulses: &mut List<T, NR>, sweeps: usize) {
+    /// Improves impulses by sweeps of projected gradient steps with momentum (Nesterov). All contacts are
+    /// updated simultaneously, so that their order has no effect.
+    fn relax_by_gradient(&self, impulses: &mut RowList<T, NR>, sweeps: usize) {
         let steps = self.short_steps();
         let (mut ahead, mut pace) = (*impulses, T::one());
         for _ in 0..sweeps {
-            let rates = self.rates(&ahead);
-            let mut next = List::repeat(T::zero());
+            let rates = self.rates_after(&ahead);
+            let mut next = RowList::repeat_entry(T::zero());
             for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
-                let (n, _) = self.of(k);
+                let (n, _) = self.rows_of_contact(k);
                 if self.is_gap(k) {
                     next[n] = positive_part(ahead[n] - steps[n] * (rates[n] - self.least[k]));
                 }
             }
             for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
-                let (n, tangents) = self.of(k);
-                let most = self.friction[k] * self.bearing(k, next[n]);
+                let (n, tangents) = self.rows_of_contact(k);
+                let most = self.friction[k] * self.bearing_impulse(k, next[n]);
                 let mut wanted = [T::zero(); 2];
                 for (w, i) in wanted.iter_mut().zip(tangents.clone()) {
                     *w = ahead[i] - steps[i] * rates[i];

@@ -4,11 +4,11 @@
 //! rows, separated ones `δΛ = 0`, and sliding ones, with the slip direction `d = −uₜ/|uₜ|`,
 //! `δΛₜ = μ d δΛₙ − μ Λₙ (1 − d dᵀ) δuₜ / |uₜ|`.
 
-use super::super::total::Total;
-use super::banded::identify;
-use super::linear::{independent, square};
-use super::trial::Mode;
-use super::{List, Problem, Square, entry};
+use super::super::total::TotalArray;
+use super::banded::set_unit_rows;
+use super::linear::{independence_threshold, zero_matrix};
+use super::trial::ContactMode;
+use super::{ContactProblem, RowList, RowMatrix, entry_or_zero};
 use crate::Real;
 use crate::private::{constant, epsilon};
 use nalgebra::{SMatrix, SVector};
@@ -24,11 +24,11 @@ const VIOLATED: f64 = 1e-6;
 const LARGEST: f64 = 0.125;
 
 /// Rows of contact velocities.
-pub(in super::super) type Chosen<const NR: usize> = Total<bool, NR>;
+pub(in super::super) type ChosenRows<const NR: usize> = TotalArray<bool, NR>;
 
 /// Derivatives of the friction impulses that a rotation of the slip direction adds, with respect to the
 /// impulses at the start and to the slip velocities.
-pub(in super::super) struct Rotated<T, const NR: usize> {
+pub(in super::super) struct RotatedFriction<T, const NR: usize> {
     /// The impulses.
     pub(in super::super) impulses: SVector<T, NR>,
     pub(in super::super) by_impulses: SMatrix<T, NR, NR>,
@@ -36,29 +36,37 @@ pub(in super::super) struct Rotated<T, const NR: usize> {
 }
 
 /// Linear equations `system δΛ = wanted δE` of the impulses, with the contact velocities `E` without them.
-pub(in super::super) struct Linearised<T, const NR: usize> {
-    system: Square<T, NR>,
-    wanted: Square<T, NR>,
+pub(in super::super) struct LinearisedImpulses<T, const NR: usize> {
+    system: RowMatrix<T, NR>,
+    wanted: RowMatrix<T, NR>,
     /// Triangular factors of the system, with a small addition to the diagonal if rows depend on each other,
     /// and the row of each pivot.
-    factors: Square<T, NR>,
-    pivots: List<usize, NR>,
+    factors: RowMatrix<T, NR>,
+    pivots: RowList<usize, NR>,
     is_dependent: bool,
-    places: List<usize, NR>,
+    places: RowList<usize, NR>,
     size: usize,
 }
 
-impl<T: Real, const NR: usize> Linearised<T, NR> {
+impl<T: Real, const NR: usize> LinearisedImpulses<T, NR> {
     /// Returns equations of impulses that are constant.
-    fn new(places: List<usize, NR>, size: usize) -> Self {
-        let (mut system, pivots) = (square(), Total::repeat(0));
-        let _ = identify(&mut system, size);
-        Self { system, wanted: square(), factors: square(), pivots, is_dependent: false, places, size }
+    fn new(places: RowList<usize, NR>, size: usize) -> Self {
+        let (mut system, pivots) = (zero_matrix(), TotalArray::repeat_entry(0));
+        let _ = set_unit_rows(&mut system, size);
+        Self {
+            system,
+            wanted: zero_matrix(),
+            factors: zero_matrix(),
+            pivots,
+            is_dependent: false,
+            places,
+            size,
+        }
     }
 
     /// Factorises the system by Gaussian elimination with pivots of the columns, and stores the inverses of
     /// the pivots. Impulses without a pivot stay constant. Returns false if rows depend on each other.
-    fn factorise(&mut self) -> bool {
+    fn factorise_with_pivots(&mut self) -> bool {
         let Self { system, factors, pivots: exchanges, size, .. } = self;
         let mut is_regular = true;
         for column in 0..*size {
@@ -68,10 +76,10 @@ impl<T: Real, const NR: usize> Linearised<T, NR> {
                     best = row;
                 }
             }
-            factors.exchange(best, column);
+            factors.exchange_entries(best, column);
             exchanges[column] = best;
             let mut pivots = factors[column];
-            let is_small = pivots[column].abs() <= system[column][column].abs() * independent();
+            let is_small = pivots[column].abs() <= system[column][column].abs() * independence_threshold();
             is_regular &= !is_small;
             let inverse = if is_small { T::zero() } else { T::one() / pivots[column] };
             (factors[column][column], pivots[column]) = (inverse, inverse);
@@ -90,24 +98,24 @@ impl<T: Real, const NR: usize> Linearised<T, NR> {
     }
 
     /// Solves for right-hand sides in place, with the factors.
-    fn substitute<const C: usize>(&self, right: &mut Total<[T; C], NR>) {
-        let subtract = |from: &mut [T; C], factor: T, row: &[T; C]| {
+    fn substitute_factors<const C: usize>(&self, right: &mut TotalArray<[T; C], NR>) {
+        let subtract_multiple = |from: &mut [T; C], factor: T, row: &[T; C]| {
             from.iter_mut().zip(row).for_each(|(from, entry)| *from -= factor * *entry);
         };
-        (0..self.size).for_each(|column| right.exchange(self.pivots[column], column));
+        (0..self.size).for_each(|column| right.exchange_entries(self.pivots[column], column));
         for column in 0..self.size {
             let value = right[column];
             for row in column + 1..self.size {
                 let factor = self.factors[row][column];
                 if factor != T::zero() {
-                    subtract(&mut right[row], factor, &value);
+                    subtract_multiple(&mut right[row], factor, &value);
                 }
             }
         }
         for row in (0..self.size).rev() {
             let mut sum = right[row];
             for (factor, other) in self.factors[row].iter().zip(right.iter()).take(self.size).skip(row + 1) {
-                subtract(&mut sum, *factor, other);
+                subtract_multiple(&mut sum, *factor, other);
             }
             let inverse = self.factors[row][row];
             right[row] = sum.map(|sum| sum * inverse);
@@ -116,8 +124,11 @@ impl<T: Real, const NR: usize> Linearised<T, NR> {
 
     /// Returns the changes of the impulses with changes `rates` of the contact velocities without them, both
     /// at the rows of the mechanism.
-    pub(in super::super) fn changes<const C: usize>(&self, rates: &SMatrix<T, NR, C>) -> SMatrix<T, NR, C> {
-        let mut right = Total::<[T; C], NR>::repeat([T::zero(); C]);
+    pub(in super::super) fn impulse_changes<const C: usize>(
+        &self,
+        rates: &SMatrix<T, NR, C>,
+    ) -> SMatrix<T, NR, C> {
+        let mut right = TotalArray::<[T; C], NR>::repeat_entry([T::zero(); C]);
         for (right, wanted) in right.iter_mut().zip(self.wanted.iter()).take(self.size) {
             for (place, factor) in self.places.iter().zip(wanted.iter()).take(self.size) {
                 if *factor != T::zero() {
@@ -129,7 +140,7 @@ impl<T: Real, const NR: usize> Linearised<T, NR> {
             }
         }
         let mut changes = right;
-        self.substitute(&mut changes);
+        self.substitute_factors(&mut changes);
         for _ in 1..if self.is_dependent { PASSES } else { 1 } {
             let mut left = right;
             for (left, row) in left.iter_mut().zip(self.system.iter()).take(self.size) {
@@ -137,7 +148,7 @@ impl<T: Real, const NR: usize> Linearised<T, NR> {
                     left.iter_mut().zip(change).for_each(|(left, change)| *left -= *factor * *change);
                 }
             }
-            self.substitute(&mut left);
+            self.substitute_factors(&mut left);
             for (change, more) in changes.iter_mut().zip(left.iter()) {
                 change.iter_mut().zip(more).for_each(|(change, more)| *change += *more);
             }
@@ -152,32 +163,35 @@ impl<T: Real, const NR: usize> Linearised<T, NR> {
     }
 }
 
-impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
+impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Checks that impulses have derivatives.
     ///
     /// # Errors
     ///
     /// The contact with Poisson's restitution, or the one that violates the contact conditions most if the
     /// violation is larger than the errors of the search.
-    pub(in super::super) fn check_derivatives(&self, impulses: &List<T, NR>) -> Result<(), usize> {
+    pub(in super::super) fn check_derivatives(&self, impulses: &RowList<T, NR>) -> Result<(), usize> {
         if self.is_compressed {
             let is_compressed = |k: &usize| self.compression[self.rows[*k].first] > T::zero();
             return Err(self.contacts[(0..self.count).find(is_compressed).unwrap_or_default()].0);
         }
-        let is_solved = self.violation <= self.speed() * constant(VIOLATED);
-        if is_solved { Ok(()) } else { Err(self.contacts[self.tried(*impulses).worst.1].0) }
+        let is_solved = self.violation <= self.largest_rate() * constant(VIOLATED);
+        if is_solved { Ok(()) } else { Err(self.contacts[self.tried_impulses(*impulses).worst.1].0) }
     }
 
     /// Returns the linearised equations of impulses, and true if no contact slides or separates. A contact
     /// at the edge of two modes has that of sticking, or of separation.
-    pub(in super::super) fn linearised(&self, impulses: &List<T, NR>) -> (Linearised<T, NR>, bool) {
-        let rates = self.rates(impulses);
-        let modes = self.modes(&self.friction, impulses, &rates);
-        let still = self.rounding(impulses);
-        let mut equations = Linearised::new(self.places, self.size);
-        let (mut held, mut is_whole) = (Chosen::repeat(false), true);
+    pub(in super::super) fn linearised_impulse_equations(
+        &self,
+        impulses: &RowList<T, NR>,
+    ) -> (LinearisedImpulses<T, NR>, bool) {
+        let rates = self.rates_after(impulses);
+        let modes = self.natural_map_modes(&self.friction, impulses, &rates);
+        let still = self.rate_rounding(impulses);
+        let mut equations = LinearisedImpulses::new(self.places, self.size);
+        let (mut held, mut is_whole) = (ChosenRows::repeat_entry(false), true);
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
-            let (n, tangents) = self.of(k);
+            let (n, tangents) = self.rows_of_contact(k);
             if self.is_gap(k) {
                 held[n] = modes[k].0 > T::zero();
                 is_whole &= held[n];
@@ -187,28 +201,28 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             }
             let speed = tangents.clone().fold(T::zero(), |sum, i| sum + rates[i] * rates[i]).sqrt();
             match modes[k].1 {
-                Mode::Open => is_whole = false,
-                Mode::Slip { direction, .. } if speed > still => {
-                    let largest = self.friction[k] * self.bearing(k, impulses[n]);
-                    self.put_sliding(k, (direction, largest / speed), &mut equations);
+                ContactMode::Open => is_whole = false,
+                ContactMode::Slip { direction, .. } if speed > still => {
+                    let largest = self.friction[k] * self.bearing_impulse(k, impulses[n]);
+                    self.write_sliding_equations(k, (direction, largest / speed), &mut equations);
                     is_whole = false;
                 }
                 _ => tangents.for_each(|i| held[i] = true),
             }
         }
-        self.hold_rows(&held, &mut equations);
+        self.add_held_rows(&held, &mut equations);
         (equations, is_whole)
     }
 
     /// Writes the equations of a contact that slides in a direction with the ratio of friction to slip
     /// velocity.
-    fn put_sliding(
+    fn write_sliding_equations(
         &self,
         k: usize,
         (direction, ratio): ([T; 2], T),
-        Linearised { system, wanted, .. }: &mut Linearised<T, NR>,
+        LinearisedImpulses { system, wanted, .. }: &mut LinearisedImpulses<T, NR>,
     ) {
-        let (n, tangents) = self.of(k);
+        let (n, tangents) = self.rows_of_contact(k);
         for (i, d) in tangents.clone().zip(direction) {
             system[i][n] -= self.friction[k] * d;
             // Along a single tangent the direction does not rotate.
@@ -216,60 +230,60 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
             for (j, other) in others.zip(direction) {
                 let across = (if i == j { T::one() } else { T::zero() } - d * other) * ratio;
                 wanted[i][j] -= across;
-                (0..self.size).for_each(|column| system[i][column] += across * self.weight(j, column));
+                (0..self.size).for_each(|column| system[i][column] += across * self.weight_entry(j, column));
             }
         }
     }
 
     /// Returns the equations of impulses that keep the contact velocities of chosen rows constant; of least
     /// norm if these rows depend on each other.
-    pub(in super::super) fn constant_rates(&self, held: &Chosen<NR>) -> Linearised<T, NR> {
-        let mut equations = Linearised::new(self.places, self.size);
-        self.hold_rows(held, &mut equations);
+    pub(in super::super) fn constant_rates(&self, held: &ChosenRows<NR>) -> LinearisedImpulses<T, NR> {
+        let mut equations = LinearisedImpulses::new(self.places, self.size);
+        self.add_held_rows(held, &mut equations);
         equations
     }
 
     /// Returns all rows in which contacts can have impulses.
-    pub(in super::super) fn all_rows(&self) -> Chosen<NR> {
-        let mut rows = Chosen::repeat(false);
+    pub(in super::super) fn all_rows(&self) -> ChosenRows<NR> {
+        let mut rows = ChosenRows::repeat_entry(false);
         for k in (0..self.count).filter(|k| self.step[*k] > T::zero()) {
-            let (n, _) = self.of(k);
-            self.all_of(k).for_each(|i| rows[i] = i == n || self.friction[k] > T::zero());
+            let (n, _) = self.rows_of_contact(k);
+            self.all_rows_of(k).for_each(|i| rows[i] = i == n || self.friction[k] > T::zero());
         }
         rows
     }
 
     /// Returns the diagonal matrix that is one at chosen rows.
-    pub(in super::super) fn held_matrix(&self, held: &Chosen<NR>) -> SMatrix<T, NR, NR> {
+    pub(in super::super) fn diagonal_of_rows(&self, held: &ChosenRows<NR>) -> SMatrix<T, NR, NR> {
         let mut chosen = SVector::<T, NR>::zeros();
         for i in (0..self.size).filter(|i| held[*i]) {
-            super::put(&mut chosen, self.places[i], T::one());
+            super::set_entry(&mut chosen, self.places[i], T::one());
         }
         SMatrix::from_diagonal(&chosen)
     }
 
     /// Returns impulses, without those of compression, at the rows of the mechanism.
-    pub(in super::super) fn spread_alone(&self, impulses: &List<T, NR>) -> SVector<T, NR> {
-        self.scatter(impulses)
+    pub(in super::super) fn spread_without_compression(&self, impulses: &RowList<T, NR>) -> SVector<T, NR> {
+        self.spread_to_mechanism_rows(impulses)
     }
 
     /// Adds the equations `W δΛ = −δE` at the rows `held`, and factorises the system.
-    fn hold_rows(&self, held: &Chosen<NR>, equations: &mut Linearised<T, NR>) {
+    fn add_held_rows(&self, held: &ChosenRows<NR>, equations: &mut LinearisedImpulses<T, NR>) {
         let mut count = 0;
         for i in (0..self.size).filter(|i| held[*i]) {
-            (0..self.size).for_each(|j| equations.system[i][j] = self.weight(i, j));
+            (0..self.size).for_each(|j| equations.system[i][j] = self.weight_entry(i, j));
             equations.wanted[i][i] = -T::one();
             count += 1;
         }
         equations.factors = equations.system;
-        equations.is_dependent = count > self.velocities || !equations.factorise();
+        equations.is_dependent = count > self.velocities || !equations.factorise_with_pivots();
         if equations.is_dependent {
             equations.factors = equations.system;
-            let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weight(i, i)));
+            let reach = (0..self.size).fold(T::zero(), |most, i| most.max(self.weight_entry(i, i)));
             for i in (0..self.size).filter(|i| held[*i]) {
                 equations.factors[i][i] += reach * constant(LIFT);
             }
-            equations.factorise();
+            equations.factorise_with_pivots();
         }
     }
 
@@ -279,34 +293,40 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         &self,
         impulses: &SVector<T, NR>,
         slip: &SVector<T, NR>,
-    ) -> Rotated<T, NR> {
-        let (impulses, slip) = (self.gather(impulses), self.gather(slip));
-        let mut found =
-            Rotated { impulses: SVector::zeros(), by_impulses: SMatrix::zeros(), by_slip: SMatrix::zeros() };
+    ) -> RotatedFriction<T, NR> {
+        let (impulses, slip) = (self.gather_closed_rows(impulses), self.gather_closed_rows(slip));
+        let mut found = RotatedFriction {
+            impulses: SVector::zeros(),
+            by_impulses: SMatrix::zeros(),
+            by_slip: SMatrix::zeros(),
+        };
         let half = constant::<T>(0.5);
         for k in (0..self.count).filter(|k| self.friction[*k] > T::zero()) {
-            let (n, tangents) = self.of(k);
+            let (n, tangents) = self.rows_of_contact(k);
             let largest = self.friction[k] * impulses[n];
             let speed = tangents.clone().fold(T::zero(), |sum, i| sum + slip[i] * slip[i]).sqrt();
-            let across = |i: usize| impulses[i] + largest * slip[i] / speed;
-            let size = tangents.clone().fold(T::zero(), |sum, i| sum + across(i) * across(i)).sqrt();
+            let difference_across = |i: usize| impulses[i] + largest * slip[i] / speed;
+            let size = tangents
+                .clone()
+                .fold(T::zero(), |sum, i| sum + difference_across(i) * difference_across(i))
+                .sqrt();
             let slides = largest > T::zero() && speed * self.step[k] > largest;
             if !slides || size > largest * constant(LARGEST) {
                 continue;
             }
-            let place = |i: usize, j: usize| (self.places[i], self.places[j]);
+            let mechanism_place = |i: usize, j: usize| (self.places[i], self.places[j]);
             for i in tangents.clone() {
                 let along = slip[i] / speed;
-                put_entry(&mut found.by_impulses, place(i, i), half);
-                put_entry(&mut found.by_impulses, place(i, n), half * self.friction[k] * along);
+                put_entry(&mut found.by_impulses, mechanism_place(i, i), half);
+                put_entry(&mut found.by_impulses, mechanism_place(i, n), half * self.friction[k] * along);
                 for j in tangents.clone() {
                     let delta = if i == j { T::one() } else { T::zero() };
                     let across = delta - along * slip[j] / speed;
-                    put_entry(&mut found.by_slip, place(i, j), half * largest / speed * across);
+                    put_entry(&mut found.by_slip, mechanism_place(i, j), half * largest / speed * across);
                 }
             }
             for i in tangents {
-                super::put(&mut found.impulses, self.places[i], across(i) * half);
+                super::set_entry(&mut found.impulses, self.places[i], difference_across(i) * half);
             }
         }
         found
@@ -318,7 +338,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let mut factors = SVector::zeros();
         for k in (0..self.count).filter(|k| self.is_gap(*k) && self.least[*k] > T::zero()) {
             let row = self.places[self.rows[k].first];
-            super::put(&mut factors, row, self.least[k] / entry(before, row));
+            super::set_entry(&mut factors, row, self.least[k] / entry_or_zero(before, row));
         }
         factors
     }
@@ -327,18 +347,18 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     /// that it only keeps from penetrating deeper. `pushes` is the displacement, if there is any.
     pub(in super::super) fn closed_rows(
         &self,
-        impulses: &List<T, NR>,
+        impulses: &RowList<T, NR>,
         (gaps, near, reach): (&SVector<T, NK>, T, T),
         pushes: Option<&SVector<T, NR>>,
-    ) -> (Chosen<NR>, Chosen<NR>) {
-        let rates = self.rates(impulses);
-        let rest = self.rounding(impulses).max(self.violation) * constant(super::ROUNDINGS);
+    ) -> (ChosenRows<NR>, ChosenRows<NR>) {
+        let rates = self.rates_after(impulses);
+        let rest = self.rate_rounding(impulses).max(self.violation) * constant(super::ROUNDINGS);
         let enough = (near * constant(1e-2)).max(epsilon::<T>() * constant(16.0));
-        let pushes = pushes.map(|pushes| self.gather(pushes));
-        let moved = pushes.map(|pushes| self.changes(&pushes));
-        let (mut closed, mut kept) = (Chosen::repeat(false), Chosen::repeat(false));
+        let pushes = pushes.map(|pushes| self.gather_closed_rows(pushes));
+        let moved = pushes.map(|pushes| self.velocity_changes(&pushes));
+        let (mut closed, mut kept) = (ChosenRows::repeat_entry(false), ChosenRows::repeat_entry(false));
         for k in (0..self.count).filter(|k| self.is_gap(*k) && self.step[*k] > T::zero()) {
-            let (n, gap) = (self.rows[k].first, entry(gaps, self.contacts[k].0));
+            let (n, gap) = (self.rows[k].first, entry_or_zero(gaps, self.contacts[k].0));
             let push = pushes.map_or(T::zero(), |pushes| pushes[n]);
             let left = gap + moved.map_or(T::zero(), |moved| moved[n]);
             let is_shut = left.abs() <= enough.max(gap.abs() * constant(0.5));

@@ -1,9 +1,9 @@
 //! Contact forces that rotate in a step: corrections that make the impulses of a step of second order.
 
-use super::super::response::{Effects, Factor};
-use super::convex::{cholesky, substitute};
-use super::linear::{Equations, square};
-use super::{List, Problem, entry};
+use super::super::response::{CholeskyFactor, ImpulseEffects};
+use super::convex::{cholesky_in_place, substitute_factor};
+use super::linear::{ImpulseEquations, zero_matrix};
+use super::{ContactProblem, RowList, entry_or_zero};
 use crate::Real;
 use crate::private::constant;
 use nalgebra::SVector;
@@ -12,7 +12,7 @@ use nalgebra::SVector;
 /// a step are not smooth.
 const LARGEST: f64 = 0.125;
 
-impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
+impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Corrects the velocity without impulses, so that impulses `Λ` at the end of a step act as in the mean
     /// of the step.
     ///
@@ -26,46 +26,47 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     ///
     /// Returns impulses at the end of the step that change the rates as much as `Λ₀`, and the correction. If
     /// the search has other impulses to begin at, they may be left out.
-    pub(in super::super) fn transport<const NV: usize>(
+    pub(in super::super) fn correct_for_rotation<const NV: usize>(
         &mut self,
         given: &SVector<T, NV>,
-        (rates, recorded): (&SVector<T, NR>, Option<&List<T, NR>>),
-        effects: &Effects<T, NV, NR>,
-        equations: &mut Equations<T, NR>,
-    ) -> (Option<List<T, NR>>, SVector<T, NV>) {
+        (rates, recorded): (&SVector<T, NR>, Option<&RowList<T, NR>>),
+        effects: &ImpulseEffects<T, NV, NR>,
+        equations: &mut ImpulseEquations<T, NR>,
+    ) -> (Option<RowList<T, NR>>, SVector<T, NV>) {
         let half = constant::<T>(0.5);
         let mut impulses = None;
         let sliding = recorded.filter(|recorded| self.slip_correction(recorded, rates).is_some());
-        let is_redundant = self.size > self.basis.rank();
+        let is_redundant = self.size > self.basis.column_count();
         let (mut correction, changes) = match effects {
-            Effects::Factor(factor) if recorded.is_some() && sliding.is_none() && is_redundant => {
-                self.unreached(given, factor)
+            ImpulseEffects::Factor(factor) if recorded.is_some() && sliding.is_none() && is_redundant => {
+                self.unreached_velocity(given, factor)
             }
             _ => {
                 let (found, is_regular) = self.impulses_for(rates, equations);
                 impulses = Some(found);
-                let velocity = |impulses| effects.velocity(&self.basis, &self.scatter(impulses));
-                let mut correction = (given - velocity(&found)) * half;
-                let mut changes = List::<T, NR>::repeat(T::zero());
+                let velocity_by_impulses =
+                    |impulses| effects.velocity_change(&self.basis, &self.spread_to_mechanism_rows(impulses));
+                let mut correction = (given - velocity_by_impulses(&found)) * half;
+                let mut changes = RowList::<T, NR>::repeat_entry(T::zero());
                 if !is_regular {
-                    let changed = self.changes(&found);
+                    let changed = self.velocity_changes(&found);
                     for i in 0..self.size {
-                        changes[i] = (entry(rates, self.places[i]) - changed[i]) * half;
+                        changes[i] = (entry_or_zero(rates, self.places[i]) - changed[i]) * half;
                     }
                 }
                 let at_start = match is_regular {
                     true => Some(found),
-                    false => sliding.map(|recorded| self.nearest(recorded, rates, equations)),
+                    false => sliding.map(|recorded| self.nearest_impulses(recorded, rates, equations)),
                 };
                 if let Some(turned) = at_start.and_then(|at_start| self.slip_correction(&at_start, rates)) {
-                    correction += velocity(&turned);
-                    changes = self.added(changes, &turned);
+                    correction += velocity_by_impulses(&turned);
+                    changes = self.add_velocity_changes(changes, &turned);
                 }
                 (correction, changes)
             }
         };
-        let size = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
-        if size(&correction) <= size(given) * constant(LARGEST) {
+        let largest_magnitude = |x: &SVector<T, NV>| x.iter().fold(T::zero(), |most, x| most.max(x.abs()));
+        if largest_magnitude(&correction) <= largest_magnitude(given) * constant(LARGEST) {
             for i in 0..self.size {
                 self.given[i] += changes[i];
                 self.free[i] += changes[i];
@@ -81,68 +82,76 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     ///
     /// With `w = Lᵀ v`, what two passes of a regularised least-squares problem leave of it is
     /// `(1 + Bᵀ R⁻¹ B)⁻² w`, with the small regularisation `R` of dependent rows.
-    fn unreached<const NV: usize>(
+    fn unreached_velocity<const NV: usize>(
         &self,
         v: &SVector<T, NV>,
-        factor: &Factor<T, NV>,
-    ) -> (SVector<T, NV>, List<T, NR>) {
-        let (rank, half) = (self.basis.rank(), constant::<T>(0.5));
-        let mut matrix = square();
+        factor: &CholeskyFactor<T, NV>,
+    ) -> (SVector<T, NV>, RowList<T, NR>) {
+        let (rank, half) = (self.basis.column_count(), constant::<T>(0.5));
+        let mut matrix = zero_matrix();
         self.fill_regularised(&mut matrix);
-        cholesky(&mut matrix, rank);
+        cholesky_in_place(&mut matrix, rank);
         let mut all = factor.multiply_upper(&v.data.0[0]);
-        let mut rest = self.basis.gather(&all);
-        substitute(&matrix, rank, &mut rest);
-        substitute(&matrix, rank, &mut rest);
+        let mut rest = self.basis.velocities_of_columns(&all);
+        substitute_factor(&matrix, rank, &mut rest);
+        substitute_factor(&matrix, rank, &mut rest);
         rest.iter_mut().take(rank).for_each(|x| *x *= half);
         all.iter_mut().for_each(|x| *x *= half);
-        self.basis.scatter(&rest, &mut all);
-        (SVector::from(factor.solve_upper(all)), self.basis.rates(&rest))
+        self.basis.write_all_velocities(&rest, &mut all);
+        (SVector::from(factor.solve_upper(all)), self.basis.rates_of_velocity(&rest))
     }
 
     /// Returns impulses near others that change the rates of the mechanism by `rates`.
-    fn nearest(
+    fn nearest_impulses(
         &self,
-        others: &List<T, NR>,
+        others: &RowList<T, NR>,
         rates: &SVector<T, NR>,
-        equations: &mut Equations<T, NR>,
-    ) -> List<T, NR> {
-        let missing = rates - self.scatter(&self.changes(others));
+        equations: &mut ImpulseEquations<T, NR>,
+    ) -> RowList<T, NR> {
+        let missing = rates - self.spread_to_mechanism_rows(&self.velocity_changes(others));
         let (mut all, _) = self.impulses_for(&missing, equations);
         all.iter_mut().zip(others.iter()).for_each(|(impulse, other)| *impulse += *other);
         all
     }
 
     /// Returns values at the rows of the mechanism at the rows of closed contacts.
-    pub(in super::super) fn gather(&self, all: &SVector<T, NR>) -> List<T, NR> {
-        let mut gathered = List::repeat(T::zero());
-        gathered.iter_mut().zip(self.places.iter()).take(self.size).for_each(|(to, i)| *to = entry(all, *i));
+    pub(in super::super) fn gather_closed_rows(&self, all: &SVector<T, NR>) -> RowList<T, NR> {
+        let mut gathered = RowList::repeat_entry(T::zero());
+        gathered
+            .iter_mut()
+            .zip(self.places.iter())
+            .take(self.size)
+            .for_each(|(to, i)| *to = entry_or_zero(all, *i));
         gathered
     }
 
     /// Impulses that change the rates of the mechanism by `changes`.
-    pub(in super::super) fn displacements(&self, changes: &SVector<T, NR>) -> SVector<T, NR> {
-        self.scatter(&self.impulses_for(changes, &mut Equations::new()).0)
+    pub(in super::super) fn impulses_for_changes(&self, changes: &SVector<T, NR>) -> SVector<T, NR> {
+        self.spread_to_mechanism_rows(&self.impulses_for(changes, &mut ImpulseEquations::new()).0)
     }
 
     /// Half of the difference of friction impulses from those against the slip at the end of the step, for
     /// contacts that slip on throughout it; none if there are no such contacts.
-    fn slip_correction(&self, impulses: &List<T, NR>, rates: &SVector<T, NR>) -> Option<List<T, NR>> {
-        let (mut turned, mut is_any) = (List::repeat(T::zero()), false);
+    fn slip_correction(&self, impulses: &RowList<T, NR>, rates: &SVector<T, NR>) -> Option<RowList<T, NR>> {
+        let (mut turned, mut is_any) = (RowList::repeat_entry(T::zero()), false);
         for k in (0..self.count).filter(|k| self.friction[*k] > T::zero()) {
-            let (n, tangents) = self.of(k);
+            let (n, tangents) = self.rows_of_contact(k);
             let largest = self.friction[k] * impulses[n];
-            let slip = |i: usize| self.free[i] + entry(rates, self.places[i]);
-            let speed = tangents.clone().fold(T::zero(), |sum, i| sum + slip(i) * slip(i)).sqrt();
+            let slip_at_end = |i: usize| self.free[i] + entry_or_zero(rates, self.places[i]);
+            let speed =
+                tangents.clone().fold(T::zero(), |sum, i| sum + slip_at_end(i) * slip_at_end(i)).sqrt();
             // Friction of a step stops what is slower.
             let slides = largest > T::zero() && speed * self.step[k] > largest;
             if !slides {
                 continue;
             }
-            let across = |i: usize| impulses[i] + largest * slip(i) / speed;
-            let size = tangents.clone().fold(T::zero(), |sum, i| sum + across(i) * across(i)).sqrt();
+            let difference_across = |i: usize| impulses[i] + largest * slip_at_end(i) / speed;
+            let size = tangents
+                .clone()
+                .fold(T::zero(), |sum, i| sum + difference_across(i) * difference_across(i))
+                .sqrt();
             if size <= largest * constant(LARGEST) {
-                tangents.for_each(|i| turned[i] = across(i) * constant(0.5));
+                tangents.for_each(|i| turned[i] = difference_across(i) * constant(0.5));
                 is_any = true;
             }
         }

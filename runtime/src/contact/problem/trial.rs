@@ -1,46 +1,51 @@
-//! Impulses on trial: what they make of the rates, and what is left of the laws of contacts then.
+//! Trial impulses, with the contact velocities after them and the residuals of the contact conditions.
 
-use super::super::total::Total;
-use super::{List, Problem};
+use super::super::total::TotalArray;
+use super::{ContactProblem, RowList};
 use crate::Real;
 use crate::private::{epsilon, positive_part};
 
-/// What the natural map makes of a contact.
+/// Contact mode in the natural map of a contact.
 #[derive(Clone, Copy)]
-pub(super) enum Mode<T> {
-    /// No impulse.
+pub(super) enum ContactMode<T> {
+    /// Separated: the contact has no impulse.
     Open,
-    /// No slip.
+    /// Sticking: the contact has no slip.
     Stick,
-    /// Impulses along the tangents of this size, in this direction, before they were brought onto the cone.
+    /// Sliding: magnitude and direction of the tangential impulse before its projection onto the friction
+    /// cone.
     Slip { size: T, direction: [T; 2] },
 }
 
-/// Of each contact the impulse of its gap before it is made zero or more, and what follows.
-pub(super) type Modes<T, const NK: usize> = Total<(T, Mode<T>), NK>;
+/// Normal impulse of each contact before its projection onto zero or more, and the contact mode.
+pub(super) type ContactModes<T, const NK: usize> = TotalArray<(T, ContactMode<T>), NK>;
 
-/// Impulses, and what follows from them.
+/// Trial impulses, with contact velocities, modes and residuals.
 #[derive(Clone, Copy)]
-pub(super) struct Trial<T, const NK: usize, const NR: usize> {
-    pub(super) impulses: List<T, NR>,
-    /// The rates with them.
-    pub(super) rates: List<T, NR>,
-    pub(super) modes: Modes<T, NK>,
-    /// The square of what is left of the natural map, as rates.
+pub(super) struct ImpulseTrial<T, const NK: usize, const NR: usize> {
+    pub(super) impulses: RowList<T, NR>,
+    /// Contact velocities after the impulses.
+    pub(super) rates: RowList<T, NR>,
+    pub(super) modes: ContactModes<T, NK>,
+    /// Squared norm of the residual of the natural map, in units of contact velocity.
     pub(super) left: T,
-    /// The most that is left of the equations of a contact, as a rate, and of which.
+    /// Largest residual of a contact, as a contact velocity, and the index of that contact.
     pub(super) worst: (T, usize),
 }
 
-impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
+impl<T: Real, const NK: usize, const NR: usize> ContactProblem<T, NK, NR> {
     /// Returns impulses with the contact velocities after them, and their residuals.
-    pub(super) fn tried(&self, impulses: List<T, NR>) -> Trial<T, NK, NR> {
-        self.tried_with(impulses, self.rates(&impulses))
+    pub(super) fn tried_impulses(&self, impulses: RowList<T, NR>) -> ImpulseTrial<T, NK, NR> {
+        self.tried_with(impulses, self.rates_after(&impulses))
     }
 
     /// Returns impulses and given contact velocities after them, with their residuals.
-    pub(super) fn tried_with(&self, impulses: List<T, NR>, rates: List<T, NR>) -> Trial<T, NK, NR> {
-        let modes = self.modes(&self.friction, &impulses, &rates);
+    pub(super) fn tried_with(
+        &self,
+        impulses: RowList<T, NR>,
+        rates: RowList<T, NR>,
+    ) -> ImpulseTrial<T, NK, NR> {
+        let modes = self.natural_map_modes(&self.friction, &impulses, &rates);
         let (mut all, mut worst) = (T::zero(), (T::zero(), 0));
         for k in 0..self.count {
             let step = self.step[k] * self.scale;
@@ -52,7 +57,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                     T::zero()
                 }
             } else {
-                let [normal, x, y] = self.map(k, modes[k], &impulses, &rates);
+                let [normal, x, y] = self.natural_map_residual(k, modes[k], &impulses, &rates);
                 all += (normal * normal + x * x + y * y) / (step * step);
                 normal.abs().max((x * x + y * y).sqrt()) / step
             };
@@ -62,37 +67,43 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
                 worst = (left, k);
             }
         }
-        Trial { impulses, rates, modes, left: all, worst }
+        ImpulseTrial { impulses, rates, modes, left: all, worst }
     }
 
-    /// Whether no more is left of the laws than rounding of the impulses makes; impulses without bounds solve
-    /// nothing.
-    pub(super) fn solves(&self, trial: &Trial<T, NK, NR>) -> bool {
+    /// Whether the residuals of the contact conditions are within rounding errors of the impulses. Very large
+    /// impulses never count as a solution.
+    pub(super) fn is_solved_by(&self, trial: &ImpulseTrial<T, NK, NR>) -> bool {
         let left = trial.worst.0;
-        left <= self.speed() * epsilon::<T>().sqrt() && left <= self.rounding(&trial.impulses)
+        left <= self.largest_rate() * epsilon::<T>().sqrt() && left <= self.rate_rounding(&trial.impulses)
     }
 
-    /// What the natural map makes of contacts with this friction.
-    pub(super) fn modes(
+    /// Returns the contact modes in the natural map with these coefficients of friction.
+    pub(super) fn natural_map_modes(
         &self,
-        friction: &Total<T, NK>,
-        impulses: &List<T, NR>,
-        rates: &List<T, NR>,
-    ) -> Modes<T, NK> {
-        let mut modes = Modes::repeat((T::zero(), Mode::Open));
+        friction: &TotalArray<T, NK>,
+        impulses: &RowList<T, NR>,
+        rates: &RowList<T, NR>,
+    ) -> ContactModes<T, NK> {
+        let mut modes = ContactModes::repeat_entry((T::zero(), ContactMode::Open));
         for k in 0..self.count {
-            modes[k] = self.mode(friction[k], k, impulses, rates);
+            modes[k] = self.natural_map_mode(friction[k], k, impulses, rates);
         }
         modes
     }
 
-    fn mode(&self, friction: T, k: usize, impulses: &List<T, NR>, rates: &List<T, NR>) -> (T, Mode<T>) {
-        let (n, tangents) = self.of(k);
+    fn natural_map_mode(
+        &self,
+        friction: T,
+        k: usize,
+        impulses: &RowList<T, NR>,
+        rates: &RowList<T, NR>,
+    ) -> (T, ContactMode<T>) {
+        let (n, tangents) = self.rows_of_contact(k);
         let step = self.step[k] * self.scale;
-        let normal = impulses[n] - self.press(k) * (rates[n] - self.least[self.pressed_by[k]]);
-        let bearing = self.bearing(k, normal);
+        let normal = impulses[n] - self.normal_step(k) * (rates[n] - self.least[self.pressed_by[k]]);
+        let bearing = self.bearing_impulse(k, normal);
         if bearing <= T::zero() || step == T::zero() {
-            return (normal, Mode::Open);
+            return (normal, ContactMode::Open);
         }
         let mut direction = [T::zero(); 2];
         for (d, i) in direction.iter_mut().zip(tangents) {
@@ -101,32 +112,32 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
         let [x, y] = direction;
         let size = (x * x + y * y).sqrt();
         if size <= friction * bearing {
-            return (normal, Mode::Stick);
+            return (normal, ContactMode::Stick);
         }
-        (normal, Mode::Slip { size, direction: [x / size, y / size] })
+        (normal, ContactMode::Slip { size, direction: [x / size, y / size] })
     }
 
-    /// The natural map of a contact: its impulses without what they are by their law. Friction that is
-    /// stronger than what presses counts by what would press it, so that rounding of the latter is not taken
-    /// for more than it is.
-    fn map(
+    /// Returns the residual of the natural map of a contact: its impulses minus their projection onto the
+    /// contact conditions. With a coefficient of friction above one, the tangential residual is divided by
+    /// that coefficient, so that rounding errors of the normal impulse are not amplified.
+    fn natural_map_residual(
         &self,
         k: usize,
-        (normal, mode): (T, Mode<T>),
-        impulses: &List<T, NR>,
-        rates: &List<T, NR>,
+        (normal, mode): (T, ContactMode<T>),
+        impulses: &RowList<T, NR>,
+        rates: &RowList<T, NR>,
     ) -> [T; 3] {
-        let (n, tangents) = self.of(k);
+        let (n, tangents) = self.rows_of_contact(k);
         let pressed = if self.is_gap(k) { impulses[n] - positive_part(normal) } else { T::zero() };
         let mut map = [pressed, T::zero(), T::zero()];
         for ((c, entry), i) in map.iter_mut().skip(1).enumerate().zip(tangents) {
             *entry = match mode {
-                Mode::Open => impulses[i],
-                Mode::Stick => self.step[k] * self.scale * rates[i],
-                Mode::Slip { direction, .. } => {
+                ContactMode::Open => impulses[i],
+                ContactMode::Stick => self.step[k] * self.scale * rates[i],
+                ContactMode::Slip { direction, .. } => {
                     let friction = self.friction[k];
-                    let most = friction * self.bearing(k, normal);
-                    (impulses[i] - component(&direction, c) * most) / friction.max(T::one())
+                    let most = friction * self.bearing_impulse(k, normal);
+                    (impulses[i] - direction_component(&direction, c) * most) / friction.max(T::one())
                 }
             };
         }
@@ -134,7 +145,7 @@ impl<T: Real, const NK: usize, const NR: usize> Problem<T, NK, NR> {
     }
 }
 
-/// A component of a direction of slip.
-pub(super) fn component<T: Copy>([x, y]: &[T; 2], c: usize) -> T {
+/// Returns component `c` of a slip direction in the tangent plane.
+pub(super) fn direction_component<T: Copy>([x, y]: &[T; 2], c: usize) -> T {
     if c == 0 { *x } else { *y }
 }

@@ -1,8 +1,8 @@
 //! Stages of one Dormand–Prince step of order 5, with error estimate and interpolating polynomial.
 
 use crate::Real;
-use crate::integrate::adaptive::{Attempt, Trial};
-use crate::integrate::stages::{Rates, rates_at_stage, weighted_sum_of_rates};
+use crate::integrate::adaptive::{StepTrial, TrialStep};
+use crate::integrate::stages::{RungeKuttaRates, rates_at_stage, weighted_sum_of_rates};
 use crate::integrate::{Dynamics, Step};
 use crate::private::constant;
 
@@ -10,11 +10,11 @@ use crate::private::constant;
 /// and Wanner, II, table 5.2 and (6.12)).
 pub(super) fn step_stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, const NV: usize>(
     system: &mut D,
-    attempt: &Attempt<'_, T, NQ, NV>,
-) -> Trial<T, NQ, NV> {
-    let Attempt { start, acceleration, scale, h, t } = *attempt;
+    attempt: &TrialStep<'_, T, NQ, NV>,
+) -> StepTrial<T, NQ, NV> {
+    let TrialStep { start, acceleration, scale, h, t } = *attempt;
     let time_at_fraction = |part: f64| start.t + h * constant(part);
-    let k1 = &Rates { displacement: start.v, velocity: *acceleration };
+    let k1 = &RungeKuttaRates { displacement: start.v, velocity: *acceleration };
     let change = weighted_sum_of_rates(h, [(1.0 / 5.0, k1)]);
     let k2 = &rates_at_stage(system, start, time_at_fraction(1.0 / 5.0), &change).0;
     let change = weighted_sum_of_rates(h, [(3.0 / 40.0, k1), (9.0 / 40.0, k2)]);
@@ -78,6 +78,6 @@ pub(super) fn step_stages<T: Real, D: Dynamics<T, NQ, NV>, const NQ: usize, cons
         velocity: step.velocity.with_fourth(fourth.velocity),
         ..step
     };
-    let error = scale.error(&step, &displacement, &error);
-    Trial { step, acceleration: Some(k7.velocity), error }
+    let error = scale.relative_error(&step, &displacement, &error);
+    StepTrial { step, acceleration: Some(k7.velocity), error }
 }

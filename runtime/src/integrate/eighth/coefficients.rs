@@ -143,7 +143,7 @@ pub static THIRD: &[(usize, f64)] = &[
     (11, 0.02265179219836082),
 ];
 
-/// Coefficients of the last four terms of the interpolating polynomial.
+/// Weights of the stages in the last four terms of the interpolating polynomial of DOP853.
 pub static TERMS: [&[(usize, f64)]; 4] = [
     &[
         (0, -8.428938276109013),

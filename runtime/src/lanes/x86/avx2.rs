@@ -22,13 +22,14 @@ pub(crate) fn is_available() -> bool {
     std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma")
 }
 
-/// Whether these instructions speed up numbers of type `T`: `f64` or `f32`.
+/// Whether AVX2 and FMA speed up arithmetic with numbers of type `T`: `f64` or `f32`.
 #[inline(always)]
 pub(crate) fn has_faster_instructions<T: Real>() -> bool {
     TypeId::of::<T>() == TypeId::of::<f64>() || TypeId::of::<T>() == TypeId::of::<f32>()
 }
 
-/// Returns from the enclosing function with the result, if the lanes fill this number of registers.
+/// Returns from the enclosing function with the result of an operation, if the lanes fill this number of
+/// registers.
 macro_rules! registers {
     ([$number:ident; $lanes:literal] as [$register:ident; $count:literal]: ($($a:ident)+) => $f:expr) => {
         if N == $lanes
@@ -51,7 +52,7 @@ macro_rules! registers {
     };
 }
 
-/// Passes the list of operations with their intrinsics to another macro.
+/// Passes the list of vector operations with their intrinsics to another macro.
 macro_rules! list {
     ($then:ident) => {
         $then! {
@@ -67,8 +68,8 @@ macro_rules! list {
     };
 }
 
-/// Functions with the target features: each is optimised separately before it is inlined into a body of many
-/// operations.
+/// Functions with the target features AVX2 and FMA. Each is optimised separately before it is inlined into a
+/// body of many operations.
 mod with_features {
     use super::*;
 
@@ -154,7 +155,7 @@ mod with_features {
     #[inline]
     #[target_feature(enable = "avx2,fma")]
     pub(super) fn sin_cos_of_small<const L: usize>(x: &[f64; L]) -> [[f64; L]; 2] {
-        crate::lanes::angles::of_small::<Avx2, L>(x)
+        crate::lanes::angles::sin_cos_of_small::<Avx2, L>(x)
     }
 
     #[inline]
@@ -235,11 +236,11 @@ impl Registers for Avx2 {
 #[inline(never)]
 #[target_feature(enable = "avx2,fma")]
 fn sin_cos_of_large<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
-    trigonometry::with_large::<Avx2, N>(x)
+    trigonometry::sin_cos_with_large_angles::<Avx2, N>(x)
 }
 
 /// Converts sine and cosine of the reduced angle to those of the angle by its quadrant. An odd quadrant
-/// exchanges them, and bits of the quadrant determine their signs.
+/// exchanges sine and cosine, and bits of the quadrant determine their signs.
 #[inline]
 #[target_feature(enable = "avx2,fma")]
 fn turned_register(s: __m256d, c: __m256d, quadrant: __m256i) -> [__m256d; 2] {

@@ -23,7 +23,7 @@ pub(crate) fn is_available() -> bool {
     has!("avx2") && has!("fma") && has!("avx512f") && has!("avx512vl") && has!("avx512vbmi2")
 }
 
-/// Functions with the target features. Vectors of other than eight numbers use AVX2.
+/// Functions with the target feature AVX-512. Vectors of other than eight numbers use AVX2.
 mod with_features {
     use super::*;
 

@@ -9,30 +9,50 @@ const OFFSETS: [f64; 14] =
     [0.0, 1e-300, 1e-17, 1e-16, 4e-16, 8e-16, 1e-15, 3e-15, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-3];
 
 #[test]
-fn all_sequences_agree_with_the_table() {
+fn euler_sequences_match_reference_table() {
     for row in &TABLE {
         let (sequence, name) = (row.sequence, row.name);
         assert_eq!(sequence.to_string(), name);
         let [m0, m1, m2] = row.matrix.map(nalgebra::RowVector3::from);
         let matrix = Matrix3::from_rows(&[m0, m1, m2]);
         let rotation = sequence.rotation(ANGLES);
-        assert_below(difference(rotation.matrix(), &matrix), 3e-16, name);
+        assert_below(largest_entry_difference(rotation.matrix(), &matrix), 3e-16, name);
 
         let [w, x, y, z] = row.quaternion;
         let quaternion = shorter(&sequence.quaternion(ANGLES));
         let expected = Quaternion::new(w, x, y, z);
-        assert_below(difference(&quaternion.coords, &expected.coords), 3e-16, name);
-        assert_below(difference(&quaternion_of_rotation(&rotation).coords, &expected.coords), 3e-16, name);
-        assert_below(difference(quaternion.to_rotation_matrix().matrix(), &matrix), 1e-15, name);
+        assert_below(largest_entry_difference(&quaternion.coords, &expected.coords), 3e-16, name);
+        assert_below(
+            largest_entry_difference(&quaternion_of_rotation(&rotation).coords, &expected.coords),
+            3e-16,
+            name,
+        );
+        assert_below(
+            largest_entry_difference(quaternion.to_rotation_matrix().matrix(), &matrix),
+            1e-15,
+            name,
+        );
 
         let vector = Vector3::from(row.rotation_vector);
-        assert_below(difference(&RotationVector::from_rotation(&rotation).0, &vector), 1e-15, name);
-        assert_below(difference(&RotationVector::from_quaternion(&quaternion).0, &vector), 1e-15, name);
-        assert_below(difference(RotationVector(vector).rotation().matrix(), &matrix), 1e-15, name);
+        assert_below(
+            largest_entry_difference(&RotationVector::from_rotation(&rotation).0, &vector),
+            1e-15,
+            name,
+        );
+        assert_below(
+            largest_entry_difference(&RotationVector::from_quaternion(&quaternion).0, &vector),
+            1e-15,
+            name,
+        );
+        assert_below(
+            largest_entry_difference(RotationVector(vector).rotation().matrix(), &matrix),
+            1e-15,
+            name,
+        );
 
         let (body, space) = (Vector3::from(row.omega_body), Vector3::from(row.omega_space));
-        assert_below(difference(&sequence.omega_body(ANGLES, RATES), &body), 5e-16, name);
-        assert_below(difference(&sequence.omega_space(ANGLES, RATES), &space), 5e-16, name);
+        assert_below(largest_entry_difference(&sequence.omega_body(ANGLES, RATES), &body), 5e-16, name);
+        assert_below(largest_entry_difference(&sequence.omega_space(ANGLES, RATES), &space), 5e-16, name);
         for found in [sequence.rates_from_body(ANGLES, &body), sequence.rates_from_space(ANGLES, &space)] {
             assert_below(angle_difference(found.unwrap(), RATES), 1e-15, name);
         }
@@ -46,7 +66,7 @@ fn all_sequences_agree_with_the_table() {
 }
 
 #[test]
-fn all_sequences_are_those_of_the_table_and_no_others() {
+fn table_lists_every_euler_sequence() {
     for (sequence, row) in EulerSequence::ALL.iter().zip(&TABLE) {
         assert_eq!(*sequence, row.sequence);
         assert_eq!(EulerSequence::new(sequence.fixed_in(), sequence.axes()), Some(*sequence));
@@ -56,8 +76,8 @@ fn all_sequences_are_those_of_the_table_and_no_others() {
 }
 
 #[test]
-fn a_sequence_is_a_product_of_elementary_rotations() {
-    let mut random = Random(1);
+fn sequence_is_product_of_axis_rotations() {
+    let mut random = RandomNumbers(1);
     for sequence in EulerSequence::ALL {
         for _ in 0..50 {
             let [a, b, c] = random.random_numbers().map(|x: f64| 4.0 * x);
@@ -68,10 +88,10 @@ fn a_sequence_is_a_product_of_elementary_rotations() {
                 FixedIn::Space => c_turn * b_turn * a_turn,
             };
             let rotation = sequence.rotation([a, b, c]);
-            assert_below(difference(rotation.matrix(), product.matrix()), 4e-16, sequence);
+            assert_below(largest_entry_difference(rotation.matrix(), product.matrix()), 4e-16, sequence);
             let quaternion = sequence.quaternion([a, b, c]);
             assert_below(
-                difference(quaternion.to_rotation_matrix().matrix(), product.matrix()),
+                largest_entry_difference(quaternion.to_rotation_matrix().matrix(), product.matrix()),
                 1e-15,
                 sequence,
             );
@@ -81,8 +101,8 @@ fn a_sequence_is_a_product_of_elementary_rotations() {
 }
 
 #[test]
-fn angles_give_random_rotations_back() {
-    let mut random = Random(2);
+fn euler_angles_reproduce_random_rotations() {
+    let mut random = RandomNumbers(2);
     for sequence in EulerSequence::ALL {
         for _ in 0..500 {
             let rotation = random.random_rotation();
@@ -92,13 +112,17 @@ fn angles_give_random_rotations_back() {
             let range = if sequence.is_symmetric() { 0.0..=PI } else { -FRAC_PI_2..=FRAC_PI_2 };
             assert!(range.contains(&b), "{sequence} {b}");
             assert_below(
-                difference(sequence.rotation(found.angles).matrix(), rotation.matrix()),
+                largest_entry_difference(sequence.rotation(found.angles).matrix(), rotation.matrix()),
                 1.5e-15,
                 sequence,
             );
             let other = sequence.other_angles(found.angles);
             assert!(other.iter().all(|t| t.abs() <= PI));
-            assert_below(difference(sequence.rotation(other).matrix(), rotation.matrix()), 2e-15, sequence);
+            assert_below(
+                largest_entry_difference(sequence.rotation(other).matrix(), rotation.matrix()),
+                2e-15,
+                sequence,
+            );
             assert_below(angle_difference(sequence.other_angles(other), found.angles), 1e-15, sequence);
         }
     }
@@ -112,8 +136,8 @@ fn nearly_singular_angles(sequence: EulerSequence) -> impl Iterator<Item = f64> 
 }
 
 #[test]
-fn angles_near_the_singularities_give_the_rotation_back() {
-    let mut random = Random(3);
+fn angles_near_gimbal_lock_reproduce_rotation() {
+    let mut random = RandomNumbers(3);
     for sequence in EulerSequence::ALL {
         for middle in nearly_singular_angles(sequence) {
             for _ in 0..20 {
@@ -122,7 +146,7 @@ fn angles_near_the_singularities_give_the_rotation_back() {
                 let found = sequence.angles(&rotation);
                 let back = sequence.rotation(found.angles);
                 assert_below(
-                    difference(back.matrix(), rotation.matrix()),
+                    largest_entry_difference(back.matrix(), rotation.matrix()),
                     2.5e-15,
                     (sequence, middle, a, c, found),
                 );
@@ -143,8 +167,8 @@ fn angles_near_the_singularities_give_the_rotation_back() {
 }
 
 #[test]
-fn rotations_with_noise_at_the_singularity_give_themselves_back() {
-    let mut random = Random(4);
+fn noisy_rotations_at_gimbal_lock_convert_back() {
+    let mut random = RandomNumbers(4);
     for sequence in EulerSequence::ALL {
         for middle in nearly_singular_angles(sequence) {
             let rotation = sequence.rotation([0.7, middle, -0.4]);
@@ -152,7 +176,7 @@ fn rotations_with_noise_at_the_singularity_give_themselves_back() {
             let noisy = turn.inverse() * (turn * rotation);
             let found = sequence.angles(&noisy);
             assert_below(
-                difference(sequence.rotation(found.angles).matrix(), noisy.matrix()),
+                largest_entry_difference(sequence.rotation(found.angles).matrix(), noisy.matrix()),
                 4e-15,
                 (sequence, middle),
             );
@@ -161,7 +185,7 @@ fn rotations_with_noise_at_the_singularity_give_themselves_back() {
 }
 
 #[test]
-fn a_singular_rotation_has_all_in_the_first_angle() {
+fn gimbal_lock_uses_first_angle_alone() {
     let found = EulerSequence::BODY_ZYX.angles(&EulerSequence::BODY_ZYX.rotation([0.3, FRAC_PI_2, 1.0]));
     assert!(found.singular);
     assert_below(angle_difference(found.angles, [-0.7, FRAC_PI_2, 0.0]), 3e-16, found);
@@ -175,8 +199,8 @@ fn a_singular_rotation_has_all_in_the_first_angle() {
 }
 
 #[test]
-fn single_precision_goes_there_and_back() {
-    let mut random = Random(5);
+fn single_precision_angles_convert_back() {
+    let mut random = RandomNumbers(5);
     for sequence in EulerSequence::ALL {
         let singular = if sequence.is_symmetric() { 0.0 } else { FRAC_PI_2 };
         for offset in [0.0, 1e-8, 1e-6, 1e-3, 1.0] {

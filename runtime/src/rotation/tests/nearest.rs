@@ -2,21 +2,21 @@ use super::*;
 use crate::rotation::*;
 
 #[test]
-fn a_rotation_is_its_own_nearest() {
-    let mut random = Random(31);
+fn rotation_is_its_own_nearest_rotation() {
+    let mut random = RandomNumbers(31);
     for _ in 0..500 {
         let rotation = random.random_rotation();
         for scale in [1e-300, 1e-3, 1.0, 7.0, 1e300] {
             let found = nearest_rotation(&(rotation.matrix() * scale)).unwrap();
-            assert_below(difference(found.matrix(), rotation.matrix()), 2e-15, scale);
+            assert_below(largest_entry_difference(found.matrix(), rotation.matrix()), 2e-15, scale);
             assert_below(orthogonality_error(&found), 2e-15, scale);
         }
     }
 }
 
 #[test]
-fn the_nearest_to_a_noisy_matrix_is_stationary_and_the_best_of_its_neighbours() {
-    let mut random = Random(32);
+fn nearest_rotation_minimises_distance() {
+    let mut random = RandomNumbers(32);
     for noise in [1e-12, 1e-6, 1e-2, 0.3, 2.0] {
         for _ in 0..100 {
             let rotation = random.random_rotation();
@@ -40,18 +40,18 @@ fn the_nearest_to_a_noisy_matrix_is_stationary_and_the_best_of_its_neighbours() 
 }
 
 #[test]
-fn small_noise_moves_by_its_skew_part() {
-    let mut random = Random(33);
+fn nearest_rotation_removes_symmetric_noise() {
+    let mut random = RandomNumbers(33);
     let rotation = random.random_rotation();
     let noise = Matrix3::from_fn(|_, _| 1e-8 * random.random_number());
     let found = nearest_rotation(&(rotation.matrix() + rotation.matrix() * noise)).unwrap();
     let moved = RotationVector::from_rotation(&(rotation.inverse() * found));
-    assert_below(difference(&moved.0, &axial(&noise)), 2e-15, noise);
+    assert_below(largest_entry_difference(&moved.0, &axial(&noise)), 2e-15, noise);
 }
 
 #[test]
-fn matrices_of_rank_two_have_a_nearest_and_worse_ones_say_so() {
-    let mut random = Random(34);
+fn nearest_rotation_requires_rank_two() {
+    let mut random = RandomNumbers(34);
     let (r, s) = (random.random_rotation(), random.random_rotation());
     let matrix_with_singular_values =
         |values: [f64; 3]| r.matrix() * Matrix3::from_diagonal(&values.into()) * s.matrix();
@@ -59,7 +59,7 @@ fn matrices_of_rank_two_have_a_nearest_and_worse_ones_say_so() {
     for values in [[3.0, 2.0, 0.0], [3.0, 2.0, 1.0], [3.0, 2.0, -1.0], [1.0, 1e-3, 0.0], [1.0, 1.0, -0.9]] {
         let found = nearest_rotation(&matrix_with_singular_values(values)).unwrap();
         assert_below(
-            difference(found.matrix(), best.matrix()),
+            largest_entry_difference(found.matrix(), best.matrix()),
             3e-15 * values[0] / (values[1] + values[2]),
             values,
         );

@@ -27,23 +27,34 @@ const ANGLES: [f64; 19] = [
 ];
 
 #[test]
-fn exponential_is_rodrigues_formula() {
-    let mut random = Random(21);
+fn exponential_equals_rodrigues_formula() {
+    let mut random = RandomNumbers(21);
     for angle in ANGLES.into_iter().chain([4.0, TAU, 7.0, 100.0]) {
         for _ in 0..20 {
             let axis = Unit::new_normalize(random.random_axis());
             let rotation = rodrigues(&axis, angle);
             let vector = RotationVector(axis.into_inner() * angle);
             let bound = 1e-15 * (1.0 + angle / 8.0);
-            assert_below(difference(rotation.matrix(), vector.rotation().matrix()), bound, angle);
             assert_below(
-                difference(rotation.matrix(), vector.quaternion().to_rotation_matrix().matrix()),
+                largest_entry_difference(rotation.matrix(), vector.rotation().matrix()),
+                bound,
+                angle,
+            );
+            assert_below(
+                largest_entry_difference(
+                    rotation.matrix(),
+                    vector.quaternion().to_rotation_matrix().matrix(),
+                ),
                 bound,
                 angle,
             );
             assert_below(orthogonality_error(&vector.rotation()), 1.5e-15, angle);
             let v = random.random_vector();
-            assert_below(difference(&rotate_about(&axis, angle, &v), &(rotation * v)), 1e-15, angle);
+            assert_below(
+                largest_entry_difference(&rotate_about(&axis, angle, &v), &(rotation * v)),
+                1e-15,
+                angle,
+            );
             assert_below((vector.angle() - angle).abs(), 4e-16 * angle, angle);
         }
     }
@@ -51,7 +62,7 @@ fn exponential_is_rodrigues_formula() {
 
 #[test]
 fn logarithm_inverts_the_exponential() {
-    let mut random = Random(22);
+    let mut random = RandomNumbers(22);
     for angle in ANGLES {
         for _ in 0..50 {
             let axis = random.random_axis();
@@ -63,8 +74,12 @@ fn logarithm_inverts_the_exponential() {
                 RotationVector::from_quaternion(&antipode(&vector.quaternion())),
             ] {
                 // To rounding, both signs of a rotation by π are valid.
-                let same = difference(&found.0, &vector.0);
-                let other = if PI - angle < 1e-14 { difference(&found.0, &-vector.0) } else { f64::INFINITY };
+                let same = largest_entry_difference(&found.0, &vector.0);
+                let other = if PI - angle < 1e-14 {
+                    largest_entry_difference(&found.0, &-vector.0)
+                } else {
+                    f64::INFINITY
+                };
                 assert_below(same.min(other), bound, angle);
                 assert!(found.angle() <= PI + 1e-15);
             }
@@ -73,15 +88,15 @@ fn logarithm_inverts_the_exponential() {
 }
 
 #[test]
-fn axis_and_angle_are_found_everywhere() {
-    let mut random = Random(23);
+fn eigenaxis_is_found_for_all_angles() {
+    let mut random = RandomNumbers(23);
     for angle in ANGLES.into_iter().filter(|angle| *angle > 0.0) {
         for _ in 0..50 {
             let axis = Unit::new_normalize(random.random_axis());
             let (found, turn) = eigenaxis(&rodrigues(&axis, angle)).unwrap();
             assert_below((turn - angle).abs(), 2e-15 * angle.min(1.0), angle);
             let sign = if PI - angle < 1e-14 { found.dot(&axis).signum() } else { 1.0 };
-            assert_below(difference(&(found.into_inner() * sign), &axis), 1.5e-15, angle);
+            assert_below(largest_entry_difference(&(found.into_inner() * sign), &axis), 1.5e-15, angle);
         }
     }
     assert_eq!(eigenaxis(&Rotation3::<f64>::identity()), None);
@@ -90,7 +105,7 @@ fn axis_and_angle_are_found_everywhere() {
 }
 
 #[test]
-fn every_half_turn_about_coordinate_axes_and_diagonals_is_found() {
+fn half_turns_about_all_axes_are_found() {
     for x in [-1.0, 0.0, 1.0] {
         for y in [-1.0, 0.0, 1.0] {
             for z in [-1.0, 0.0, 1.0] {
@@ -100,7 +115,11 @@ fn every_half_turn_about_coordinate_axes_and_diagonals_is_found() {
                     Rotation3::from_matrix_unchecked(n * n.transpose() * 2.0 - Matrix3::identity());
                 let found = RotationVector::from_rotation(&half_turn);
                 assert_below((found.angle() - PI).abs(), 5e-16, n);
-                assert_below(difference(found.rotation().matrix(), half_turn.matrix()), 1e-15, n);
+                assert_below(
+                    largest_entry_difference(found.rotation().matrix(), half_turn.matrix()),
+                    1e-15,
+                    n,
+                );
                 assert_below((Mrp::from_rotation(&half_turn).0.norm() - 1.0).abs(), 3e-16, n);
             }
         }
@@ -116,8 +135,8 @@ fn every_half_turn_about_coordinate_axes_and_diagonals_is_found() {
 }
 
 #[test]
-fn all_parameters_give_the_same_rotation() {
-    let mut random = Random(24);
+fn all_parameters_represent_the_same_rotation() {
+    let mut random = RandomNumbers(24);
     let turns = ANGLES.into_iter().flat_map(|angle| [(); 20].map(|()| angle));
     for angle in turns {
         let vector = RotationVector(random.random_axis() * angle);
@@ -139,15 +158,24 @@ fn all_parameters_give_the_same_rotation() {
             // tan θ/2 = 2 tan(θ/4) / (1 − tan² θ/4), ill-conditioned near θ = π.
             if angle < 3.1 {
                 let doubled = sigma.0 * (2.0 / (1.0 - sigma.0.norm_squared()));
-                assert_below(difference(&doubled, &g.0), 1e-15 * (1.0 + g.0.norm_squared()), angle);
+                assert_below(
+                    largest_entry_difference(&doubled, &g.0),
+                    1e-15 * (1.0 + g.0.norm_squared()),
+                    angle,
+                );
             }
         }
         if let Ok(shadow) = sigma.shadow() {
             found.push(shadow.rotation());
             let opposite = antipode(&sigma.quaternion());
-            assert_below(difference(&shadow.quaternion().coords, &opposite.coords), 5e-16, angle);
             assert_below(
-                difference(&shadow.switched().0, &sigma.0).min(difference(&shadow.switched().0, &shadow.0)),
+                largest_entry_difference(&shadow.quaternion().coords, &opposite.coords),
+                5e-16,
+                angle,
+            );
+            assert_below(
+                largest_entry_difference(&shadow.switched().0, &sigma.0)
+                    .min(largest_entry_difference(&shadow.switched().0, &shadow.0)),
                 5e-16,
                 angle,
             );
@@ -157,41 +185,45 @@ fn all_parameters_give_the_same_rotation() {
             assert_below((shadow.angle() - (TAU - angle)).abs(), 2e-15, angle);
         }
         for other in found {
-            assert_below(difference(other.matrix(), rotation.matrix()), 3e-15, angle);
+            assert_below(largest_entry_difference(other.matrix(), rotation.matrix()), 3e-15, angle);
             assert_below(orthogonality_error(&other), 2e-15, angle);
         }
     }
 }
 
 #[test]
-fn zero_has_no_shadow_and_huge_vectors_have_rotations() {
+fn shadow_of_zero_vector_is_an_error() {
     assert_eq!(Mrp(Vector3::<f64>::zeros()).shadow(), Err(Singular::FullTurn));
     assert_eq!(RotationVector(Vector3::<f64>::zeros()).shadow(), Err(Singular::FullTurn));
     let huge = Vector3::new(0.0, 1e300, 0.0);
-    assert_below(difference(Mrp(huge).rotation().matrix(), &Matrix3::identity()), 1e-15, huge);
-    assert_below(difference(&Mrp(huge).switched().0, &Vector3::zeros()), 1e-299, huge);
+    assert_below(largest_entry_difference(Mrp(huge).rotation().matrix(), &Matrix3::identity()), 1e-15, huge);
+    assert_below(largest_entry_difference(&Mrp(huge).switched().0, &Vector3::zeros()), 1e-299, huge);
     let half_turn = Matrix3::from_diagonal(&Vector3::new(-1.0, 1.0, -1.0));
-    assert_below(difference(Gibbs(huge).rotation().matrix(), &half_turn), 1e-15, huge);
+    assert_below(largest_entry_difference(Gibbs(huge).rotation().matrix(), &half_turn), 1e-15, huge);
 }
 
 #[test]
-fn cayley_transforms_are_quotients_of_matrices() {
-    let mut random = Random(25);
+fn cayley_transform_is_matrix_quotient() {
+    let mut random = RandomNumbers(25);
     for _ in 0..100 {
         let skew = random.random_vector().cross_matrix() * 2.0;
         let quotient = (Matrix3::identity() + skew) * (Matrix3::identity() - skew).try_inverse().unwrap();
         let rotation = cayley(&skew);
-        assert_below(difference(rotation.matrix(), &quotient), 3e-15, skew);
-        assert_below(difference(&inverse_cayley(&rotation).unwrap(), &skew), 4e-14, skew);
+        assert_below(largest_entry_difference(rotation.matrix(), &quotient), 3e-15, skew);
+        assert_below(largest_entry_difference(&inverse_cayley(&rotation).unwrap(), &skew), 4e-14, skew);
         // The second-order transform is that of the modified Rodrigues vector (Tsiotras, Junkins and Schaub,
         // 1997).
-        assert_below(difference(Mrp(axial(&skew)).rotation().matrix(), &(quotient * quotient)), 6e-15, skew);
+        assert_below(
+            largest_entry_difference(Mrp(axial(&skew)).rotation().matrix(), &(quotient * quotient)),
+            6e-15,
+            skew,
+        );
     }
 }
 
 #[test]
-fn vectors_compose_as_rotations_do() {
-    let mut random = Random(26);
+fn vector_composition_matches_rotations() {
+    let mut random = RandomNumbers(26);
     for _ in 0..500 {
         let (p, q) = (random.random_quaternion(), random.random_quaternion());
         let product = (p * q).to_rotation_matrix();
@@ -199,14 +231,22 @@ fn vectors_compose_as_rotations_do() {
         for (a, b) in [(a, b), (a.shadow().unwrap(), b), (a.shadow().unwrap(), b.shadow().unwrap())] {
             let composed = a.compose(&b);
             assert!(composed.0.norm() <= 1.0 + 1e-15);
-            assert_below(difference(composed.rotation().matrix(), product.matrix()), 3e-15, (p, q));
+            assert_below(
+                largest_entry_difference(composed.rotation().matrix(), product.matrix()),
+                3e-15,
+                (p, q),
+            );
         }
         let (g, h) = (Gibbs::from_quaternion(&p).unwrap(), Gibbs::from_quaternion(&q).unwrap());
         let composed = g.compose(&h).unwrap();
         let bound = 2e-15 * (1.0 + g.0.norm() + h.0.norm());
-        assert_below(difference(composed.rotation().matrix(), product.matrix()), bound, (p, q));
-        assert_below(difference(&a.compose(&a.inverse()).0, &Vector3::zeros()), 2e-16, p);
-        assert_below(difference(&g.compose(&g.inverse()).unwrap().0, &Vector3::zeros()), 2e-16, p);
+        assert_below(largest_entry_difference(composed.rotation().matrix(), product.matrix()), bound, (p, q));
+        assert_below(largest_entry_difference(&a.compose(&a.inverse()).0, &Vector3::zeros()), 2e-16, p);
+        assert_below(
+            largest_entry_difference(&g.compose(&g.inverse()).unwrap().0, &Vector3::zeros()),
+            2e-16,
+            p,
+        );
     }
     // Two rotations by π/2 about one axis: infinite for the Gibbs vector, on the unit sphere for the other;
     // two rotations by π: the identity.

@@ -8,8 +8,8 @@ const LENGTHS: [f64; 15] =
     [0.0, 1e-200, 1e-9, 1e-4, 0.2, 0.23, 0.49, 0.51, 2.0, 3.1, PI, 3.2, 6.0, 6.6, 11.0];
 
 #[test]
-fn omega_of_euler_angles_is_that_of_the_turning_matrix() {
-    let mut random = Random(11);
+fn euler_angle_rates_give_angular_velocity() {
+    let mut random = RandomNumbers(11);
     for sequence in EulerSequence::ALL {
         for _ in 0..20 {
             let (angles, rates) = (random.random_vector() * 3.0, random.random_vector());
@@ -17,16 +17,24 @@ fn omega_of_euler_angles_is_that_of_the_turning_matrix() {
             let rate = derivative_at_zero(|t| *sequence.rotation((angles + rates * t).into()).matrix());
             let body = sequence.omega_body(angles.into(), rates.into());
             let space = sequence.omega_space(angles.into(), rates.into());
-            assert_below(difference(&rotation_omega_body(&rotation, &rate), &body), 1e-12, sequence);
-            assert_below(difference(&rotation_omega_space(&rotation, &rate), &space), 1e-12, sequence);
-            assert_below(difference(&(rotation * body), &space), 2e-15, sequence);
+            assert_below(
+                largest_entry_difference(&rotation_omega_body(&rotation, &rate), &body),
+                1e-12,
+                sequence,
+            );
+            assert_below(
+                largest_entry_difference(&rotation_omega_space(&rotation, &rate), &space),
+                1e-12,
+                sequence,
+            );
+            assert_below(largest_entry_difference(&(rotation * body), &space), 2e-15, sequence);
         }
     }
 }
 
 #[test]
-fn rates_of_euler_angles_invert_omega() {
-    let mut random = Random(12);
+fn euler_rates_invert_angular_velocity() {
+    let mut random = RandomNumbers(12);
     for sequence in EulerSequence::ALL {
         for offset in [1e-14, 1e-10, 1e-6, 1e-3, 0.3, 1.0] {
             for _ in 0..20 {
@@ -47,7 +55,7 @@ fn rates_of_euler_angles_invert_omega() {
                 let omega = random.random_vector();
                 let rates = sequence.rates_from_body(angles, &omega).unwrap();
                 assert_below(
-                    difference(&sequence.omega_body(angles, rates), &omega) * offset,
+                    largest_entry_difference(&sequence.omega_body(angles, rates), &omega) * offset,
                     1.5e-15,
                     (sequence, offset),
                 );
@@ -57,7 +65,7 @@ fn rates_of_euler_angles_invert_omega() {
 }
 
 #[test]
-fn euler_angles_report_their_singularity() {
+fn gimbal_lock_is_reported() {
     let omega = Vector3::new(0.3, -0.2, 0.5);
     for sequence in EulerSequence::ALL {
         let singular = if sequence.is_symmetric() { 0.0 } else { FRAC_PI_2 };
@@ -82,8 +90,8 @@ fn euler_angles_report_their_singularity() {
 }
 
 #[test]
-fn rates_of_matrix_and_quaternion_agree_with_the_motion() {
-    let mut random = Random(13);
+fn matrix_and_quaternion_rates_match_motion() {
+    let mut random = RandomNumbers(13);
     for _ in 0..200 {
         let (q, omega) = (random.random_quaternion(), random.random_vector());
         let rotation = q.to_rotation_matrix();
@@ -92,56 +100,76 @@ fn rates_of_matrix_and_quaternion_agree_with_the_motion() {
 
         let rate = quaternion_rate_from_body(&q, &omega);
         assert_below(
-            difference(&rate.coords, &derivative_at_zero(|t| attitude_at_time(t).coords)),
+            largest_entry_difference(&rate.coords, &derivative_at_zero(|t| attitude_at_time(t).coords)),
             1e-12,
             omega,
         );
-        assert_below(difference(&rate.coords, &quaternion_rate_from_space(&q, &space).coords), 5e-16, omega);
-        assert_below(difference(&quaternion_omega_body(&q, &rate), &omega), 1e-15, omega);
-        assert_below(difference(&quaternion_omega_space(&q, &rate), &space), 1e-15, omega);
+        assert_below(
+            largest_entry_difference(&rate.coords, &quaternion_rate_from_space(&q, &space).coords),
+            5e-16,
+            omega,
+        );
+        assert_below(largest_entry_difference(&quaternion_omega_body(&q, &rate), &omega), 1e-15, omega);
+        assert_below(largest_entry_difference(&quaternion_omega_space(&q, &rate), &space), 1e-15, omega);
         assert_below(rate.coords.dot(&q.coords).abs(), 3e-16, omega);
         let other = quaternion_rate_from_body(&antipode(&q), &omega);
-        assert_below(difference(&other.coords, &-rate.coords), 0.0, omega);
+        assert_below(largest_entry_difference(&other.coords, &-rate.coords), 0.0, omega);
 
         let rate = rotation_rate_from_body(&rotation, &omega);
         assert_below(
-            difference(&rate, &derivative_at_zero(|t| *attitude_at_time(t).to_rotation_matrix().matrix())),
+            largest_entry_difference(
+                &rate,
+                &derivative_at_zero(|t| *attitude_at_time(t).to_rotation_matrix().matrix()),
+            ),
             2e-12,
             omega,
         );
-        assert_below(difference(&rate, &rotation_rate_from_space(&rotation, &space)), 1e-15, omega);
-        assert_below(difference(&rotation_omega_body(&rotation, &rate), &omega), 1e-15, omega);
-        assert_below(difference(&rotation_omega_space(&rotation, &rate), &space), 2e-15, omega);
+        assert_below(
+            largest_entry_difference(&rate, &rotation_rate_from_space(&rotation, &space)),
+            1e-15,
+            omega,
+        );
+        assert_below(largest_entry_difference(&rotation_omega_body(&rotation, &rate), &omega), 1e-15, omega);
+        assert_below(largest_entry_difference(&rotation_omega_space(&rotation, &rate), &space), 2e-15, omega);
     }
 }
 
-/// Returns the angular velocity, in body axes, of the motion with the quaternion `f`, by differences.
+/// Returns the angular velocity, in body axes, of the motion with the quaternion `f(t)` at `t = 0`, by finite
+/// differences.
 fn angular_velocity_of_motion(f: impl Fn(f64) -> UnitQuaternion<f64>) -> Vector3<f64> {
     quaternion_omega_body(&f(0.0), &Quaternion::from(derivative_at_zero(|t| f(t).coords)))
 }
 
 #[test]
-fn rates_of_rotation_vectors_agree_with_the_motion() {
-    let mut random = Random(14);
+fn rotation_vector_rates_match_motion() {
+    let mut random = RandomNumbers(14);
     for length in LENGTHS {
         for _ in 0..20 {
             let vector = RotationVector(random.random_axis() * length);
             let (rate, rotation) = (random.random_vector(), vector.rotation());
             let body = vector.omega_body(&rate);
             assert_below(
-                difference(
+                largest_entry_difference(
                     &body,
                     &angular_velocity_of_motion(|t| RotationVector(vector.0 + rate * t).quaternion()),
                 ),
                 2e-12,
                 length,
             );
-            assert_below(difference(&(rotation * body), &vector.omega_space(&rate)), 2e-15, length);
+            assert_below(
+                largest_entry_difference(&(rotation * body), &vector.omega_space(&rate)),
+                2e-15,
+                length,
+            );
             // The inverse grows towards 2π.
             let bound = 2e-15 * (1.0 + length) / if length > 1.0 { (length / 2.0).sin().abs() } else { 1.0 };
-            assert_below(difference(&vector.rate_from_body(&body).unwrap(), &rate), bound, length);
             assert_below(
-                difference(&vector.rate_from_space(&vector.omega_space(&rate)).unwrap(), &rate),
+                largest_entry_difference(&vector.rate_from_body(&body).unwrap(), &rate),
+                bound,
+                length,
+            );
+            assert_below(
+                largest_entry_difference(&vector.rate_from_space(&vector.omega_space(&rate)).unwrap(), &rate),
                 bound,
                 length,
             );
@@ -156,30 +184,38 @@ fn rates_of_rotation_vectors_agree_with_the_motion() {
 }
 
 #[test]
-fn rates_of_gibbs_vectors_agree_with_the_motion() {
-    let mut random = Random(15);
+fn gibbs_vector_rates_match_motion() {
+    let mut random = RandomNumbers(15);
     for size in [0.0, 1e-200, 1e-9, 0.1, 1.0, 3.0, 1e3, 1e8] {
         for _ in 0..20 {
             let g = Gibbs(random.random_axis() * size);
             let (omega, rotation) = (random.random_vector(), g.rotation());
             let rate = g.rate_from_body(&omega);
             let relative = 1.0 + size * size;
-            assert_below(difference(&rate, &g.rate_from_space(&(rotation * omega))) / relative, 2e-15, size);
-            assert_below(difference(&g.omega_space(&rate), &(rotation * omega)), 2e-15 * (1.0 + size), size);
-            assert_below(difference(&g.omega_body(&rate), &omega), 2e-15 * (1.0 + size), size);
+            assert_below(
+                largest_entry_difference(&rate, &g.rate_from_space(&(rotation * omega))) / relative,
+                2e-15,
+                size,
+            );
+            assert_below(
+                largest_entry_difference(&g.omega_space(&rate), &(rotation * omega)),
+                2e-15 * (1.0 + size),
+                size,
+            );
+            assert_below(largest_entry_difference(&g.omega_body(&rate), &omega), 2e-15 * (1.0 + size), size);
             // Differences are accurate only where the vector is of order one.
             if size <= 1.0 {
                 let rate = random.random_vector();
                 let found = angular_velocity_of_motion(|t| Gibbs(g.0 + rate * t).quaternion());
-                assert_below(difference(&g.omega_body(&rate), &found), 1e-11, size);
+                assert_below(largest_entry_difference(&g.omega_body(&rate), &found), 1e-11, size);
             }
         }
     }
 }
 
 #[test]
-fn rates_of_modified_rodrigues_vectors_agree_with_the_motion() {
-    let mut random = Random(16);
+fn modified_rodrigues_rates_match_motion() {
+    let mut random = RandomNumbers(16);
     for size in [0.0, 1e-200, 1e-9, 0.1, 0.9, 1.0, 1.1, 3.0, 1e3, 1e6] {
         for _ in 0..20 {
             let sigma = Mrp(random.random_axis() * size);
@@ -187,22 +223,26 @@ fn rates_of_modified_rodrigues_vectors_agree_with_the_motion() {
             let rate = sigma.rate_from_body(&omega);
             let relative = 1.0 + size * size;
             assert_below(
-                difference(&rate, &sigma.rate_from_space(&(rotation * omega))) / relative,
+                largest_entry_difference(&rate, &sigma.rate_from_space(&(rotation * omega))) / relative,
                 2e-15,
                 size,
             );
-            assert_below(difference(&sigma.omega_body(&rate), &omega), 2e-15, size);
-            assert_below(difference(&sigma.omega_space(&rate), &(rotation * omega)), 2e-15, size);
+            assert_below(largest_entry_difference(&sigma.omega_body(&rate), &omega), 2e-15, size);
+            assert_below(
+                largest_entry_difference(&sigma.omega_space(&rate), &(rotation * omega)),
+                2e-15,
+                size,
+            );
             if size <= 3.0 {
                 let rate = random.random_vector();
                 let found = angular_velocity_of_motion(|t| Mrp(sigma.0 + rate * t).quaternion());
-                assert_below(difference(&sigma.omega_body(&rate), &found), 1e-9, size);
+                assert_below(largest_entry_difference(&sigma.omega_body(&rate), &found), 1e-9, size);
             }
             // The shadow has the same angular velocity as the vector itself.
             if let (Ok(shadow), Ok(shadow_rate)) = (sigma.shadow(), sigma.shadow_rate(&rate)) {
                 let relative = 1.0 + shadow.0.norm_squared();
                 assert_below(
-                    difference(&shadow_rate, &shadow.rate_from_body(&omega)) / relative,
+                    largest_entry_difference(&shadow_rate, &shadow.rate_from_body(&omega)) / relative,
                     2e-15,
                     size,
                 );
@@ -212,7 +252,7 @@ fn rates_of_modified_rodrigues_vectors_agree_with_the_motion() {
 }
 
 #[test]
-fn integrated_with_switching_the_vector_stays_in_the_ball() {
+fn switched_mrp_stays_in_unit_ball() {
     // Steady rotation about a body axis, classical Runge–Kutta: many revolutions.
     let omega = Vector3::new(1.0, -2.0, 0.5);
     let (h, steps) = (0.002, 10_000);
@@ -227,5 +267,5 @@ fn integrated_with_switching_the_vector_stays_in_the_ball() {
         assert!(sigma.0.norm() <= 1.0);
     }
     let exact = RotationVector(omega * (h * f64::from(steps))).rotation();
-    assert_below(difference(sigma.rotation().matrix(), exact.matrix()), 1e-10, sigma);
+    assert_below(largest_entry_difference(sigma.rotation().matrix(), exact.matrix()), 1e-10, sigma);
 }

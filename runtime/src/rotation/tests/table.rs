@@ -10,7 +10,7 @@ use crate::rotation::EulerSequence;
 pub(super) const ANGLES: [f64; 3] = [0.3, -0.7, 1.1];
 pub(super) const RATES: [f64; 3] = [0.5, -0.2, 0.9];
 
-pub(super) struct Row {
+pub(super) struct ReferenceRow {
     pub(super) sequence: EulerSequence,
     pub(super) name: &'static str,
     pub(super) matrix: [[f64; 3]; 3],
@@ -28,11 +28,11 @@ const fn sequence_row(
     matrix: [[f64; 3]; 3],
     quaternion: [f64; 4],
     [rotation_vector, omega_body, omega_space]: [[f64; 3]; 3],
-) -> Row {
-    Row { sequence, name, matrix, quaternion, rotation_vector, omega_body, omega_space }
+) -> ReferenceRow {
+    ReferenceRow { sequence, name, matrix, quaternion, rotation_vector, omega_body, omega_space }
 }
 
-pub(super) const TABLE: [Row; 24] = [
+pub(super) const TABLE: [ReferenceRow; 24] = [
     sequence_row(
         EulerSequence::BODY_XYX,
         "body-xyx",

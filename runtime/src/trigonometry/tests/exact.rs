@@ -1,11 +1,11 @@
 //! Reference sines and cosines in double-double precision.
 
 /// Number of twice the precision, as the sum of two numbers.
-pub type Double = (f64, f64);
+pub type DoubleDouble = (f64, f64);
 
 /// Returns sine and cosine in double-double precision: Taylor series of a sixteenth of the angle reduced
 /// modulo π/2, doubled four times.
-pub fn sin_cos(x: f64) -> [Double; 2] {
+pub fn sin_cos(x: f64) -> [DoubleDouble; 2] {
     // π / 2 in four parts; the products of the first three with integers below 2²⁰ are exact.
     const PARTS: [f64; 4] = [
         1.570_796_326_734_125_6,
@@ -37,7 +37,7 @@ pub fn sin_cos(x: f64) -> [Double; 2] {
         (sine, versine) = (multiply(twice, cosine), multiply(twice, sine));
     }
     let cosine = add((1.0, 0.0), (-versine.0, -versine.1));
-    let negated_double = |x: Double| (-x.0, -x.1);
+    let negated_double = |x: DoubleDouble| (-x.0, -x.1);
     match quarters.rem_euclid(4.0) as u8 {
         0 => [sine, cosine],
         1 => [cosine, negated_double(sine)],
@@ -48,31 +48,32 @@ pub fn sin_cos(x: f64) -> [Double; 2] {
 
 /// Returns the error of a double-precision number against a double-double reference, in units in the last
 /// place.
-pub fn error(found: f64, exact: Double) -> f64 {
+pub fn error_in_ulps(found: f64, exact: DoubleDouble) -> f64 {
     let magnitude = exact.0.abs();
     let unit = f64::from_bits(magnitude.to_bits() + 1) - magnitude;
     ((found - exact.0) - exact.1).abs() / unit
 }
 
-/// Returns the sum; Knuth's error-free transformation of the first parts.
-fn add(a: Double, b: Double) -> Double {
+/// Returns the sum of two double-double numbers, with Knuth's error-free transformation of their leading
+/// parts.
+fn add(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     let sum = a.0 + b.0;
     let of_b = sum - a.0;
     let lost = (a.0 - (sum - of_b)) + (b.0 - of_b);
     normalized_double(sum, lost + (a.1 + b.1))
 }
 
-fn multiply(a: Double, b: Double) -> Double {
+fn multiply(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     let product = a.0 * b.0;
     normalized_double(product, a.0.mul_add(b.0, -product) + (a.0 * b.1 + a.1 * b.0))
 }
 
-fn divide_double(a: Double, by: f64) -> Double {
+fn divide_double(a: DoubleDouble, by: f64) -> DoubleDouble {
     let quotient = a.0 / by;
     normalized_double(quotient, ((-quotient).mul_add(by, a.0) + a.1) / by)
 }
 
-fn normalized_double(large: f64, small: f64) -> Double {
+fn normalized_double(large: f64, small: f64) -> DoubleDouble {
     let sum = large + small;
     (sum, small - (sum - large))
 }

@@ -1,43 +1,43 @@
-//! Coefficients that follow from parameters.
+//! Coefficients of friction and restitution of contacts, which may depend on parameters, and their check.
 
 use super::Contacts;
 use crate::Real;
 use crate::constraint::ConstraintError;
 use crate::private::to_f64;
 
-/// Coefficients of a contact.
+/// Coefficients of friction and restitution of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law<T> {
-    /// Coefficient of friction `μ` while surfaces slide, zero or more. Of a friction moment the largest moment
-    /// per unit of normal force, m.
+    /// Coefficient of kinetic friction `μ`, zero or more. For a friction moment, the largest moment per unit
+    /// of normal force, m.
     pub friction: T,
-    /// Coefficient of friction `μₛ` of surfaces at rest: `friction`, or more where that is positive.
+    /// Coefficient of static friction `μₛ`: at least `friction`.
     pub stiction: T,
-    /// Of restitution, `e`: from zero, where surfaces stay together, to one, where they part as fast as they
-    /// met.
+    /// Coefficient of restitution `e`, from zero (surfaces stay together) to one (the separation velocity
+    /// equals the approach velocity).
     pub restitution: T,
-    /// What it is a ratio of.
+    /// Hypothesis that defines the coefficient of restitution: a ratio of velocities or of impulses.
     pub hypothesis: Restitution,
 }
 
-/// What a coefficient of restitution is a ratio of. Both are the same where slip keeps its direction in an
-/// impact, or where there is no friction and one contact.
+/// Hypothesis of restitution. Both hypotheses agree if the slip direction is constant during the impact, or
+/// if there is a single contact without friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Restitution {
-    /// Of velocities along the normal, after an impact and before it.
+    /// Newton's hypothesis: `e` is the ratio of normal velocities after and before the impact.
     #[default]
     Newton,
-    /// Of impulses along the normal, of restitution and of compression.
+    /// Poisson's hypothesis: `e` is the ratio of normal impulses of restitution and compression.
     Poisson,
 }
 
-/// The coefficients of all contacts.
+/// Returns the coefficients of all contacts, or an error if one of them is out of range.
 ///
 /// # Errors
 ///
 /// [`ConstraintError::Coefficient`] for the first invalid coefficient: friction that is negative or not
 /// finite, static friction below kinetic friction or beside none, restitution outside of zero to one.
-pub(super) fn lawful<
+pub(super) fn checked_contact_laws<
     M,
     T,
     const NQ: usize,
