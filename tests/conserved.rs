@@ -173,7 +173,7 @@ struct Sliding {
 }
 
 #[test]
-fn what_is_conserved_is_listed() {
+fn conserved_quantities_are_listed() {
     let [axis, about] = ["angular momentum along", ", about the ground's origin"];
     assert_eq!(Top::CONSERVED, ["energy", "momentum of tip.wz", &format!("{axis} z{about}")]);
     let center = ", about the centre of mass";
@@ -217,7 +217,7 @@ macro_rules! stays {
 }
 
 #[test]
-fn it_stays_along_motions() {
+fn conserved_quantities_are_constant_along_motions() {
     let mut random = Random::new(7);
     let top = Top { height: 0.2 };
     stays!(&top, random.random_configuration(&top), random.random_vector(4.0), |m, t, q, v| m
@@ -261,7 +261,7 @@ macro_rules! canonical {
 }
 
 #[test]
-fn hamiltons_form_agrees() {
+fn hamiltons_equations_agree_with_the_dynamics() {
     let mut random = Random::new(3);
     for _ in 0..5 {
         let top = Top { height: 0.3 };
@@ -298,7 +298,7 @@ fn hamiltons_form_agrees() {
 
 /// `ṗ = −∂H/∂q` for coordinates that are their own rates, without dissipation.
 #[test]
-fn momenta_change_by_the_slope_of_the_hamiltonian() {
+fn momentum_rate_is_negative_gradient_of_the_hamiltonian() {
     let mut random = Random::new(5);
     let carts = Carts { mass: 0.8 };
     for _ in 0..5 {

@@ -190,12 +190,12 @@ proptest! {
     #![proptest_config(property_test_config(60))]
 
     #[test]
-    fn lagrange_and_the_recursions_agree(tree in random_trees(3), seed in 0_u64..1000) {
+    fn lagrange_and_recursive_algorithms_agree(tree in random_trees(3), seed in 0_u64..1000) {
         with_model(&tree.tree_source(), |_, model| check_dynamics(model, seed));
     }
 
     #[test]
-    fn inputs_do_the_work_of_their_forces(tree in random_trees(4), seed in 0_u64..1000) {
+    fn input_power_is_generalized_force_times_velocity(tree in random_trees(4), seed in 0_u64..1000) {
         with_model(&tree.tree_source(), |_, model| check_inputs(model, seed));
     }
 }

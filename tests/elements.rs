@@ -242,17 +242,17 @@ proptest! {
     #![proptest_config(property_test_config(32))]
 
     #[test]
-    fn lagrange_and_the_recursions_agree(world in random_worlds(), seed in 0_u64..1000) {
+    fn lagrange_and_recursive_algorithms_agree(world in random_worlds(), seed in 0_u64..1000) {
         with_model(&world.world_source(), |_, model| check_dynamics(model, seed));
     }
 
     #[test]
-    fn places_move_as_their_velocities_say(world in random_worlds(), seed in 0_u64..1000) {
+    fn place_derivatives_agree_with_their_velocities(world in random_worlds(), seed in 0_u64..1000) {
         with_model(&world.world_source(), |_, model| check_outputs(model, seed));
     }
 
     #[test]
-    fn a_mistake_leaves_the_signatures(world in random_worlds()) {
+    fn outline_after_an_error_has_the_correct_signatures(world in random_worlds()) {
         with_model(&world.world_source(), check_outline);
     }
 }

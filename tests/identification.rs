@@ -154,7 +154,7 @@ macro_rules! check {
 }
 
 #[test]
-fn robots() {
+fn regressors_of_robots_reproduce_inverse_dynamics() {
     // 7 for each pin except the first, whose axis is vertical: only the inertia about this axis has an
     // effect.
     assert_eq!(check!(Ur5, Ur5), 36);
@@ -169,7 +169,7 @@ fn puma_arm() -> Puma {
 }
 
 #[test]
-fn mechanisms_with_parameters() {
+fn regressors_of_parametric_mechanisms_reproduce_dynamics() {
     assert_eq!(check!(Puma, puma_arm()), 36);
     assert_eq!(Puma::BODIES, ["trunk", "upper", "fore", "first", "second", "hand"]);
     assert_eq!(Puma::BASE_PARAMETERS[0], "trunk.zz");
@@ -178,7 +178,7 @@ fn mechanisms_with_parameters() {
 }
 
 #[test]
-fn prepared() {
+fn prepared_regressors_equal_unprepared_ones() {
     let (robot, mut random) = (puma_arm(), Random::new(22));
     let prepared = robot.prepare();
     let (q, v, a) = (random.random_vector(2.0), random.random_vector(2.0), random.random_vector(2.0));
@@ -214,7 +214,7 @@ struct DoublePendulum {
 /// Checks the base parameters of a planar chain by hand: each link has two first moments and one inertia,
 /// through which the masses act. Forces of elements are not part of the regressor.
 #[test]
-fn by_hand() {
+fn base_parameters_of_a_planar_chain_by_hand() {
     let (m, l, k, c) = (1.5, 0.8, 7.0, 0.3);
     let pendulum = DoublePendulum { m, l, k, c };
     let rod_parameters =

@@ -52,7 +52,7 @@ fn heap_calls<T>(f: impl FnOnce() -> T) -> usize {
 }
 
 #[test]
-fn heap_calls_are_seen() {
+fn heap_allocations_are_detected() {
     assert_eq!(heap_calls(|| drop(black_box(vec![1]))), 2);
     assert_eq!(heap_calls(|| black_box([1])), 0);
 }
@@ -128,7 +128,7 @@ macro_rules! check_kinematics {
 }
 
 #[test]
-fn generated_functions() {
+fn generated_functions_do_not_allocate() {
     check_all_functions(&CartPole);
     check_all_functions(&Kinova);
     check_all_functions(&Panda);
@@ -153,7 +153,7 @@ fn generated_functions() {
 struct PandaWithDerivatives;
 
 #[test]
-fn derivatives() {
+fn derivatives_do_not_allocate() {
     let m = PandaWithDerivatives;
     let q = &Random::new(15).random_configuration(&m);
     let (v, a, u) = (
@@ -173,7 +173,7 @@ fn derivatives() {
 struct Solo12InLanes;
 
 #[test]
-fn batches() {
+fn batches_do_not_allocate() {
     const COUNT: usize = 13;
     let (m, mut random) = (Solo12InLanes, Random::new(19));
     let mut q = [0.0; 19 * COUNT];
@@ -208,7 +208,7 @@ struct Arm {
 }
 
 #[test]
-fn on_request() {
+fn optional_functions_do_not_allocate() {
     let m = Arm { g: 9.81, m: 0.7, l: 0.4 };
     assert_eq!(heap_calls(|| m.prepare()), 0, "prepare");
     check_all_functions(&m.prepare());
@@ -256,7 +256,7 @@ fn check_constrained<M, const NQ: usize, const NV: usize, const NU: usize, const
 
 /// Constrained mechanisms: a loop, a loop with a redundant condition, and two rolling wheels.
 #[test]
-fn constraints() {
+fn constrained_mechanisms_do_not_allocate() {
     let four_bar = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
     check_constrained(&four_bar, &[0.7, 0.2, 1.8].into());
     let ring = BricardLinkage { g: 9.81, mass: 1.0, length: 1.0 };
@@ -280,7 +280,7 @@ struct Crate {
 }
 
 #[test]
-fn contacts() {
+fn contacts_do_not_allocate() {
     let m = Crate {};
     let (q, v) = ([0.0, 0.0, 0.055, 0.0, 0.0, 0.0, 1.0], [1.0, 0.0, -0.5, 0.0, 0.0, 0.0]);
     let simulate_contacts = || simulate(&m).from(q, v).duration(0.1);

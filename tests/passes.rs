@@ -190,7 +190,7 @@ fn check_robot(name: &str, options: &str) {
 }
 
 #[test]
-fn robots_move_as_without_passes() {
+fn model_passes_preserve_robot_dynamics() {
     for (name, options) in [
         ("cartpole", ""),
         ("double_pendulum", ""),
@@ -260,7 +260,7 @@ proptest! {
     #![proptest_config(property_test_config(150))]
 
     #[test]
-    fn alike_limbs_as_lanes_are_the_same_mechanism(creature in random_creatures(3), seed in 0_u64..1000) {
+    fn identical_limbs_as_lanes_preserve_the_dynamics(creature in random_creatures(3), seed in 0_u64..1000) {
         let source = creature.creature_source();
         let interacts = source.1.contains(" between");
         // Models with an element between a limb and itself are rejected.
@@ -269,7 +269,7 @@ proptest! {
     }
 
     #[test]
-    fn noise_costs_no_digits(robot in random_robots(8), seed in 0_u64..1000) {
+    fn noisy_coefficients_cost_no_accuracy_in_passes(robot in random_robots(8), seed in 0_u64..1000) {
         with_model(&robot.robot_source(), |_, model| check_digits(model, seed));
     }
 }
@@ -329,13 +329,13 @@ proptest! {
     #![proptest_config(property_test_config(40))]
 
     #[test]
-    fn forms_are_the_same_mechanism(tree in random_trees(4), seed in 0_u64..1000) {
+    fn passes_preserve_the_dynamics_of_all_forms(tree in random_trees(4), seed in 0_u64..1000) {
         with_model(&tree.tree_source(), |_, model| check_forms(model, seed));
     }
 
     /// Robots of pins and sleeves, most of them parallel to the joint before.
     #[test]
-    fn parallel_joints_are_the_same_in_common_axes(
+    fn common_axes_of_parallel_joints_preserve_the_dynamics(
         joints in prop::collection::vec((0..3_usize, 0..4_usize, any::<bool>(), -1.0..1.0_f64), 2..6),
         seed in 0_u64..1000,
     ) {
@@ -365,7 +365,7 @@ proptest! {
     }
 
     #[test]
-    fn programs_are_the_same_functions(tree in random_trees(6), seed in 0_u64..1000) {
+    fn program_passes_preserve_functions(tree in random_trees(6), seed in 0_u64..1000) {
         let _ = seed;
         with_model(&tree.tree_source(), |_, model| {
             let mut cx = Diagnostics::new();
@@ -380,7 +380,7 @@ proptest! {
 /// No rotation is computed between links whose pins are parallel; constant rotations are merged. Links whose
 /// axes are not parallel are unchanged.
 #[test]
-fn parallel_joints_share_their_axes() {
+fn parallel_joints_need_no_rotations() {
     let arm_with_axes = |axes: [&str; 3]| {
         let [a, b, c] = axes;
         let body = "#[body(mass = 1.5, com = [0.1, 0.2, 0.3], inertia = cuboid(1.5, 0.3, 0.2, 0.1))]";
@@ -413,7 +413,7 @@ fn parallel_joints_share_their_axes() {
 /// Checks that nearly zero lengths between axes, as exporters write them, are not multiplied by large masses
 /// and lose no digits. Nearly parallel axes must not place a frame far away.
 #[test]
-fn figures_next_to_zero_cost_no_digits() {
+fn nearly_zero_lengths_cost_no_accuracy() {
     let mut fields = String::new();
     for k in 0..6 {
         let parent = if k == 0 { "ground".to_string() } else { format!("b{}", k - 1) };

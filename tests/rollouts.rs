@@ -98,7 +98,7 @@ fn one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut States, co
 }
 
 #[test]
-fn a_rollout_is_that_of_the_integrator_state_by_state() {
+fn rollout_equals_integrator_runs_of_each_state() {
     fn check_method<S: Lockstep<f64> + Copy>(method: S) {
         for count in [1, 5, 8, 19] {
             let mut expected = States::new(&Ur5, count);
@@ -125,7 +125,7 @@ fn a_rollout_is_that_of_the_integrator_state_by_state() {
 }
 
 #[test]
-fn threads_change_nothing() {
+fn thread_count_does_not_change_rollouts() {
     let (count, rollout) = (203, Rollout::new(Rk4::step(2e-3), 20));
     let mut expected = States::new(&Ur5, count);
     Ur5.lanes::<8>()
@@ -158,7 +158,7 @@ fn threads_change_nothing() {
 }
 
 #[test]
-fn a_free_rollout_keeps_its_energy() {
+fn free_rollout_conserves_energy() {
     let count = 20;
     let lanes = Solo12.lanes::<8>();
     let mut states = States::new(&Solo12, count);
@@ -185,7 +185,7 @@ fn a_free_rollout_keeps_its_energy() {
 }
 
 #[test]
-fn arrays_of_states_are_evaluated_state_by_state() {
+fn state_arrays_are_evaluated_state_by_state() {
     for count in [1, 3, 8, 21] {
         let states = States::new(&Solo12, count);
         let a: Vec<f64> = Random::new(43).random_vector::<{ 18 * 21 }>(3.0).as_slice()[..18 * count].to_vec();
@@ -215,7 +215,7 @@ fn arrays_of_states_are_evaluated_state_by_state() {
 }
 
 #[test]
-fn a_state_that_fails_leaves_the_others_alone() {
+fn failing_state_does_not_affect_other_states() {
     let count = 11;
     let rollout = Rollout::new(Rk4::step(1e-2), 60);
     let zero_inputs = |_, _, _: &_, _: &_| SVector::zeros();
@@ -245,7 +245,7 @@ fn a_state_that_fails_leaves_the_others_alone() {
 }
 
 #[test]
-fn what_does_not_fit_is_an_error() {
+fn mismatched_array_sizes_are_errors() {
     let lanes = Ur5.lanes::<8>();
     let [q, v] = [vec![0.0; 6 * 5], vec![0.0; 6 * 4]];
     let mut tau = vec![0.0; 6 * 5];
@@ -274,7 +274,7 @@ fn what_does_not_fit_is_an_error() {
 }
 
 #[test]
-fn a_rollout_can_be_cancelled() {
+fn rollout_can_be_cancelled() {
     let (count, rollout) = (40, Rollout::new(Rk4::step(2e-3), 5));
     let (start, mut all) = (States::new(&Ur5, count), States::new(&Ur5, count));
     let lanes = Ur5.lanes::<8>();

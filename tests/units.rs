@@ -83,7 +83,7 @@ fn check_unit_errors(fields: &str, expected: &[&str]) {
 }
 
 #[test]
-fn every_place_gives_a_unit() {
+fn units_are_inferred_from_every_use() {
     check_units(
         "#[body(mass = a, com = b * x, inertia = diagonal(c, c, c))] k: Body, #[joint(arm -> k)] j: Ball,",
         &["kg", "m", "kg·m²"],
@@ -142,7 +142,7 @@ fn every_place_gives_a_unit() {
 }
 
 #[test]
-fn expressions_carry_units() {
+fn units_propagate_through_expressions() {
     check_units(
         "#[acts(on = cart, value = sqrt(a * b) * x)] s: Force, #[energy(a * rail + b * rail)] t_: Potential,",
         &["N", "N"],
@@ -185,7 +185,7 @@ fn expressions_carry_units() {
 }
 
 #[test]
-fn numbers_take_any_unit() {
+fn numeric_literals_take_any_unit() {
     for fields in [
         "#[acts(on = cart, value = -g * a * y)] s: Force, #[define(9.81)] g: Scalar, \
          #[body(mass = a)] w: Body, #[joint(cart -> w)] j: Weld,",
@@ -208,7 +208,7 @@ fn numbers_take_any_unit() {
 }
 
 #[test]
-fn coordinates_inputs_and_outputs_have_units_too() {
+fn coordinates_inputs_and_outputs_have_units() {
     let units = of_machine(
         "m: f64, s: Coordinate, phi: Coordinate, gain: f64, #[unit(m)] lever: f64, steer: Input,
         #[particle(mass = m, at = s * (cos(phi) * x + sin(phi) * y))] p: Particle,
@@ -228,7 +228,7 @@ fn coordinates_inputs_and_outputs_have_units_too() {
 }
 
 #[test]
-fn robots_of_files_have_units() {
+fn robot_file_mechanisms_have_units() {
     let units = units_of_mechanism("urdf = \"urdf/solo12.urdf\", base = free", "struct Robot;").unwrap();
     assert_eq!(units.configuration[..8], ["m", "m", "m", "1", "1", "1", "1", "rad"]);
     assert_eq!(units.velocities[..7], ["m/s", "m/s", "m/s", "rad/s", "rad/s", "rad/s", "rad/s"]);
@@ -236,7 +236,7 @@ fn robots_of_files_have_units() {
 }
 
 #[test]
-fn a_parameter_is_one_thing() {
+fn parameter_with_two_units_is_rejected() {
     check_unit_errors(
         "#[acts(on = rail, stiffness = a)] s: Spring, #[acts(on = hinge, stiffness = a)] t_: Spring,",
         &[
@@ -271,7 +271,7 @@ fn a_parameter_is_one_thing() {
 
 /// A mechanism that cannot move, with a parameter of two conflicting units: both errors are reported.
 #[test]
-fn units_are_told_with_what_holds_the_mechanism() {
+fn unit_errors_are_reported_with_topology_errors() {
     check_unit_errors(
         "#[joint(arm.at(a * x) -> ground.at(3 * x))] stop: Weld,
         #[acts(on = rail, stiffness = a)] coil: Spring,",
@@ -284,7 +284,7 @@ fn units_are_told_with_what_holds_the_mechanism() {
 }
 
 #[test]
-fn like_is_added_to_like() {
+fn sums_of_different_units_are_rejected() {
     let known = "#[body(mass = a, com = b * y)] w: Body, #[joint(cart -> w)] j: Weld,";
     let sites = ["`a` is a mass (kg) in", "`b` is a length (m) in"];
     let message_with_sites = |first: &'static str| [first, sites[0], sites[1]];
@@ -328,7 +328,7 @@ fn like_is_added_to_like() {
 
 /// Units of sums that contain only coordinates, rates, time and inputs are checked, too.
 #[test]
-fn what_moves_is_added_to_like() {
+fn sums_of_coordinates_and_rates_have_checked_units() {
     let input = "#[acts(on = rail)] f: Force, #[acts(on = hinge)] m: Torque,";
     for (sum, message) in [
         ("f + rail", "a length (m) cannot be added to a force (N)"),
@@ -357,7 +357,7 @@ fn what_moves_is_added_to_like() {
 /// The number in the mechanism's gravity is an acceleration also as a factor of a parameter; no other number
 /// is.
 #[test]
-fn the_number_of_gravity_is_an_acceleration() {
+fn gravity_literal_is_an_acceleration() {
     let is_valid_hover_force = |gravity: &str, number: &str| {
         let item = machine_source(&format!(
             "m: f64, #[body(mass = m)] load: Body, #[joint(cart -> load)] fixed: Weld,
@@ -374,7 +374,7 @@ fn the_number_of_gravity_is_an_acceleration() {
 
 /// A number that multiplies a parameter is dimensionless, for every value.
 #[test]
-fn numbers_beside_parameters_are_plain() {
+fn factors_of_parameters_are_dimensionless() {
     for number in ["0.5", "0.6", "9.81", "40", "2 / 7", "1e-3", "sin(0.3)", "pi"] {
         let body_with_mass = |value: &str| {
             format!("#[unit(kg / m)] rho: f64, #[body(mass = {value})] w: Body, #[joint(cart -> w)] j: Weld,")
@@ -392,7 +392,7 @@ fn numbers_beside_parameters_are_plain() {
 }
 
 #[test]
-fn attributes_pin_units_down() {
+fn unit_attributes_fix_the_units_of_parameters() {
     let unit_of_attribute = |written: &str| {
         let units = of_machine(&format!("#[unit({written})] a: f64, #[output(3.5 * a)] o: Scalar,"))?;
         Ok::<String, Vec<String>>(units.parameters[0].clone())
@@ -431,7 +431,7 @@ fn attributes_pin_units_down() {
 
 /// The struct keeps its fields without the attribute, and its documentation states all units.
 #[test]
-fn units_are_documented() {
+fn inferred_units_are_documented() {
     let item = machine_source(
         "/// A length.\n#[unit(m)] a: f64, b: f64, #[acts(on = rail, stiffness = b, free_length = a)] s: \
          Spring,
@@ -509,7 +509,7 @@ fn constraints_and_multipliers_have_units() {
 
 /// The time of inference is bounded for structs of any size.
 #[test]
-fn large_structs_are_read_in_time() {
+fn unit_inference_of_large_structs_terminates() {
     let n = 800;
     let fields: String = (0..n).map(|k| format!("p{k}: f64, ")).collect();
     let product_of_parameters =

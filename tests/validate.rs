@@ -166,14 +166,14 @@ macro_rules! check {
 }
 
 #[test]
-fn what_is_wrong_in_a_number_is_wrong_in_a_parameter() {
+fn invalid_numbers_and_parameters_break_the_same_conditions() {
     check!(Arm, ARM, ARM_ROWS);
     check!(Wheels, WHEELS, WHEEL_ROWS);
 }
 
 /// A load of zero mass and the inertia of a rod, which is at the bound of physical consistency, are accepted.
 #[test]
-fn what_is_at_the_bound_is_sound() {
+fn mass_properties_at_the_physical_bound_are_valid() {
     assert_eq!(Arm { load: 0.0, ..Arm::<f64>::sound() }.validate(), Ok(()));
     assert_eq!(Arm { xx: 0.1, yy: 0.3, zz: 0.4, ..Arm::<f64>::sound() }.validate(), Ok(()));
     assert_eq!(Arm { xx: 0.1, yy: 0.3, zz: 0.4, ..Arm::<f32>::sound() }.validate(), Ok(()));
@@ -196,7 +196,7 @@ struct Trusted {
 }
 
 #[test]
-fn what_is_trusted_need_only_be_finite() {
+fn trusted_inertia_need_only_be_finite() {
     let sound = Trusted { moment: 5.0, stiffness: -1.0, _own: f64::NAN };
     assert_eq!(sound.validate(), Ok(()));
     let error = Trusted { moment: f64::NAN, ..sound }.validate().unwrap_err();

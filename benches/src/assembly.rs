@@ -164,7 +164,7 @@ _ZN4work5inner17h0123456789abcdefE:
 ";
 
     #[test]
-    fn calls_and_stack_are_found() {
+    fn calls_and_stack_frame_are_read_from_disassembly() {
         let found = parse_routines(TEXT);
         assert_eq!(found.len(), 2);
         let outer = &found["_ZN4work5outer17h0123456789abcdefE"];
@@ -177,7 +177,7 @@ _ZN4work5inner17h0123456789abcdefE:
     }
 
     #[test]
-    fn names_are_those_of_the_source() {
+    fn symbol_names_are_demangled_to_source_names() {
         let panic = "_ZN4core9panicking18panic_bounds_check17h0123456789abcdefE";
         assert_eq!(name_in_source(panic), "core::panicking::panic_bounds_check");
         let generic = "_ZN88_$LT$linkwork..arithmetic..Compiled$u20$as$u20$linkwork..lanes..registers..Registers$GT$6within17h5068f906a8b23952E";

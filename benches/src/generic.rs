@@ -370,7 +370,7 @@ mod tests {
 
     /// Generated and generic code are independent implementations for the same files, and agree.
     #[test]
-    fn generated_and_generic_code_agree() {
+    fn generated_and_generic_dynamics_agree() {
         for robot in pairs::benchmark_robots() {
             for mut pair in robot.pairs {
                 let error = (0..crate::states::STATES).map(|k| (pair.difference)(k)).fold(0.0, f64::max);

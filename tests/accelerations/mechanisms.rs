@@ -1,4 +1,4 @@
-//! Written by the test `the_file_is_what_the_generator_writes`.
+//! Written by the test `generated_file_is_up_to_date`.
 
 use linkwork::mechanism;
 

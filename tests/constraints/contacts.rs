@@ -88,7 +88,7 @@ struct HeldCone {
 }
 
 #[test]
-fn a_cone_turns_about_the_line_of_contact() {
+fn cone_rotates_about_its_line_of_contact() {
     assert_eq!((FreeCone::NC, FreeCone::NH, FreeCone::NS), (5, 4, 1));
     assert_eq!((HeldCone::NC, HeldCone::NH, HeldCone::NS), (2, 1, 1));
     // The cone leans towards x by the difference of the angles, and is rotated about its axis.
@@ -120,7 +120,7 @@ struct BallOnCone {
 /// Along the line of steepest descent the acceleration is that on an incline: `5/7` of the component of
 /// gravity.
 #[test]
-fn a_ball_rolls_down_a_cone() {
+fn ball_rolls_down_a_cone_as_on_an_incline() {
     let (s, c) = 0.5_f64.sin_cos();
     // The contact is at the distance 0.3 along the cone from its apex; the centre is one radius away from it.
     let (line, normal) = (Vector3::new(s, 0.0, -c), Vector3::new(c, 0.0, s));
@@ -171,7 +171,7 @@ struct BySpeeds {
 
 /// The accelerations and the normal force are equal, with a compressive and with a tensile normal force.
 #[test]
-fn a_plane_is_a_surface() {
+fn parametric_plane_equals_a_plane_contact() {
     let turn = UnitQuaternion::from_euler_angles(0.4, 0.1, -0.7);
     let near = [0.3, 0.2, 0.3, 0.2, 0.2, turn.i, turn.j, turn.k, turn.w].into();
     let on = OnPoints {}.assemble(&near, &[]).expect("it is near");
@@ -195,7 +195,7 @@ fn a_plane_is_a_surface() {
 
 /// Derivatives of a contact on a parametric surface agree with differences.
 #[test]
-fn derivatives_on_a_surface() {
+fn parametric_surface_contact_has_exact_derivatives() {
     let turn = UnitQuaternion::from_euler_angles(0.4, 0.1, -0.7);
     let near = [0.3, 0.2, 0.3, 0.2, 0.2, turn.i, turn.j, turn.k, turn.w].into();
     let q = OnPoints {}.assemble(&near, &[]).expect("it is near");
@@ -259,7 +259,7 @@ struct InBowl {
 }
 
 #[test]
-fn a_bowl_is_a_surface() {
+fn parametric_bowl_equals_its_closed_form() {
     let t = 0.7;
     let near = [0.2, 0.1, -0.33, 0.5, 0.5, -0.5, 0.5].into();
     let q = InBowl {}.project_configuration(t, &near).expect("the bowl is near");
@@ -290,7 +290,7 @@ struct BeadInDish {
 
 /// A particle circles at any constant height with `Ω² = g / c`.
 #[test]
-fn a_particle_circles_in_a_dish() -> Result<(), Error> {
+fn particle_circles_in_a_dish_at_constant_rate() -> Result<(), Error> {
     let rate = (9.81_f64 / 0.3).sqrt();
     for radius in [0.01, 0.4] {
         let q = [radius, 0.0, radius * radius / 0.6];

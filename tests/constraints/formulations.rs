@@ -124,7 +124,7 @@ fn test_case_count(usual: u32) -> u32 {
 }
 
 #[test]
-fn both_formulations_fulfil_the_equations() {
+fn both_formulations_satisfy_the_equations_of_motion() {
     let checked = Cell::new(0);
     let run = TestRunner::new(property_test_config(test_case_count(64))).run(
         &(random_chains(), 0..1000_u64),
@@ -194,7 +194,7 @@ proptest! {
     /// Constraint velocities are the derivatives of the residuals along the motion, and biases are the
     /// derivatives of the constraint velocities at constant `v`.
     #[test]
-    fn rates_and_biases_are_derivatives(chain in random_chains(), seed in 0..1000_u64) {
+    fn constraint_velocities_and_biases_are_time_derivatives(chain in random_chains(), seed in 0..1000_u64) {
         with_model(&chain, "", |model| {
             let q = random_configuration(model, seed);
             let velocity_sample = |k: usize| {

@@ -44,7 +44,7 @@ fn bennett_ratio(q: &SVector<f64, 3>) -> f64 {
 }
 
 #[test]
-fn bennetts_linkage_moves_along_its_closed_form() {
+fn bennetts_linkage_follows_its_closed_form() {
     assert_eq!((Bennett::NV, Bennett::NC, Bennett::NP), (3, 3, 1));
     let linkage = Bennett {};
     let (q, v) = state_with_angle(0.7, 1.0);
@@ -64,7 +64,7 @@ fn bennetts_linkage_moves_along_its_closed_form() {
 }
 
 #[test]
-fn its_multipliers_are_the_least_that_fulfil_the_equations() {
+fn redundant_multipliers_have_minimum_norm() {
     let linkage = Bennett {};
     for (angle, rate) in [(0.7, 1.0), (1.9, -2.0), (-1.2, 0.4)] {
         let (q, v) = state_with_angle(angle, rate);
@@ -84,7 +84,7 @@ fn its_multipliers_are_the_least_that_fulfil_the_equations() {
 }
 
 #[test]
-fn lanes_hold_what_single_states_give() {
+fn overconstrained_lanes_equal_single_states() {
     let linkage = Bennett {};
     let each =
         [(0.7, 1.0), (1.9, -2.0), (-1.2, 0.4), (2.5, 0.0)].map(|(angle, rate)| state_with_angle(angle, rate));

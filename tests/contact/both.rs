@@ -58,7 +58,7 @@ struct Tile {
 
 /// Rotating tiles fall into a corner: their corners collide, tip, slide and come to rest.
 #[test]
-fn tiles_fall_into_a_corner() {
+fn tiles_falling_into_a_corner_agree_with_located_events() {
     let mut random = Random(7);
     for _ in 0..10 {
         let m = Tile { friction: random.one_of([0.0, 0.3, 0.8]), restitution: random.one_of([0.0, 0.3]) };
@@ -70,7 +70,7 @@ fn tiles_fall_into_a_corner() {
 
 /// Balls of very different masses fall on each other.
 #[test]
-fn balls_fall_on_each_other() {
+fn colliding_balls_agree_with_located_events() {
     let mut random = Random(8);
     for _ in 0..3 {
         let m = Pile { friction: random.one_of([0.0, 0.3, 0.8]), restitution: random.one_of([0.0, 0.4]) };
@@ -82,7 +82,7 @@ fn balls_fall_on_each_other() {
 
 /// The tip of a double pendulum collides with the floor, slides and sticks.
 #[test]
-fn a_double_pendulum_strikes_the_floor() {
+fn double_pendulum_on_the_floor_agrees_with_located_events() {
     let mut random = Random(9);
     for _ in 0..30 {
         let q = SVector::from([random.next() * 1.5, random.next() * 1.5]);
@@ -98,7 +98,7 @@ fn a_double_pendulum_strikes_the_floor() {
 /// Time stepping converges to the motion with located events, to first order in the step for motions with
 /// impacts.
 #[test]
-fn time_stepping_leads_to_the_same() {
+fn time_stepping_converges_to_located_events() {
     let m = Tile { friction: 0.4, restitution: 0.0 };
     let (q, v) = ([0.5, 0.15, 0.1].into(), [0.5, 0.0, 0.0].into());
     let (_, end) = follow_motion(&m, &q, &v, 0.3);

@@ -136,7 +136,7 @@ const METHOD: TimeStepping<f64> = TimeStepping::step(0.01).midpoint();
 
 /// The box comes to rest near the goal: friction stops it, and the pusher stays in contact.
 #[test]
-fn a_box_is_pushed_to_a_place() {
+fn box_is_pushed_to_its_goal() {
     let weights = [[0.0, 1e3, 0.0].into(), [0.0, 10.0, 0.0].into()];
     let task = Task { steps: 100, goal: [0.0, 0.5, 0.0].into(), weights, effort: 1e-3 };
     let (states, inputs) = task.optimise(&Push {}, (SVector::zeros(), SVector::zeros()), 7.0);
@@ -152,7 +152,7 @@ fn a_box_is_pushed_to_a_place() {
 
 /// The hopper leaves the ground, and its trunk reaches the height at which it is to turn round.
 #[test]
-fn a_body_hops_to_a_height() {
+fn hopper_reaches_the_required_height() {
     let task = Task {
         steps: 35,
         goal: [0.8, 0.0].into(),

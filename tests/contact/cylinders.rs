@@ -32,7 +32,7 @@ struct Rails {
 /// A box and a capsule that lie across two cylinders stay at rest; the normal forces follow from the lever
 /// arms.
 #[test]
-fn bodies_lie_across_two_cylinders() {
+fn bodies_rest_across_two_cylinders() {
     let m = Rails {};
     let q = SVector::from([0.05, 0.0, 0.1, 0.0, 0.0, 0.0, 1.0, -0.1, 1.0, 0.09, 0.0, 0.0, 0.0, 1.0]);
     let found = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
@@ -76,7 +76,7 @@ const LYING: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
 /// Drums stand and lie on a box, and a box and a capsule lie on the end of a drum, also beyond its edge.
 #[test]
-fn ends_and_sides_carry_bodies() {
+fn cylinder_ends_and_sides_carry_bodies() {
     let m = Barrels { slope: 0.0 };
     for (drum, turn, block, bar) in [
         ([0.0, 0.0, 0.25], [0.0, 0.0, 0.0, 1.0], [0.0, 3.0, 0.25], [0.02, 6.0, 0.25]),
@@ -104,7 +104,7 @@ fn ends_and_sides_carry_bodies() {
 
 /// A drum rolls on a table with two thirds of the acceleration of frictionless sliding, and falls off.
 #[test]
-fn a_drum_rolls_on_a_table() {
+fn drum_rolls_on_a_table_by_closed_form() {
     let m = Barrels { slope: 0.2 };
     let mut q = m.neutral();
     q.fixed_rows_mut::<7>(0).copy_from_slice(&[0.0, 0.0, 0.2, LYING, 0.0, 0.0, LYING]);
@@ -151,7 +151,7 @@ fn from_box(
 
 /// The smallest gap of a capsule or a box on a cylinder is the distance of the surfaces when they touch.
 #[test]
-fn gaps_of_cylinders_are_distances() {
+fn cylinder_gaps_are_distances_at_contact() {
     let (m, mut random) = (Barrels { slope: 0.0 }, Random(11));
     let mut missed = 0;
     for _ in 0..60 {

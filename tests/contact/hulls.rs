@@ -49,7 +49,7 @@ fn on_slope(tilt: f64) -> [f64; 7] {
 
 /// A block tumbles down a slope in the same way as the hull of its corners.
 #[test]
-fn the_hull_of_a_box_moves_like_the_box() {
+fn hull_of_a_box_tumbles_like_the_box() {
     assert_eq!(BlockHull::CONTACTS.len(), 8);
     let (tilt, friction) = (0.3, 0.4);
     let turn = UnitQuaternion::from_euler_angles(0.5, -0.3, 0.2).coords;
@@ -63,7 +63,7 @@ fn the_hull_of_a_box_moves_like_the_box() {
 
 /// A hull slides down a slope with `g (sin α − μ cos α)`.
 #[test]
-fn a_hull_slides_down_a_slope() {
+fn hull_slides_down_a_slope() {
     let (tilt, friction, t) = (0.5_f64, 0.3, 0.4);
     let m = BlockHull { tilt, friction };
     let run = simulate(&m).from(on_slope(tilt), [0.0; 6]);
@@ -113,7 +113,7 @@ struct Tripod {
 /// At rest the normal forces of a prism equal its weight and balance its moment. Those of a tetrahedron are
 /// determined: they are proportional to the barycentric coordinates of the centre of mass.
 #[test]
-fn hulls_at_rest_carry_their_weight() {
+fn hull_contact_forces_balance_its_weight() {
     let m = Nut { radius: 0.1, height: 0.08 };
     let q = SVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
     let found = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
@@ -174,7 +174,7 @@ struct BallAndBlock {
 /// The distances of a ball and of a terrain from a hull are those from the box with the same corners. If the
 /// centre of the ball is inside of the hull, the distance is the depth below the nearest face.
 #[test]
-fn distances_from_a_hull_are_those_from_a_box() {
+fn hull_distances_equal_box_distances() {
     let (m, mut random) = (BallAndBlock {}, Random(5));
     let sorted = |gaps: &[f64]| {
         let mut gaps = gaps.to_vec();
@@ -232,7 +232,7 @@ struct BallOnOctahedron {
 /// The distance of a ball from an octahedron is its distance from a face, an edge or a vertex. On a face it
 /// rolls with `5/7 g sin α`.
 #[test]
-fn a_ball_rolls_on_a_face() {
+fn ball_rolls_on_a_face_of_an_octahedron() {
     let m = BallOnOctahedron {};
     let gap = |p: [f64; 3]| m.contact_gaps(&[p[0], p[1], p[2], 0.0, 0.0, 0.0, 1.0].into())[0];
     assert!((gap([1.0; 3]) - (2.0 / 3_f64.sqrt() - 0.1)).abs() < 1e-12);
@@ -262,7 +262,7 @@ struct Stone {
 /// Meshes of files collide as their hulls. Bodies come to rest as in MuJoCo 4.0.0, whose soft contacts sink
 /// in by 0.2 mm: the vertical axis relative to the body, and the height of its origin.
 #[test]
-fn meshes_rest_as_in_mujoco() {
+fn meshes_come_to_rest_as_in_mujoco() {
     assert_eq!((Stones::CONTACTS.len(), Stones::CONTACTS[0]), (8 + 6, "stone_geom0_contact.0"));
     for (axis, angle, up, height) in [
         ([1.0, 0.0, 0.0], 0.2, [0.13106, -0.00145, 0.99137], 0.00259),
@@ -293,7 +293,7 @@ fn meshes_rest_as_in_mujoco() {
 
 /// The vertices of a mesh are those of its file, scaled and placed by the URDF file.
 #[test]
-fn vertices_are_those_of_the_mesh() {
+fn mesh_vertices_are_scaled_and_placed_by_the_urdf() {
     const VERTICES: [[f64; 3]; 8] = [
         [-6.0, -4.0, 0.0],
         [5.0, -5.0, 1.0],

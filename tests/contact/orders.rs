@@ -71,7 +71,7 @@ where
 /// impulses that were found; where several sliding contacts do not determine them, it differs by less than
 /// the error of the step.
 #[test]
-fn orders_of_declaration_make_no_difference() {
+fn declaration_order_of_contacts_has_no_effect() {
     let (mut random, run) = (Random(5), (2e-3, 60));
     let mut most = [0.0_f64; 2];
     for k in 0..8 {
@@ -99,7 +99,7 @@ fn orders_of_declaration_make_no_difference() {
 /// Checks that a box which lands flat on another one stays level, whichever box is named first. Contradictory
 /// gaps of corners and of an edge do not tilt it.
 #[test]
-fn flat_landings_stay_level() {
+fn flat_landing_boxes_stay_level() {
     let mut random = Random(5);
     for k in 0..30 {
         let friction = [0.0, 0.3][k % 2];
@@ -121,7 +121,7 @@ fn flat_landings_stay_level() {
 /// contact may have one if slipping contacts share impulses: `Two` and `Swapped` differ by more than `1e-8`
 /// in about 1 of 3000 steps.)
 #[test]
-fn orders_with_strong_friction_make_no_difference() {
+fn contact_order_has_no_effect_with_strong_friction() {
     let mut random = Random(2);
     let mut most = 0.0_f64;
     for k in 0..100 {
@@ -165,7 +165,7 @@ fn drop(restitution: f64, seed: u64, h: f64) -> (f64, f64) {
 /// the error of a second-order step for rotation about edges, `½ m g r ω² h²` with about 3 kg, 0.15 m and 3
 /// rad/s. Corners that collide at 4 m/s overlap by at most their approach in one step.
 #[test]
-fn drops_gain_no_energy() {
+fn dropped_bodies_gain_no_energy() {
     let h = 2e-3;
     for (k, restitution) in [0.0, 0.5, 1.0, 0.0, 1.0].into_iter().enumerate() {
         let (gain, least) = drop(restitution, 20 + k as u64, h);

@@ -68,7 +68,7 @@ impl Bricks {
 /// Checks random scenes of two bricks: in the air, stacked, or one falling against the other. The environment
 /// variable `LINKWORK_SCENES` is the number of scenes.
 #[test]
-fn random_scenes_of_two_bricks_go_on() {
+fn random_scenes_of_two_bricks_complete() {
     let count = std::env::var("LINKWORK_SCENES").ok().and_then(|count| count.parse().ok()).unwrap_or(12);
     for seed in 0..count {
         let mut random = Random(seed);
@@ -116,7 +116,7 @@ fn random_scenes_of_two_bricks_go_on() {
 
 /// Checks that a thin brick which falls against another one knocks it over.
 #[test]
-fn a_brick_knocks_another_over() {
+fn falling_brick_knocks_over_another() {
     let m = Bricks { mass: 0.02, ratio: 1.0, a: 0.008, b: 0.025, c: 0.05, friction: 0.3, restitution: 0.0 };
     let level = UnitQuaternion::identity();
     for h in [2e-3, 1e-3] {

@@ -147,7 +147,7 @@ fn check_columns<M, S, const NQ: usize, const NV: usize, const NU: usize>(
 
 /// A ball bounces with −e times its velocity, falls freely before, and stays at rest without restitution.
 #[test]
-fn a_ball_on_the_ground() {
+fn contact_step_jacobian_of_a_bouncing_ball() {
     let h = 0.01;
     for method in methods(h).into_iter().chain([TimeStepping::step(h).leapfrog()]) {
         let step = |restitution: f64, q: f64, v: f64| {
@@ -178,7 +178,7 @@ fn a_ball_on_the_ground() {
 /// Along its slip a block has the derivative 1, across it the ratio of the speeds after and before the step,
 /// since friction turns with the slip. A block that sticks does not answer to forces.
 #[test]
-fn a_block_slides_or_sticks() {
+fn contact_step_jacobian_of_a_sliding_or_sticking_block() {
     let (m, h) = (Block { friction: 0.5 }, 0.01);
     for method in methods(h) {
         let step = |speed: f64| {
@@ -208,7 +208,7 @@ fn a_block_slides_or_sticks() {
 const FLAT: [usize; 6] = [2, 3, 4, 8, 9, 10];
 
 #[test]
-fn a_crate_in_every_contact_mode() {
+fn contact_step_jacobian_of_a_crate_in_every_mode() {
     for (friction, method) in
         methods(0.01).map(|method| (0.5, method)).into_iter().chain([(0.0, methods(0.01)[0])])
     {
@@ -231,7 +231,7 @@ fn a_crate_in_every_contact_mode() {
 }
 
 #[test]
-fn balls_with_friction_moments_and_on_terrain() {
+fn contact_step_jacobian_with_friction_moments_and_terrain() {
     for method in methods(0.01) {
         let mut q = Bowl { restitution: 0.0 }.neutral();
         q[2] = 0.05;
@@ -253,7 +253,7 @@ fn balls_with_friction_moments_and_on_terrain() {
 }
 
 #[test]
-fn a_quadruped_falls_and_lands() {
+fn contact_step_jacobian_of_a_landing_quadruped() {
     let (m, (mut q, mut v, _)) = (Solo {}, quadruped_stance());
     let u = SVector::from_fn(|k, _| 0.4 * (0.9 * k as f64).cos());
     q[2] -= m.contact_gaps(&q).min() - 0.01;
@@ -272,7 +272,7 @@ fn a_quadruped_falls_and_lands() {
 
 /// A ball rolls on a crate, which sticks to the ground or slides.
 #[test]
-fn a_stack_of_two_bodies() {
+fn contact_step_jacobian_of_stacked_bodies() {
     let m = Stack {};
     let (mut q, v) = (m.neutral(), SVector::<f64, 12>::zeros());
     (q[2], q[7], q[9]) = (0.05, 0.03, 0.2);
@@ -315,7 +315,7 @@ where
 
 /// Gradients through a hundred steps in which bodies fall, bounce, slide, roll and come to rest.
 #[test]
-fn gradients_of_rollouts() {
+fn gradients_through_contact_rollouts_agree_with_differences() {
     for method in [methods(5e-3)[0], methods(5e-3)[1]] {
         // The crate lands on its face, slides and stops.
         let (m, u) = (Crate { friction: 0.5 }, SVector::from([2.0, 0.0]));
@@ -347,7 +347,7 @@ fn gradients_of_rollouts() {
 
 /// Poisson's restitution has no derivatives; the error names the contact.
 #[test]
-fn impulses_without_derivatives() {
+fn poisson_restitution_has_no_derivatives() {
     #[mechanism(gravity = -9.81 * z, derivatives)]
     struct Poisson {
         #[particle(mass = 0.5)]

@@ -41,7 +41,7 @@ fn exact_method() -> EventDriven<f64> {
 }
 
 #[test]
-fn moments_follow_their_contact() {
+fn friction_moments_have_rows_after_their_contact() {
     assert_eq!(Ball::CONTACTS, ["floor", "floor.spin", "floor.roll"]);
     assert_eq!(<Ball as Contacts<7, 6, 0, 3, 6>>::PRESSED_BY, [0; 3]);
     let counts = Ball::CONTACT_ROWS.map(|contact::Rows { first, count }| [first, count]);
@@ -51,7 +51,7 @@ fn moments_follow_their_contact() {
 /// A spinning ball stops after the time ω I / (a m g), having rotated by half of ω times that time, and stays
 /// at rest.
 #[test]
-fn a_spinning_ball_stops() {
+fn spinning_ball_stops_by_the_friction_moment() {
     let (m, q) = (LEVEL, LEVEL.lying_configuration());
     let v = SVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 20.0]);
     let inertia = 0.4 * MASS * RADIUS * RADIUS;
@@ -73,7 +73,7 @@ fn a_spinning_ball_stops() {
 /// A rolling ball is decelerated by 5/7 ρ g / r, stops after half of v² over this deceleration, and stays at
 /// rest for an hour.
 #[test]
-fn a_rolling_ball_stops() {
+fn rolling_ball_stops_by_rolling_friction() {
     let (m, q) = (LEVEL, LEVEL.lying_configuration());
     let v = SVector::from([1.0, 0.0, 0.0, 0.0, 20.0, 0.0]);
     let brakes = 5.0 / 7.0 * 0.001 * G / RADIUS;
@@ -93,7 +93,7 @@ fn a_rolling_ball_stops() {
 /// Checks that a ball with rolling friction ρ stays at rest on a slope if tan α is less than ρ / r. On
 /// steeper slopes it rolls down with 5/7 g (sin α − ρ / r cos α).
 #[test]
-fn a_ball_stays_on_a_gentle_slope() {
+fn ball_rests_on_slopes_below_the_rolling_limit() {
     let rolling = 0.1 * RADIUS;
     for tilt in [0.099_f64, 0.12] {
         let m = Ball { tilt: tilt.atan(), rolling, ..LEVEL };
@@ -110,7 +110,7 @@ fn a_ball_stays_on_a_gentle_slope() {
 }
 
 #[test]
-fn moments_act_against_what_turns() {
+fn friction_moments_oppose_the_angular_velocity() {
     let (m, q) = (LEVEL, LEVEL.lying_configuration());
     let (u, none) = (SVector::<f64, 0>::zeros(), SVector::<f64, 6>::zeros());
     let weight = MASS * G;
@@ -134,7 +134,7 @@ fn moments_act_against_what_turns() {
 }
 
 #[test]
-fn derivatives_know_moments() {
+fn contact_derivatives_include_friction_moments() {
     use Touch::{Open, Slips, Sticks};
     let m = Ball { tilt: 0.2, ..LEVEL };
     let mut random = Random(11);
@@ -154,7 +154,7 @@ fn derivatives_know_moments() {
 /// Impacts on a ball that spins and rolls: moments stay within their bounds, oppose the rotation, and no
 /// energy is gained.
 #[test]
-fn impacts_obey_the_laws() {
+fn impacts_with_friction_moments_gain_no_energy() {
     let mut random = Random(12);
     for _ in 0..2000 {
         let m = Ball {
@@ -198,7 +198,7 @@ struct OnFelt {
 
 /// Compliant surfaces have the same decelerations: spin by a m g / I, and rolling by 5/7 ρ g / r.
 #[test]
-fn surfaces_that_yield_brake_what_turns() {
+fn compliant_friction_moments_have_equal_decelerations() {
     let m = OnFelt {};
     let mut q = m.neutral();
     q[2] = RADIUS - MASS * G / 1e6;
@@ -250,7 +250,7 @@ struct Soft {
 /// and dissipates these times its angular velocities. The output is the moment on the first surface of the
 /// contact.
 #[test]
-fn outputs_read_moments() {
+fn outputs_include_friction_moments() {
     let v: SVector<f64, 6> = [1.0, 0.0, 0.0, 0.0, 20.0, -15.0].into();
     let moments = SVector::<f64, 3>::from([0.0, -0.001, 0.002]) * (MASS * G);
     let lost = -(0.001 * 20.0 + 0.002 * 15.0) * MASS * G;

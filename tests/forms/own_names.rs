@@ -123,7 +123,7 @@ mod far {
 }
 
 #[test]
-fn none_is_hidden() {
+fn user_items_are_not_shadowed_by_generated_names() {
     assert!((both::run().unwrap() - 5.0 - 5_f64.sqrt()).abs() < 1e-9);
     assert_eq!(own::run(), 1);
     assert_eq!(far::run(), 6.0);

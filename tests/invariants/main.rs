@@ -173,7 +173,7 @@ undamped! {
 
 /// Checks that dashpots dissipate the power `c v²`.
 #[test]
-fn dashpots() {
+fn dashpots_dissipate_quadratic_power() {
     let m = workshop();
     check_trait_consequences(&m, |v| {
         m.shoulder_damping * v[0] * v[0] + m.slide_damping * v[1] * v[1] + m.turn_damping * v[2] * v[2]
@@ -227,7 +227,7 @@ macro_rules! check_kinematics {
 }
 
 #[test]
-fn frames_move_as_they_say() {
+fn frame_velocities_are_rates_of_placements() {
     check_kinematics!(Panda, Panda, "panda_hand_tcp");
     check_kinematics!(Solo12, Solo12, "HR_FOOT");
     check_kinematics!(OnScrew {}, OnScrew, "carried");
@@ -241,7 +241,7 @@ fn frames_move_as_they_say() {
 
 /// Motors do not change the momentum of a robot in the air: it changes only by the robot's weight.
 #[test]
-fn motors_do_not_change_the_momentum() {
+fn motors_preserve_the_momentum_of_flying_robots() {
     let mut random = Random::new(6);
     for _ in 0..4 {
         let q = random.random_configuration(&Solo12);
@@ -258,7 +258,7 @@ fn motors_do_not_change_the_momentum() {
 
 /// Checks that the power of each input is its force times the velocity of the point on which it acts.
 #[test]
-fn inputs_work_where_they_act() {
+fn input_power_is_force_times_point_velocity() {
     let m = workshop();
     assert_eq!(Workshop::INPUTS, ["motor", "drive", "spin", "thrust", "lift", "wheel", "gust"]);
     assert_eq!(Workshop::VELOCITIES, ["shoulder", "track.slide", "track.turn"]);
@@ -297,7 +297,7 @@ fn inputs_work_where_they_act() {
 /// Without external forces, a mechanism conserves its momentum and its energy, and its centre of mass moves
 /// uniformly.
 #[test]
-fn spacecraft_keeps_momentum_and_energy() {
+fn spacecraft_conserves_momentum_and_energy() {
     let m = Spacecraft {};
     let mut random = Random::new(17);
     let q = random.random_configuration(&m);
@@ -318,7 +318,7 @@ fn spacecraft_keeps_momentum_and_energy() {
 /// Along a driven and damped motion, the energy changes by the work of the inputs minus the energy that the
 /// dashpots dissipate.
 #[test]
-fn workshop_balances_its_energy() {
+fn workshop_energy_changes_by_work_minus_dissipation() {
     let m = workshop();
     let input_at_time = |t: f64| SVector::<f64, 7>::from_fn(|i, _| (t * (1.0 + i as f64) + i as f64).sin());
     let net_power = |t: f64, q: &_, v: &SVector<f64, 3>| {
@@ -378,7 +378,7 @@ fn sample_robot<T: Real>() -> Robot<T> {
 }
 
 #[test]
-fn scalar_types_agree() {
+fn dynamics_agree_for_all_scalar_types() {
     let (single, double) = (sample_robot::<f32>(), sample_robot::<f64>());
     check_trait_consequences(&double, |v| 0.2 * v[0] * v[0]);
     let mut random = Random::new(10);
@@ -440,7 +440,7 @@ struct Loaded {
 /// an elimination with successive pivots is that of a matrix with a perturbation of the magnitude of rounding
 /// (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, th. 10.4).
 #[test]
-fn heavy_loads_on_light_arms_leave_the_digits() {
+fn heavy_loads_on_light_arms_lose_no_accuracy() {
     let (v, tau) = (Vector3::zeros(), Vector3::new(0.3, -0.2, 0.7));
     for load in [1.0, 1e2, 1e4, 1e6, 1e8] {
         let m = Loaded { load };

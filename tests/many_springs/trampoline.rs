@@ -302,7 +302,7 @@ fn trampoline() -> Trampoline<f64> {
 }
 
 #[test]
-fn springs_pull_against_the_energy_that_they_store() {
+fn spring_forces_are_gradients_of_the_stored_energy() {
     let m = trampoline();
     let mut random = Random::new(31);
     for _ in 0..5 {
@@ -324,7 +324,7 @@ fn springs_pull_against_the_energy_that_they_store() {
 }
 
 #[test]
-fn the_motion_of_many_springs_is_one_motion() {
+fn all_functions_agree_for_many_springs() {
     let m = trampoline();
     let mut random = Random::new(32);
     for _ in 0..5 {
@@ -341,7 +341,7 @@ fn the_motion_of_many_springs_is_one_motion() {
 }
 
 #[test]
-fn derivatives_know_what_given_forces_depend_on() {
+fn derivatives_include_the_dependencies_of_passive_forces() {
     let m = trampoline();
     let mut random = Random::new(33);
     for _ in 0..3 {
@@ -398,7 +398,7 @@ fn derivatives_know_what_given_forces_depend_on() {
 }
 
 #[test]
-fn a_prepared_trampoline_is_the_trampoline() {
+fn prepared_trampoline_equals_the_trampoline() {
     assert_same_dynamics(&trampoline().prepare(), &trampoline(), 5, 1e-10);
     let single = Trampoline::<f32> { k: 30.0, c: 0.7 };
     let h = single.bias_forces(&single.neutral(), &SVector::from_element(0.1));

@@ -56,7 +56,7 @@ where
 /// Checks that the loop of a linkage is closed after a million steps as accurately as after the first. The
 /// energy drifts linearly in time, and less with smaller steps, as the order of the method predicts.
 #[test]
-fn a_linkage() -> Result<(), Error> {
+fn linkage_stays_closed_for_a_million_steps() -> Result<(), Error> {
     let m = FourBar { g: 9.81, density: 0.8, a: 0.3, b: 0.9, c: 0.7, d: 0.8 };
     let q = m.assemble(&[0.7, 0.2, 1.8].into(), &[0]).expect("the crank goes all the way round");
     let still = SVector::zeros();
@@ -73,7 +73,7 @@ fn a_linkage() -> Result<(), Error> {
 /// A disk that nods about its steady circle keeps its contact with the table and does not slip for a million
 /// steps.
 #[test]
-fn a_disk() -> Result<(), Error> {
+fn rolling_disk_does_not_slip_for_a_million_steps() -> Result<(), Error> {
     let m = RollingDisk { g: 9.81, m: 2.0, radius: 0.4 };
     // The angular velocity in the axes that lean but do not roll.
     let ((s, c), r, u) = (0.35_f64.sin_cos(), m.radius, [0.4, -1.5, 2.4]);

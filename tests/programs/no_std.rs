@@ -11,7 +11,7 @@ fn build(program: &str) -> Output {
 }
 
 #[test]
-fn control_step_has_no_way_to_panic() {
+fn control_step_contains_no_panic_path() {
     let output = build("linkwork-no-std");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join("packages/release/linkwork-no-std");
@@ -20,7 +20,7 @@ fn control_step_has_no_way_to_panic() {
 }
 
 #[test]
-fn a_way_to_panic_would_be_seen() {
+fn panic_path_in_a_control_step_is_detected() {
     let output = build("panics");
     let text = String::from_utf8_lossy(&output.stderr);
     assert!(!output.status.success(), "a program that can panic was linked");

@@ -373,7 +373,7 @@ fn check_derivatives(plain: &Compiled<'_>, with: &Compiled<'_>, ours: &State, z:
 proptest! {
     #![proptest_config(property_test_config(12))]
     #[test]
-    fn random_speeds_are_exchanged_in_all_functions(tree in random_trees(4), seed in 0..50_u64) {
+    fn random_speeds_transform_all_functions(tree in random_trees(4), seed in 0..50_u64) {
         prop_assume!(check_tree(&tree, seed));
     }
 }
@@ -397,7 +397,7 @@ const BODY: &str = "a: f64, b: f64, c: f64,
 
 /// The printed equations are Euler's, in the form of Kane and Levinson (1985) and other textbooks.
 #[test]
-fn a_rigid_body_in_body_axes_prints_eulers_equations() {
+fn rigid_body_in_body_axes_prints_eulers_equations() {
     let speeds = "#[speed(rate(psi) * sin(theta) * sin(phi) + rate(theta) * cos(phi))] wx: Speed,
         #[speed(rate(psi) * sin(theta) * cos(phi) - rate(theta) * sin(phi))] wy: Speed,
         #[speed(dot(omega(rotor / ground), rotor.z))] wz: Speed,";
@@ -415,7 +415,7 @@ fn a_rigid_body_in_body_axes_prints_eulers_equations() {
 
 /// The printed equations of a rolling disk are Kane's.
 #[test]
-fn a_rolling_disk_prints_kanes_equations() {
+fn rolling_disk_prints_kanes_equations() {
     let fields = "m: f64, g: f64, radius: f64,
         #[body(mass = 0, inertia = 0)] upright: Body, #[body(mass = 0, inertia = 0)] turned: Body,
         #[body(mass = 0, inertia = 0)] leaning: Body,

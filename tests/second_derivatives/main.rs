@@ -207,7 +207,7 @@ impl<const N: usize, const NV: usize> ConcatSlices for [SMatrix<f64, NV, NV>; N]
 }
 
 #[test]
-fn first_derivatives_change_as_second_ones_say() {
+fn second_derivatives_agree_with_differences() {
     check_second_derivatives("driven", &Driven { rate: 3.0 }, 1.0);
     check_second_derivatives("carrier", &Carrier {}, 3.0);
     check_second_derivatives("arm", &Panda, 5.0);
@@ -284,7 +284,7 @@ fn check_steps_from<M, S, const NV: usize, const NU: usize>(
 }
 
 #[test]
-fn jacobians_of_steps_change_as_second_derivatives_say() {
+fn step_second_derivatives_agree_with_differences() {
     check_steps("driven, Rk4", &Driven { rate: 3.0 }, &Rk4::step(0.05), 1.0);
     check_steps("driven, Euler", &Driven { rate: 3.0 }, &SemiImplicitEuler::step(0.05), 1.0);
     check_steps("arm, Rk4", &Panda, &Rk4::step(0.01), 5.0);
@@ -309,7 +309,7 @@ fn derivative_operation_counts(arguments: &str) -> [usize; 2] {
 /// Second derivatives follow from a recursion, so that their cost is a small multiple of that of the first
 /// derivatives.
 #[test]
-fn second_derivatives_cost_about_twice_the_first() {
+fn second_derivatives_cost_twice_the_first() {
     let fingers = "lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]";
     for (robot, options, most) in [
         ("ur5", "base = fixed", 1450),

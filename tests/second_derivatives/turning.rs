@@ -61,7 +61,7 @@ fn check_along<M, S, const NQ: usize, const NV: usize, const NU: usize>(
 }
 
 #[test]
-fn steps_of_turning_bodies_curve_as_second_derivatives_say() {
+fn rotating_body_step_second_derivatives_agree_with_differences() {
     let mut random = Random::new(3);
     let m = Carrier {};
     let q = m.integrate(&m.neutral(), &random.random_vector(1.2));
@@ -75,7 +75,7 @@ fn steps_of_turning_bodies_curve_as_second_derivatives_say() {
 }
 
 #[test]
-fn constrained_steps_of_turning_bodies_curve_as_second_derivatives_say() {
+fn constrained_rotating_body_step_second_derivatives_agree() {
     let m = Tied {};
     let start = m.integrate(&m.neutral(), &(SVector::from_element(0.2)));
     let q = m.assemble(&start, &[]).expect("it can be assembled");

@@ -279,7 +279,7 @@ fn euler_start() -> (SVector<f64, 3>, SVector<f64, 3>) {
 }
 
 #[test]
-fn the_configuration_space_is_one_in_speeds() {
+fn configuration_space_is_independent_of_speeds() {
     let (q, v) = euler_start();
     check_space(&mechanism_with_speeds(), &q);
     check_steps(&mechanism_with_speeds(), &q, &(v * 0.3));
@@ -289,7 +289,7 @@ fn the_configuration_space_is_one_in_speeds() {
 }
 
 #[test]
-fn names_and_conversions() {
+fn speeds_have_names_and_conversions() {
     assert_eq!(Speeds::VELOCITIES, ["wx", "wy", "wz"]);
     assert_eq!(Satellite::VELOCITIES, ["ux", "uy", "uz", "wx", "wy", "wz", "hinge"]);
     assert_eq!(Speeds::CONFIGURATION, ["psi", "theta", "phi"]);
@@ -306,7 +306,7 @@ fn names_and_conversions() {
 }
 
 #[test]
-fn frames_move_alike() {
+fn frame_velocities_are_equal_in_speeds() {
     let (q, rates) = euler_start();
     let (plain, m) = (Angles {}, mechanism_with_speeds());
     let u = m.speeds_of_rates(&q, &rates);
@@ -352,7 +352,7 @@ fn end_in_joint_velocities<S: linkwork::integrate::Method<f64>>(
 
 /// Halving the step divides the errors by 16 for order four, and by 4 for order two.
 #[test]
-fn methods_keep_their_orders() {
+fn integrators_in_speeds_have_their_orders() {
     let (q, rates) = euler_start();
     let exact = state_after_duration(&Angles {}, &q, &rates, 0.5);
     let error_of_end =
@@ -385,7 +385,7 @@ fn methods_keep_their_orders() {
 }
 
 #[test]
-fn batches_are_single_states() {
+fn batches_in_speeds_equal_single_states() {
     use linkwork::__private::{lane, lane_by_lane};
     let m = mechanism_with_speeds();
     let (q, rates) = euler_start();
@@ -408,7 +408,7 @@ fn batches_are_single_states() {
 }
 
 #[test]
-fn a_rolling_disk_moves_alike_in_kanes_speeds() {
+fn rolling_disk_moves_equally_in_kanes_speeds() {
     let (plain, m) = (Disk {}, DiskInSpeeds {});
     let q: SVector<f64, 6> = [0.1, -0.2, 0.4 * 0.3_f64.cos(), 0.5, 0.3, 0.2].into();
     let rates = plain.project_velocity(&q, &[0.3, -0.4, 0.5, 1.0, 0.6, 5.0].into()).expect("it is regular");
@@ -450,7 +450,7 @@ fn a_rolling_disk_moves_alike_in_kanes_speeds() {
 
 /// Implicit steps under constraints have their order of convergence, and the energy does not drift.
 #[test]
-fn constrained_methods_keep_their_orders() {
+fn constrained_integrators_in_speeds_have_their_orders() {
     let (plain, m) = (Disk {}, DiskInSpeeds {});
     let q: SVector<f64, 6> = [0.1, -0.2, 0.4 * 0.3_f64.cos(), 0.5, 0.3, 0.2].into();
     let rates = plain.project_velocity(&q, &[0.3, -0.4, 0.5, 1.0, 0.6, 5.0].into()).expect("it is regular");

@@ -163,7 +163,7 @@ fn gallery_mechanisms() -> Vec<Source> {
 
 /// Checks that inferred units of parameters equal those in their documentation.
 #[test]
-fn units_are_those_of_the_documentation() {
+fn inferred_units_equal_those_in_the_documentation() {
     let mut compared = 0;
     for source in gallery_mechanisms() {
         let found = source.parameters_with_units();
@@ -251,14 +251,14 @@ fn refuse_all(text: impl Fn(&str) -> String, itself: bool) -> usize {
 }
 
 #[test]
-fn a_factor_too_many_is_refused() {
+fn additional_unit_factors_are_rejected() {
     let refused = refuse_all(|p| format!("{p} * {p}"), false);
     assert!(refused > 15, "{refused} mistakes");
 }
 
 /// The ratio of a parameter to itself removes the factor while the parameter is still used.
 #[test]
-fn a_factor_too_few_is_refused() {
+fn missing_unit_factors_are_rejected() {
     let refused = refuse_all(|p| format!("{p} / {p}"), true);
     assert!(refused > 40, "{refused} mistakes");
 }
@@ -280,7 +280,7 @@ fn is_refused(messages: &[String], parameter: &str) -> bool {
 
 /// Examples of the language reference that are compiled are accepted.
 #[test]
-fn the_page_of_the_language_is_accepted() {
+fn examples_of_the_language_page_are_accepted() {
     for (name, arguments, fields, expected) in PAGE {
         let found = units_of_mechanism(arguments, &format!("struct {name} {{ {fields} }}"));
         let found = found.unwrap_or_else(|messages| panic!("{name}: {messages:?}"));

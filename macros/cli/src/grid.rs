@@ -145,7 +145,7 @@ mod tests {
     use super::Grid;
 
     #[test]
-    fn points_come_in_any_order() {
+    fn grid_points_are_accepted_in_any_order() {
         let grid =
             Grid::parse("x, y, f\n1,0,3\n0,0,1\n0,5,2\n1,5,4\n", 2).unwrap_or_else(|why| panic!("{why}"));
         assert_eq!(
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_grid_is_told() {
+    fn tables_that_are_not_grids_are_rejected() {
         for (text, part) in [
             ("", "fewer than two points"),
             ("0,1\n", "fewer than two points"),

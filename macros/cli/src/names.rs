@@ -64,7 +64,7 @@ mod tests {
     use super::Names;
 
     #[test]
-    fn fields_have_names_of_their_own() {
+    fn robot_names_become_distinct_rust_fields() {
         let mut taken = Names::default();
         let links = taken.add(["ground", "Hand-left", "x", "2nd", "fn", "hand left"].into_iter(), "link");
         let joints = taken.add(["Hand-left", "é"].into_iter(), "joint");

@@ -147,7 +147,7 @@ mod tests {
     /// Compares with the positions of rustc 1.95, except for brackets that are open at the end of a file:
     /// rustc points at the end of the file and labels the bracket.
     #[test]
-    fn errors_are_located_as_rustc_locates_them() {
+    fn syntax_errors_are_located_as_by_rustc() {
         for (text, at, message) in [
             ("struct S {\n    a: f64\n    b: f64,\n}", (2, 11), "expected `,`, found `b`"),
             ("struct S {\n    a: f64 #[x] b: f64,\n}", (2, 11), "expected `,`, found `#`"),

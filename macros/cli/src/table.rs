@@ -90,13 +90,13 @@ mod tests {
     use super::{Table, split_csv_fields};
 
     #[test]
-    fn quotes_hold_commas() {
+    fn quoted_csv_cells_may_contain_commas() {
         assert_eq!(split_csv_fields("t, q.a,\"b,\"\"c\"\"\"\r"), ["t", "q.a", "b,\"c\""]);
     }
 
     /// Checks files of spreadsheets, which begin with a byte order mark and may contain no-break spaces.
     #[test]
-    fn marks_and_strange_blanks_are_blanks() {
+    fn byte_order_marks_and_no_break_spaces_are_whitespace() {
         let file = std::env::temp_dir().join(format!("linkwork-table-{}.csv", std::process::id()));
         for text in [
             "\u{feff}t,u.a\r\n0,1\r\n2,3\r\n",
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_table_is_told() {
+    fn malformed_tables_are_rejected_with_a_message() {
         for (text, part) in [
             ("", "no column `t`"),
             ("time;u.a\n0;1\n", "there is no column `t`, but `time;u.a`"),

@@ -73,7 +73,7 @@ fn checksum(bytes: &[u8]) -> u32 {
 mod tests {
     /// Checks the checksum against the published check value of CRC-32.
     #[test]
-    fn checksum_of_the_nine_digits() {
+    fn crc32_has_the_published_check_value() {
         assert_eq!(super::checksum(b"123456789"), 0xcbf4_3926);
     }
 }

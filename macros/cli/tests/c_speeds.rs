@@ -191,7 +191,7 @@ fn check(name: &str, found: &[f64], expected: &[f64], tolerance: f64) {
 }
 
 #[test]
-fn speeds_are_the_same_in_c() {
+fn declared_speeds_in_c_agree_with_rust() {
     let (entries, given) = entries();
     let found = compile_and_run(&entries, &given, "fast", &["-std=c99", "-O1"]);
     assert_eq!(found.len(), entries.len());
@@ -204,7 +204,7 @@ fn speeds_are_the_same_in_c() {
 /// instructions for fused products its operations are those of reproducible arithmetic. Differences of
 /// configurations contain an arc tangent of the platform.
 #[test]
-fn reproducible_code_in_c_has_the_bits_of_rust() {
+fn reproducible_c_code_has_the_bits_of_rust() {
     let (mut entries, given) = entries();
     entries.retain(|(name, ..)| !name.ends_with("transition"));
     let found = compile_and_run(&entries, &given, "reproducible", &["-std=gnu11", "-O2", "-march=native"]);

@@ -12,7 +12,7 @@ fn is_done(what: &str, output: &Output) {
 }
 
 #[test]
-fn a_program_in_c_moves_a_bead_on_a_wire() {
+fn c_program_simulates_a_bead_on_a_wire() {
     let (target, own) = (Path::new(env!("CARGO_TARGET_TMPDIR")), Path::new(env!("CARGO_MANIFEST_DIR")));
     let folder = target.join("bead");
     let home = own.join("tests/library");

@@ -108,7 +108,7 @@ fn mechanism_source(body: &str) -> String {
 
 /// Checks that a mechanism with declared generalized speeds has the same motion as without them.
 #[test]
-fn declared_speeds_lead_to_the_same_motion() {
+fn declared_speeds_leave_random_motions_unchanged() {
     let here = test_folder("random_speeds");
     for case in 0..case_count() {
         let random = &mut Random(2 * case + 1);
@@ -153,7 +153,7 @@ fn declared_speeds_lead_to_the_same_motion() {
 /// Checks that a state of first order equals the velocity of a particle of 1 kg on a separate rail, under a
 /// force equal to the rate of the state.
 #[test]
-fn states_move_as_velocities_do() {
+fn first_order_states_integrate_like_velocities() {
     let here = test_folder("random_states");
     for case in 0..case_count() {
         let random = &mut Random(2 * case + 2);
@@ -229,7 +229,7 @@ fn states_move_as_velocities_do() {
 /// Checks a cart of 1 kg under a piecewise linear force between random instants, with jumps and short pulses:
 /// velocity and position are integrals of the table.
 #[test]
-fn inputs_are_followed_exactly() {
+fn piecewise_linear_inputs_are_applied_exactly() {
     let here = test_folder("random_inputs");
     let cart = mechanism_source(
         "    #[body(mass = 1)]\n    cart: Body,\n    \
@@ -269,7 +269,7 @@ fn inputs_are_followed_exactly() {
 /// Checks a cart on a stiff, overdamped spring under a constant force, which starts at rest: the motion is
 /// the closed form of an overdamped oscillator with large `c` and `k`.
 #[test]
-fn stiff_springs_are_integrated() {
+fn stiff_overdamped_springs_follow_the_closed_form() {
     let here = test_folder("random_stiff");
     for case in 0..case_count() {
         let random = &mut Random(5 * case + 7);

@@ -319,7 +319,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_slip_finds_its_name_and_a_stranger_does_not() {
+    fn misspelt_names_get_suggestions_and_unrelated_names_none() {
         assert_eq!(nearest_candidate("Sleve", &["Pin", "Sleeve", "Slot"]), Some("Sleeve"));
         assert_eq!(nearest_candidate("cart_mas", &["cart_mass", "pole_mass"]), Some("cart_mass"));
         assert_eq!(nearest_candidate("abuot", &["about", "along"]), Some("about"));

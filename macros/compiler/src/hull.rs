@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn hull_of_a_grid_has_the_corners_of_its_box() {
+    fn hull_of_a_grid_is_its_box() {
         for (edges, n) in [([2.0, 3.0, 4.0], 5), ([0.1, 0.1, 0.1], 2), ([1e-3, 1.0, 2.0], 4)] {
             let hull = Hull::new(&grid(edges, n), 32).expect("a hull");
             assert_eq!((hull.vertices.len(), hull.faces.len(), hull.edges.len()), (8, 6, 12), "{hull:?}");
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn reduced_hulls_state_their_error() {
+    fn reduced_hulls_report_their_error() {
         let points = sphere(2000);
         for (count, largest) in [(12, 0.42), (32, 0.13)] {
             let hull = Hull::new(&points, count).expect("a hull");
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn points_without_a_hull() {
+    fn degenerate_points_have_no_hull() {
         let flat = grid([1.0, 1.0, 0.0], 3);
         for (points, expected) in [
             (&[[0.0; 3]; 5][..], HullError::TooFew(1)),

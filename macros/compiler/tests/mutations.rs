@@ -177,7 +177,7 @@ fn message_class(message: &str) -> String {
 }
 
 #[test]
-fn slips_of_the_hand_are_answered_in_few_words() {
+fn single_token_mutations_get_short_errors() {
     let number_from_environment = |name: &str| std::env::var(name).ok().and_then(|n| n.parse::<u64>().ok());
     let cases = number_from_environment("MUTATIONS").unwrap_or(CASES);
     let gallery = gallery_mechanisms();
@@ -245,7 +245,7 @@ fn with_a_mistake(item: &TokenStream, at: usize) -> Option<TokenStream> {
 }
 
 #[test]
-fn a_field_that_cannot_be_read_makes_no_other_wrong() {
+fn unreadable_field_causes_no_other_errors() {
     let mut wrong = Vec::new();
     let mut tried = 0;
     for subject in gallery_mechanisms() {
@@ -264,7 +264,7 @@ fn a_field_that_cannot_be_read_makes_no_other_wrong() {
 }
 
 #[test]
-fn a_name_that_is_declared_otherwise_is_told_once() {
+fn wrongly_declared_name_is_reported_once() {
     let mut wrong = Vec::new();
     for subject in gallery_mechanisms() {
         let item: syn::ItemStruct = syn::parse2(subject.item).unwrap();

@@ -30,7 +30,7 @@ fn identifiers_in_text(text: &str) -> impl Iterator<Item = &str> {
 
 /// rustc searches all definitions of a crate for each unused variable.
 #[test]
-fn no_input_is_bound_that_nothing_reads() {
+fn unused_inputs_are_not_bound() {
     let code = chain_code(6);
     let mut bound = 0;
     for function in code.split("fn ") {
@@ -53,7 +53,7 @@ fn no_input_is_bound_that_nothing_reads() {
 /// Checks that the statements of a long function are generated once: the function that returns matrices calls
 /// the function that fills matrices of the caller.
 #[test]
-fn a_long_function_is_written_once() {
+fn statements_of_long_functions_are_generated_once() {
     let head = "fn inverse_dynamics_derivatives(";
     let body =
         |code: &str| code.split(head).nth(1).and_then(|rest| rest.split("fn ").next()).map(str::to_string);

@@ -354,7 +354,7 @@ fn is_as_written(name: &str) {
 }
 
 #[test]
-fn every_mechanism_has_a_test() {
+fn every_snapshot_mechanism_has_a_test() {
     assert!(MECHANISMS.iter().map(|(name, ..)| *name).eq(TESTS.iter().copied()));
 }
 
@@ -375,7 +375,7 @@ const DOCUMENTED: [(&str, &str); 7] = [
 ];
 
 #[test]
-fn documentation_of_structs() {
+fn struct_documentation_equals_the_snapshot() {
     let mut text = String::new();
     for (attribute, fields) in DOCUMENTED {
         let item = format!("pub struct Shown {{ {fields} }}").parse().unwrap();

@@ -161,7 +161,7 @@ pub fn check_random_states(seed: u64, count: usize) -> usize {
 /// Block in a corner of surfaces that are declared twice, with a friction of 54 254. It rotates about two of
 /// sixteen points; neither gradient methods nor a gradual increase of friction find this solution.
 #[test]
-fn a_block_turns_about_two_of_many_points() {
+fn block_rotates_about_two_of_many_contact_points() {
     let m = Twice { friction: 54254.21780149019, restitution: 1.0 };
     let q = [-1e-12, 0.0, 0.05, -1.2038604637858707e-13, 3.528791029535654e-13, 2.2409312509628288e-13, 1.0]
         .into();
@@ -181,7 +181,7 @@ fn a_block_turns_about_two_of_many_points() {
 /// pushes a light one away, once 14 mm through the floor. No overlap exceeds the motion of a ball in one
 /// step.
 #[test]
-fn what_is_pushed_out_of_one_ball_is_not_pushed_into_the_floor() {
+fn overlap_removal_creates_no_other_overlaps() {
     let m = Pile { friction: 24.6, restitution: 0.0 };
     let mut q = m.neutral();
     (q[0], q[2], q[7], q[9], q[16]) = (-0.1, 0.1, 0.1, 0.1, 0.1 + 0.03_f64.sqrt());
@@ -203,7 +203,7 @@ fn what_is_pushed_out_of_one_ball_is_not_pushed_into_the_floor() {
 /// blocks of a hundred states of each of five mechanisms, or their range: `20`, or `20..40`; 2000 blocks are
 /// a million states.
 #[test]
-fn states_at_random_have_answers() {
+fn random_contact_states_rarely_fail() {
     let asked = std::env::var("LINKWORK_ORACLE").unwrap_or_default();
     let range = asked.split_once("..").and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
     let (from, to) = range.unwrap_or((0, asked.parse().unwrap_or(1)));

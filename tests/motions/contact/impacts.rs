@@ -23,7 +23,7 @@ struct Dice {
 /// Checks impacts of a block on its face and against a wall, with up to eight corners in contact, some in two
 /// contacts. Impulses are not unique; friction ranges from zero to unphysically large values.
 #[test]
-fn a_block_in_a_corner_obeys_the_laws() {
+fn corner_impacts_of_a_block_satisfy_contact_conditions() {
     let mut random = Random(1);
     for _ in 0..400 {
         let friction = random.one_of([0.0, 0.05, 0.3, 0.8, 2.0]);
@@ -41,7 +41,7 @@ fn a_block_in_a_corner_obeys_the_laws() {
 /// Checks impacts of a heavy ball on a light one and another: all pairs, and two of the contacts with the
 /// floor, are closed.
 #[test]
-fn balls_in_a_pile_obey_the_laws() {
+fn pile_impacts_of_balls_satisfy_contact_conditions() {
     let mut random = Random(2);
     for _ in 0..400 {
         let friction = random.one_of([0.0, 0.05, 0.3, 0.8, 2.0]);
@@ -56,7 +56,7 @@ fn balls_in_a_pile_obey_the_laws() {
 /// Checks that an impact of a double pendulum's tip on the floor adds no energy. Newton's restitution with
 /// friction alone could (Kane and Levinson, *Dynamics: Theory and Applications*, 1985, § 5.8).
 #[test]
-fn a_double_pendulum_that_strikes_the_floor_gains_no_energy() {
+fn double_pendulum_impact_gains_no_energy() {
     let mut random = Random(3);
     let mut tempered = 0;
     for _ in 0..4000 {

@@ -100,7 +100,7 @@ fn check_brick_wall() {
 
 /// The matrices of a step with many contacts need more stack than a test's thread has in unoptimised builds.
 #[test]
-fn dominoes_and_a_wall_fall() {
+fn falling_dominoes_and_wall_fit_the_stack() {
     for scene in [check_falling_dominoes, check_brick_wall] {
         thread::Builder::new().stack_size(128 << 20).spawn(scene).unwrap().join().unwrap();
     }

@@ -249,7 +249,7 @@ where
 }
 
 #[test]
-fn arms() {
+fn c_code_of_arms_agrees_with_rust() {
     let mut case = case!("arm", Ur5, Ur5, [], time(), of_trees);
     case.entries.extend(steps!(Ur5, Ur5, case));
     check_exported_code(&case, &["../../models/urdf/ur5.urdf"]);
@@ -259,7 +259,7 @@ fn arms() {
 
 /// Compares the kernels of mechanisms with plain and curved configuration spaces, parameters and time.
 #[test]
-fn kernels_of_trees() {
+fn cuda_kernels_of_trees_agree_with_rust() {
     let mut case = case!("arm", Ur5, Ur5, [], time(), of_trees);
     case.entries.extend(steps!(Ur5, Ur5, case));
     case.entries.extend(products!(Ur5, Ur5, case));
@@ -290,7 +290,7 @@ fn kernels_of_trees() {
 }
 
 #[test]
-fn quadrupeds() {
+fn c_code_of_quadrupeds_agrees_with_rust() {
     let mut case = case!("solo12", Solo12, Solo12, [], time(), of_trees);
     case.entries.extend(steps!(Solo12, Solo12, case));
     check_exported_code(&case, &["../../models/urdf/solo12.urdf", "--with", "base = free"]);
@@ -299,13 +299,13 @@ fn quadrupeds() {
 }
 
 #[test]
-fn a_humanoid() {
+fn c_code_of_a_humanoid_agrees_with_rust() {
     let case = case!("humanoid", SimpleHumanoid, SimpleHumanoid, [], time(), of_trees);
     check_exported_code(&Case { tolerance: 1e-9, ..case }, &["../../models/src/humanoid.rs"]);
 }
 
 #[test]
-fn declared_mechanisms() {
+fn c_code_of_declared_mechanisms_agrees_with_rust() {
     let m = CartPole { cart_mass: 1.2, pole_mass: 0.3, pole_length: 0.8, rail_damping: 0.4 };
     let mut case = case!("cart_pole", CartPole, m, [1.2, 0.3, 0.8, 0.4], time(), of_trees);
     case.entries.extend(steps!(CartPole, m, case));
@@ -316,7 +316,7 @@ fn declared_mechanisms() {
 }
 
 #[test]
-fn names_that_c_does_not_have() {
+fn names_reserved_in_c_are_replaced() {
     let m = Awkward { int: 1.2, class: 0.3, r#type: 0.8, NAN: 4.0 };
     let mut case = case!("awkward", Awkward, m, [1.2, 0.3, 0.8, 4.0], time(), of_trees);
     let argument_values = |name: &str| {
@@ -345,7 +345,7 @@ fn names_that_c_does_not_have() {
 }
 
 #[test]
-fn what_is_driven_in_time() {
+fn c_code_of_driven_mechanisms_agrees_with_rust() {
     let m = Balloon { mass: 3.0, buoyancy: 2.5 };
     let mut case = case!("balloon", Balloon, m, [3.0, 2.5], time(t = 0.7), of_trees);
     case.entries.extend(steps!(Balloon, m, case));
@@ -396,7 +396,7 @@ const TABLES: [&str; 4] = [
 
 /// Checks tables of every dimension within the grid and beyond it.
 #[test]
-fn tables_are_looked_up_alike() {
+fn table_lookups_in_c_agree_with_rust() {
     for (k, (prefix, c)) in
         ["wing", "wing_on", "wing_smooth", "wing_smooth_on"].into_iter().zip(TABLES).enumerate()
     {
@@ -416,7 +416,7 @@ fn tables_are_looked_up_alike() {
 /// Checks a mechanism with a closed loop. Functions that solve for constraint forces are not exported, which
 /// the header and the command report; all others are.
 #[test]
-fn closed_loops_keep_what_needs_no_solution() {
+fn closed_loops_export_functions_without_constraint_forces() {
     let m = FourBar { g: 9.8, density: 1.0, a: 1.0, b: 2.0, c: 2.5, d: 3.0 };
     let mut case = case!("four_bar", FourBar, m, [9.8, 1.0, 1.0, 2.0, 2.5, 3.0], time(), nothing);
     let q = vector_from_slice(&case.given[0].1);
@@ -430,7 +430,7 @@ fn closed_loops_keep_what_needs_no_solution() {
 }
 
 #[test]
-fn in_single_precision() {
+fn c_code_in_single_precision_agrees_with_rust() {
     let case = case!("single", Ur5, Ur5, [], time(), of_trees);
     let Some(compiler) = c_compilers().into_iter().next() else {
         println!("skipped: there is no C compiler");
@@ -446,7 +446,7 @@ fn in_single_precision() {
 /// Checks that the generated code compiles for mechanisms whose names are those of helper functions, header
 /// functions, arguments or types.
 #[test]
-fn any_name_of_a_mechanism_compiles() {
+fn c_code_compiles_for_any_mechanism_name() {
     let Some(compiler) = c_compilers().into_iter().next() else {
         println!("skipped: there is no C compiler");
         return;

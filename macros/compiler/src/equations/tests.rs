@@ -156,7 +156,7 @@ fn check_equations(model: &Model<'_>) {
 }
 
 #[test]
-fn normal_forms_are_what_is_generated() {
+fn printed_normal_forms_equal_generated_functions() {
     for item in [CART_POLE, NUMBERS] {
         with_model("-9.81 * z", item, |model| check_equations(&model));
         with_model("-9.81 * y", item, |model| check_equations(&model));
@@ -176,7 +176,7 @@ fn place_tip<'g>(model: &mut Model<'g>, link: usize, place: [Expr<'g>; 3], angle
 
 /// Describes each rod of a double pendulum by its angle from the vertical.
 #[test]
-fn absolute_angles() {
+fn double_pendulum_in_absolute_angles_prints_correctly() {
     let text = with_model("-g * y", DOUBLE_PENDULUM, |mut model| {
         let g = model.graph;
         let [a, b] = [0, 1].map(|k| Quantity::Configuration(k).expr(g));
@@ -194,7 +194,7 @@ fn absolute_angles() {
 
 /// A bead on a hoop that rotates about the vertical at a prescribed speed.
 #[test]
-fn driven_in_time() {
+fn driven_hoop_prints_time_dependent_equations() {
     let text = with_model("-g * z", HOOP, |mut model| {
         model.parameters = ["g", "m", "radius", "speed"].map(String::from).to_vec();
         let g = model.graph;
@@ -215,7 +215,7 @@ m radius (radius theta'' + (g - radius speed² cos(theta)) sin(theta)) = 0
 
 /// Checks that the length of the equations decides whether they are printed, not the number of velocities.
 #[test]
-fn length_decides() {
+fn equation_length_decides_what_is_printed() {
     let text = equations_of("-g * z", &masses_with_springs(5));
     assert!(text.contains("m x2'' + k (2 x2 - x1 - x3) = 0\n"), "{text}");
     let text = equations_of("-g * z", &masses_with_springs(20));
@@ -239,7 +239,7 @@ fn length_decides() {
 
 /// Checks that the legend explains each multiplier by the name of its constraint.
 #[test]
-fn multipliers_are_named() {
+fn legend_names_the_constraint_of_each_multiplier() {
     let text = equations_of("-g * z", SPHERE);
     let sentence = "lambda1, lambda2 and lambda3 are the multipliers of the constraints contact.normal,
 contact.x and contact.y, in this order.
@@ -251,7 +251,7 @@ contact.x and contact.y, in this order.
 /// The axle fixes the wheel's height, so that the normal constraint is trivial. Its row is zero up to
 /// rounding and is dropped.
 #[test]
-fn a_condition_that_always_holds_is_dropped() {
+fn trivial_constraint_rows_are_dropped() {
     let text = equations_of("-9.81 * z", CASTOR);
     assert!(
         !text.contains("0 = 0") && text.contains("plane.x' - 0.3 cos(plane.angle) roll' = 0\n"),
@@ -269,7 +269,7 @@ fn a_condition_that_always_holds_is_dropped() {
 }
 
 #[test]
-fn numbers_are_written_by_one_rule() {
+fn printed_numbers_follow_one_rule() {
     let text = equations_of("-9.81 * z", TURNS);
     for part in ["coil (q - pi/2)", "1/(4 pi²) m lead²", "3/2 q''"] {
         assert!(text.contains(part), "{part}: {text}");
@@ -277,7 +277,7 @@ fn numbers_are_written_by_one_rule() {
 }
 
 #[test]
-fn large_mechanisms_have_no_text() {
+fn large_mechanisms_print_no_equations() {
     assert_eq!(equations_of("-9.81 * z", SKEW), "");
     let (mut bodies, mut parent) = (String::new(), "ground".to_string());
     for k in 0..5 {
@@ -290,7 +290,7 @@ fn large_mechanisms_have_no_text() {
 }
 
 #[test]
-fn cart_pole_as_text() {
+fn cart_pole_equations_are_printed_as_text() {
     let expected = "\
 L = 1/2 (cart_mass + pole_mass) rail'²
     + 1/2 pole_mass pole_length (1/3 pole_length hinge'² - cos(hinge) rail' hinge')
@@ -307,7 +307,7 @@ L is kinetic less potential energy; rail' and rail'' are the first and second ra
 }
 
 #[test]
-fn slider_on_shaft_as_text() {
+fn slider_on_shaft_equations_are_printed_as_text() {
     let expected = "\
 L = 1/2 (shaft_inertia + mass slide²) turn'² + 1/2 mass slide'²
     - 1/2 stiffness (slide - free_length)² - g mass slide sin(turn)
@@ -321,7 +321,7 @@ L is kinetic less potential energy; turn' and turn'' are the first and second ra
 }
 
 #[test]
-fn gyroscope_as_text() {
+fn gyroscope_equations_are_printed_as_text() {
     let expected = "\
 (axial cos²(nutation) + (transverse + mass lever²) sin²(nutation)) precession''
     + axial cos(nutation) spin''
@@ -339,7 +339,7 @@ axial (cos(nutation) precession'' + spin'' - sin(nutation) precession' nutation'
 /// Checks the printed equations of a top: quaternion components, and angular velocities, which are not the
 /// rates of these components.
 #[test]
-fn top_as_text() {
+fn top_equations_are_printed_as_text() {
     let expected = "\
 (m l² + a) tip.wx' + (c - m l² - a) tip.wy tip.wz - 2 g m l (tip.qx tip.qw + tip.qy tip.qz) = 0
 (m l² + a) tip.wy' + (m l² + a - c) tip.wx tip.wz + 2 g m l (tip.qx tip.qz - tip.qy tip.qw) = 0
@@ -392,7 +392,7 @@ fn check_canonical(model: &Model<'_>) -> String {
 }
 
 #[test]
-fn hamiltons_form_is_that_of_the_functions() {
+fn hamiltons_equations_equal_generated_functions() {
     let text = with_model("-9.81 * y", CART_POLE, |model| check_canonical(&model));
     for line in [
         "rail' = pole_mass pole_length (1/3 pole_length p_rail + 1/2 p_hinge cos(hinge))/D\n",
@@ -413,7 +413,7 @@ fn hamiltons_form_is_that_of_the_functions() {
 }
 
 #[test]
-fn forms_that_there_are_not_are_refused() {
+fn undefined_forms_of_equations_are_rejected() {
     let messages_for_form = |words: &str, item: &str| {
         let arguments = format!("gravity = -g * z, equations = {words}").parse().unwrap();
         crate::check_mechanism(arguments, item.parse().unwrap(), Path::new(""))
@@ -437,7 +437,7 @@ fn forms_that_there_are_not_are_refused() {
 
 /// Equations beyond the readable limits are printed on request, and are correct.
 #[test]
-fn long_equations_are_written_on_request() {
+fn long_equations_are_printed_on_request() {
     let arm = "pub struct Arm { g: f64, m: f64,
         #[body(mass = m, com = 0.5 * x, inertia = rod(m, 1, x))] a: Body,
         #[body(mass = m, com = 0.4 * x, inertia = rod(m, 0.8, x))] b: Body,

@@ -238,7 +238,7 @@ mod tests {
 
     /// Reverse and forward mode give the same derivatives.
     #[test]
-    fn gradients_are_derivatives() {
+    fn reverse_and_forward_differentiation_agree() {
         let g = Graph::new();
         let symbols = [0, 1, 2].map(Symbol);
         let [x, y, z] = symbols.map(|s| g.symbol(s));

@@ -99,7 +99,7 @@ mod tests {
     use crate::expr::Graph;
 
     #[test]
-    fn known_angles_have_exact_sines() {
+    fn special_angles_have_exact_sines() {
         for k in -30..30 {
             let x = f64::from(k) * PI / 12.0;
             let Some([sin, cos]) = of_number(x) else {
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn inverse_functions_cancel() {
+    fn inverse_functions_cancel_functions() {
         let g = Graph::new();
         let (x, y) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)));
         let fold_expression = |e| replace_exactly(&[e], &|_| None)[0];

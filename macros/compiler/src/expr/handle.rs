@@ -178,7 +178,7 @@ mod tests {
     use crate::expr::Symbol;
 
     #[test]
-    fn zeros_ones_and_constants_fold() {
+    fn constant_operations_fold() {
         let g = Graph::new();
         let x = g.symbol(Symbol(0));
         assert_eq!(x * g.zero(), g.zero());
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn signs_are_lifted_so_that_opposite_expressions_share() {
+    fn signs_move_outwards_so_that_negatives_share() {
         let g = Graph::new();
         let (x, y, z) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)), g.symbol(Symbol(2)));
         assert_eq!((-x) * y, -(x * y));
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_multiple_that_is_used_again_stays_one_product() {
+    fn reused_multiples_remain_one_product() {
         let g = Graph::new();
         let (x, y, z) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)), g.symbol(Symbol(2)));
         let twice = g.num(2.0) * x;
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_added_can_be_taken_away() {
+    fn subtracting_an_added_term_cancels_it() {
         let g = Graph::new();
         let (x, y) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)));
         assert_eq!((x + y) - y, x);

@@ -206,7 +206,7 @@ mod tests {
     use crate::expr::eval::eval;
 
     #[test]
-    fn constants_of_lanes_fold() {
+    fn constant_lanes_fold() {
         let g = Graph::new();
         let constant_lanes = |values: [f64; 3]| g.lane_constants(&values);
         let x = g.lane_symbols(&[Symbol(0), Symbol(1), Symbol(2)]);
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn lanes_of_two_stand_side_by_side() {
+    fn pairs_of_lanes_are_concatenated() {
         let g = Graph::new();
         let [x, y] = [[0, 1], [2, 3]].map(|s| g.lane_symbols(&s.map(Symbol)));
         let s = g.symbol(Symbol(0));
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn evaluation_goes_lane_by_lane() {
+    fn lanes_are_evaluated_independently() {
         let g = Graph::new();
         let x = g.lane_symbols(&[Symbol(0), Symbol(1), Symbol(2)]);
         let y = g.symbol(Symbol(3));

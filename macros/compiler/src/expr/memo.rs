@@ -55,7 +55,7 @@ mod tests {
     use crate::expr::Symbol;
 
     #[test]
-    fn tables_are_used_again_and_empty() {
+    fn memo_tables_are_recycled_empty() {
         let g = Graph::new();
         let x = g.symbol(Symbol(0));
         let mut first = Memo::new(&g);

@@ -436,7 +436,7 @@ mod tests {
     }
 
     #[test]
-    fn constant_rotations_take_as_few_steps_as_they_can() {
+    fn constant_rotations_use_the_fewest_elementary_steps() {
         let g = Graph::new();
         let axis_rotation = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
         let right = Mat3([[0, 1, 0], [0, 0, -1], [-1, 0, 0]].map(|r| r.map(|c| g.num(f64::from(c)))));
@@ -459,7 +459,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_turn_vectors_and_tensors_as_the_matrix_does() {
+    fn elementary_rotations_equal_the_rotation_matrix() {
         let g = Graph::new();
         let axis_rotation = |k, angle: f64| Rotation::about_axis(k, g.num(angle));
         let v = Vec3::from_numbers(&g, [0.7, -1.1, 0.4]);

@@ -165,7 +165,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_triangle_in_every_format() {
+    fn triangle_mesh_is_read_in_every_format() {
         let corners: Triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.5]];
         let numbers = || corners.iter().flatten().flat_map(|x| (*x as f32).to_le_bytes());
         let word = |n: u32| n.to_le_bytes();
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn packages_are_above_the_robot_file() {
+    fn package_paths_are_resolved_above_the_robot_file() {
         let found = candidates(Path::new("/a/robot/urdf"), "package://robot/meshes/foot.stl");
         assert_eq!(found[0], Path::new("/a/robot/urdf/robot/meshes/foot.stl"));
         assert!(found.contains(&PathBuf::from("/a/robot/meshes/foot.stl")));
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn damaged_meshes_are_none() {
+    fn damaged_mesh_files_are_rejected() {
         for text in [
             "",
             "v 1 2",

@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_of_a_rotation_give_it_back_even_where_two_axes_meet() {
+    fn euler_angles_reproduce_rotations_in_gimbal_lock() {
         let angles = [0.0, 1e-9, 0.3, FRAC_PI_2 - 1e-9, FRAC_PI_2, 2.5, -FRAC_PI_2, -3.0];
         for roll in angles {
             for pitch in angles {
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn quaternions_and_turns_about_an_axis_agree() {
+    fn quaternions_equal_rotations_about_an_axis() {
         let (axis, angle) = (scale_vector([1.0, 2.0, -2.0], 1.0 / 3.0), 0.7_f64);
         let [x, y, z] = scale_vector(axis, (angle / 2.0).sin());
         assert!(is_close(&axis_rotation(axis, angle), &of_quaternion([(angle / 2.0).cos(), x, y, z])));
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn principal_axes_make_the_matrix_diagonal() {
+    fn principal_axes_diagonalise_the_inertia() {
         let s = [[3.0, 0.4, -0.2], [0.4, 2.0, 0.1], [-0.2, 0.1, 5.0]];
         let (values, axes) = eigen_decomposition(&s);
         let diagonal: Matrix =

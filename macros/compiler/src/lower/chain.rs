@@ -133,7 +133,7 @@ mod tests {
     /// Sums of tens of thousands of terms with two products at the beginning or at the end, on the small
     /// stack of a test thread.
     #[test]
-    fn long_sums_need_no_stack() {
+    fn long_sums_do_not_overflow_the_stack() {
         let g = Graph::new();
         let symbols: Vec<_> = (0..40_000).map(|k| g.symbol(Symbol(k))).collect();
         let products = symbols[0] * symbols[1] + symbols[2] * symbols[3];

@@ -91,7 +91,7 @@ mod tests {
     /// Checks a program with two parameters and two variables: it neither computes nor negates values of the
     /// parameters alone.
     #[test]
-    fn hoisted_values_are_not_computed() {
+    fn programs_do_not_compute_hoisted_values() {
         let g = Graph::new();
         let [m, l, x, y] = [0, 1, 2, 3].map(|k| g.symbol(Symbol(k)));
         let is_known = |s: Symbol| s.0 < 2;

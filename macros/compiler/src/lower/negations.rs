@@ -366,7 +366,7 @@ mod tests {
     use crate::lower::lower;
 
     #[test]
-    fn negatives_are_computed_where_they_are_wanted() {
+    fn negated_outputs_cost_no_additional_instructions() {
         let g = Graph::new();
         let [a, b, c, d] = [0, 1, 2, 3].map(|k| g.symbol(Symbol(k)));
         let difference = a - b;
@@ -389,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn what_must_have_both_signs_is_negated_once() {
+    fn product_with_both_signs_costs_one_negation() {
         let g = Graph::new();
         let (a, b) = (g.symbol(Symbol(0)), g.symbol(Symbol(1)));
         let program = lower(&[a * b, -(a * b)]);

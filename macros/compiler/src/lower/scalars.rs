@@ -93,7 +93,7 @@ mod tests {
 
     /// `Σ cₖ xₖ` over five lanes, in the order of the runtime, and the last product.
     #[test]
-    fn lanes_become_instructions() {
+    fn lane_sums_become_scalar_instructions() {
         let instructions = vec![
             Op::Mul(Operand::Tuple(0), Operand::Gather(0)),
             Op::Sum(5, Operand::Value(0)),

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn scheduling_keeps_values_and_uses() {
+    fn scheduling_preserves_values_and_uses() {
         let g = Graph::new();
         let before = lower(&test_chains(&g)).run_passes(PART);
         let after = before.clone().schedule_instructions();
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn the_longest_chain_comes_first() {
+    fn longest_dependency_chain_is_scheduled_first() {
         let g = Graph::new();
         let index_of_division = |program: &crate::lower::Program| {
             program.instructions.iter().position(|op| matches!(op, Op::Div(..))).expect("there is a quotient")

@@ -117,7 +117,7 @@ mod tests {
     use super::{Part, orthogonalise_columns};
 
     #[test]
-    fn combinations_are_found() {
+    fn linear_combinations_are_detected() {
         let (a, b) = (vec![1.0, 2.0, -1.0, 0.5], vec![0.3, -1.0, 2.0, 4.0]);
         let zero = vec![0.0; 4];
         let c: Vec<f64> = a.iter().zip(&b).map(|(a, b)| 2.0 * a - 0.5 * b).collect();

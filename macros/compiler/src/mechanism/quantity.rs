@@ -187,7 +187,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn symbols_denote_their_quantities() {
+    fn symbols_convert_to_their_quantities() {
         let indexed: [fn(usize) -> Quantity; 14] = [
             Quantity::Parameter,
             Quantity::Configuration,

@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn the_second_of_one_scope_is_found() {
+    fn duplicate_names_in_one_scope_are_found() {
         let one = "#[mechanism]\nstruct Cart { mass: f64 }\n";
         let twice = format!("{one}{one}");
         assert!(!is_second(one, 1) && !is_second(&twice, 1) && is_second(&twice, 3));
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn others_are_not() {
+    fn equal_names_in_different_scopes_are_accepted() {
         let one = "#[mechanism]\nstruct Cart { mass: f64 }\n";
         for other in [
             format!("{one}mod more {{\n{one}}}"),

@@ -252,7 +252,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_stand_as_they_are_looked_up() {
+    fn word_tables_are_sorted_for_lookup() {
         let all = [
             ELEMENTS,
             OPTIONS,
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn rates_are_found_by_their_coordinates() {
+    fn velocity_names_are_found_by_coordinate() {
         assert_eq!(rate_of("hinge_dot", &["hinge"]), Some("hinge"));
         assert_eq!(rate_of("dhinge", &["hinge"]), Some("hinge"));
         assert_eq!(rate_of("theta1dot", &["theta", "theta1"]), Some("theta1"));

@@ -303,7 +303,7 @@ fn split_into_tokens(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn files_are_read_as_rust_reads_them() {
+fn use_items_of_files_are_parsed() {
     let file = File::parse(
         "use crate::a::{self, b::{C, d as e}}; pub use f::*; // use g;\nimpl<'a> X<'a> { fn y() { z::w(\"use \
          h;\", ':') } }",
@@ -316,7 +316,7 @@ fn files_are_read_as_rust_reads_them() {
 }
 
 #[test]
-fn circles_are_what_reaches_itself() {
+fn import_cycles_are_found() {
     let graph: Vec<BTreeSet<usize>> = [vec![1], vec![2], vec![0], vec![0, 4], vec![]]
         .into_iter()
         .map(|list: Vec<usize>| list.into_iter().collect())

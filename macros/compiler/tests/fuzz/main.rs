@@ -203,7 +203,7 @@ fn with_little_stack(run: impl FnOnce() + Send + 'static) {
 }
 
 #[test]
-fn mutations_neither_panic_nor_break_the_output() {
+fn mutated_source_neither_panics_nor_yields_invalid_output() {
     with_little_stack(|| {
         let words: Vec<TokenTree> =
             WORDS.split(' ').flat_map(|w| w.parse::<TokenStream>().ok()).flatten().collect();
@@ -224,7 +224,7 @@ fn mutations_neither_panic_nor_break_the_output() {
 }
 
 #[test]
-fn words_at_random_are_refused() {
+fn random_tokens_are_rejected() {
     with_little_stack(|| {
         let words: Vec<&str> = WORDS.split(' ').collect();
         let mut random = Random(2);
@@ -249,7 +249,7 @@ fn words_at_random_are_refused() {
 }
 
 #[test]
-fn arguments_of_any_kind_are_read() {
+fn arguments_of_all_kinds_are_parsed() {
     with_little_stack(|| {
         let item = with_mass("m");
         for arguments in [
@@ -289,7 +289,7 @@ fn arguments_of_any_kind_are_read() {
 }
 
 #[test]
-fn names_of_any_kind_are_kept() {
+fn unusual_field_names_are_preserved() {
     with_little_stack(|| {
         for name in [
             "r#type",

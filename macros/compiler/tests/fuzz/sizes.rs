@@ -64,7 +64,7 @@ fn with_inertia(e: &str) -> String {
 }
 
 #[test]
-fn great_numbers_of_things_end() {
+fn oversized_input_of_every_kind_terminates() {
     let cases: Vec<(&str, String)> = vec![
         ("deep parentheses", with_mass(&("(".repeat(100_000) + "m" + &")".repeat(100_000)))),
         ("deep brackets", with_mass(&("[".repeat(10_000) + "m" + &"]".repeat(10_000)))),
@@ -161,7 +161,7 @@ fn great_numbers_of_things_end() {
 }
 
 #[test]
-fn too_many_loops_are_refused_with_a_reason() {
+fn too_many_loops_are_rejected_with_a_reason() {
     for (pins, ties, reason) in [
         (20, 100, "500 scalar constraints, more than 256"),
         (85, 41, "too many constraints of this mechanism are coupled"),
@@ -203,7 +203,7 @@ fn coupled_carts_source(n: usize) -> String {
 }
 
 #[test]
-fn sharing_does_not_explode() {
+fn shared_subexpressions_do_not_explode() {
     let nest =
         |f: &dyn Fn(String) -> String, start: &str, n: usize| (0..n).fold(start.to_string(), |e, _| f(e));
     let cases: Vec<(&str, String)> = vec![
@@ -306,7 +306,7 @@ fn nested_expression(n: usize, before: &str, inside: &str, after: &str) -> Strin
 
 /// Input that nests without brackets, or needs much stack per level, is rejected or fits the stack.
 #[test]
-fn nesting_of_every_kind_fits_the_stack() {
+fn nested_input_does_not_overflow_the_stack() {
     let mut cases: Vec<(String, String)> = Vec::new();
     for n in [40, 46, 20_000] {
         let mut add = |name: &str, item: String| cases.push((format!("{n} {name}"), item));

@@ -31,7 +31,7 @@ const BODIES: &[Row] = &[
 ];
 
 #[test]
-fn bodies() {
+fn invalid_body_arguments_are_reported() {
     check_error_rows(
         |said| {
             let tool = format!("#[body({said})] tool: Body, #[joint(arm -> tool, about = z)] wrist: Pin");
@@ -210,7 +210,7 @@ const ACTIONS: &[Row] = &[
 ];
 
 #[test]
-fn actions() {
+fn invalid_force_element_arguments_are_reported() {
     check_error_rows(|said| (String::new(), format!("{ARM} {said}")), ACTIONS);
 }
 
@@ -298,6 +298,6 @@ const OTHERS: &[Row] = &[
 ];
 
 #[test]
-fn others() {
+fn invalid_arguments_of_other_elements_are_reported() {
     check_error_rows(|said| (String::new(), format!("{CART} {said}")), OTHERS);
 }

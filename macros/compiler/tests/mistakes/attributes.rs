@@ -104,6 +104,6 @@ const ROWS: &[Row] = &[
 ];
 
 #[test]
-fn attributes_belong_to_their_elements() {
+fn attributes_on_wrong_elements_are_rejected() {
     check_error_rows(|said| (String::new(), format!("{ARM} {said}")), ROWS);
 }

@@ -56,7 +56,7 @@ const ONE: &[(&str, &str)] = &[
 ];
 
 #[test]
-fn words_of_other_tools_are_understood() {
+fn synonyms_of_other_tools_get_suggestions() {
     for (said, meant) in ONE {
         let message = format!("unknown element type `{said}`");
         let help = format!("did you mean `{meant}`?");
@@ -103,6 +103,6 @@ const OTHERS: &[Row] = &[
 ];
 
 #[test]
-fn other_things_are_said_in_another_way() {
+fn foreign_concepts_get_an_explanation() {
     check_error_rows(|said| (String::new(), format!("{CART} other: {said}")), OTHERS);
 }

@@ -39,7 +39,7 @@ const ROWS: &[Row] = &[
 ];
 
 #[test]
-fn what_is_no_equilibrium_is_said() {
+fn invalid_equilibria_are_reported() {
     check_error_rows(pendulum_setting, ROWS);
 }
 
@@ -91,12 +91,12 @@ const REFUSED: &[Row] = &[
 ];
 
 #[test]
-fn what_has_no_linear_equations_is_said() {
+fn mechanisms_without_linear_equations_are_reported() {
     check_error_rows(carriage_setting, REFUSED);
 }
 
 #[test]
-fn orientations_are_unit() {
+fn equilibrium_quaternions_must_have_unit_norm() {
     let fields_with_equilibrium = |q: &str| {
         format!(
             "#[body(mass = 1, inertia = sphere(1, 1))] ball: Body, #[joint(ground -> ball)] tip: Ball,

@@ -199,7 +199,7 @@ const SCALARS: &[Row] = &[
 ];
 
 #[test]
-fn scalars() {
+fn invalid_scalar_expressions_are_reported() {
     check_error_rows(
         |said| {
             let used = "#[acts(on = hinge, stiffness = l, free_angle = theta)] coil: Spring";
@@ -231,7 +231,7 @@ const VECTORS: &[Row] = &[
 ];
 
 #[test]
-fn vectors() {
+fn invalid_vector_expressions_are_reported() {
     check_error_rows(
         |said| {
             let arm = format!("#[body(mass = 1, com = {said}, inertia = rod(1, l, y))] arm: Body");
@@ -280,7 +280,7 @@ const INERTIAS: &[Row] = &[
 ];
 
 #[test]
-fn inertias() {
+fn invalid_inertia_expressions_are_reported() {
     check_error_rows(
         |said| {
             let arm = format!("#[body(mass = m, com = l * y, inertia = {said})] arm: Body");

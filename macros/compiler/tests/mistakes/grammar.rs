@@ -51,6 +51,6 @@ const ROWS: &[Row] = &[
 ];
 
 #[test]
-fn slips() {
+fn grammar_errors_are_reported() {
     check_error_rows(|said| (String::new(), format!("{ARM} {said}")), ROWS);
 }

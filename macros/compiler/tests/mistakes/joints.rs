@@ -230,7 +230,7 @@ const ROWS: &[Row] = &[
 ];
 
 #[test]
-fn joints() {
+fn invalid_joint_arguments_are_reported() {
     check_error_rows(
         |said| {
             (

@@ -120,7 +120,7 @@ const MORE: &str = "s: Coordinate,
     #[body(mass = 1)] sledge: Body, #[joint(ground -> sledge, along = x)] way: Sleeve,";
 
 #[test]
-fn points_of_motions() {
+fn invalid_points_in_velocities_are_reported() {
     check_error_rows(|said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Vector")), VECTORS);
     check_error_rows(|said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Scalar")), SCALARS);
 }
@@ -153,7 +153,7 @@ const MATRICES: &[Row] = &[
 ];
 
 #[test]
-fn matrices() {
+fn invalid_matrix_outputs_are_reported() {
     check_error_rows(
         |said| (String::new(), format!("{ARM} {MORE} #[output({said})] seen: Matrix")),
         MATRICES,
@@ -250,13 +250,13 @@ const FIELDS: &[Row] = &[
 ];
 
 #[test]
-fn frames_elements_and_inertias() {
+fn invalid_frames_elements_and_inertias_are_reported() {
     check_error_rows(|said| (String::new(), format!("{ARM} {MORE} {said}")), FIELDS);
 }
 
 /// Units of curvature and of cable lengths are inferred from the expressions around them.
 #[test]
-fn units_are_inferred() {
+fn units_of_curvature_and_cable_length_are_inferred() {
     let assert_no_messages = |fields: &str| {
         let found = compiler_messages("", &format!("{ARM} {fields}"));
         assert_eq!(found, Vec::<String>::new(), "{fields}");

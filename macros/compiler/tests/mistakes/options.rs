@@ -51,6 +51,6 @@ const ROWS: &[Row] = &[
 ];
 
 #[test]
-fn options() {
+fn invalid_options_are_reported() {
     check_error_rows(|said| (said.to_string(), ARM.to_string()), ROWS);
 }

@@ -27,7 +27,7 @@ fn fields_with(changed: &[(usize, &str)]) -> String {
 }
 
 #[test]
-fn both_are_told() {
+fn errors_of_consecutive_stages_are_both_reported() {
     let rows: Vec<(String, usize)> = vec![
         // A syntax error in a force element; an unknown name in another element.
         (
@@ -97,7 +97,7 @@ fn both_are_told() {
 
 /// Checks that a syntax error in one field causes no errors in the valid fields.
 #[test]
-fn nothing_follows_from_a_mistake_of_grammar() {
+fn syntax_errors_cause_no_errors_in_valid_fields() {
     for (k, part) in PARTS.iter().enumerate() {
         let mut broken = vec![part.replace(": ", ": Un")];
         if let Some((attribute, field)) = part.split_once(")] ") {

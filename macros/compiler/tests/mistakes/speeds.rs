@@ -11,7 +11,7 @@ fn mechanism_setting(fields: &str) -> (String, String) {
 }
 
 #[test]
-fn speeds_that_are_none() {
+fn invalid_generalized_speeds_are_reported() {
     const ROWS: &[Row] = &[
         (
             "#[speed(rate(rail) * rate(hinge))] u: Speed,",

@@ -111,7 +111,7 @@ fn table_with_messages(text: &str) -> String {
 }
 
 #[test]
-fn messages_and_their_tokens() {
+fn table_errors_have_expected_messages_and_tokens() {
     let mut wrong = Vec::new();
     let mut count = 0;
     for file in fs::read_dir(tables_folder().join("tables")).unwrap() {

@@ -86,7 +86,7 @@ fn of_robot(name: &str, options: &str, lanes: bool) -> [[usize; 4]; 2] {
 }
 
 #[test]
-fn exactly() {
+fn operation_counts_of_small_mechanisms_are_exact() {
     assert_eq!(of_robot("ur5", "", false), [[229, 170, 93, 356], [149, 117, 70, 243]], "{MAIN:?}");
     assert_eq!(
         of_robot("solo12", ", base = free", true),
@@ -106,7 +106,7 @@ fn exactly() {
 }
 
 #[test]
-fn robots() {
+fn operation_counts_of_robots_are_exact() {
     let free = ", base = free";
     let locked = ", lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]";
     for (name, options, lanes, total, fused) in [
@@ -129,7 +129,7 @@ fn robots() {
 /// Instructions of contact functions for four legs. Contact velocities of the legs are evaluated in lanes. A
 /// step with fixed contact modes calls these functions.
 #[test]
-fn contacts_of_legs() {
+fn operation_counts_of_legged_contacts_are_exact() {
     let item = "pub struct Robot {
         #[contact(FL_FOOT, ground.plane(z), friction = 0.7)] front_left: Contact,
         #[contact(FR_FOOT, ground.plane(z), friction = 0.7)] front_right: Contact,
@@ -153,7 +153,7 @@ fn contacts_of_legs() {
 /// Chains of pins about alternating axes, with numbers and with parameters. Inverse and forward dynamics grow
 /// linearly with the number of joints, the mass matrix grows quadratically.
 #[test]
-fn chains() {
+fn operation_counts_of_chains_grow_linearly() {
     let mut before: Option<[usize; 4]> = None;
     for (n, numbers, parameters) in [
         (1, [1, 0, 0, 1], [9, 0, 8, 10]),
@@ -187,7 +187,7 @@ fn chains() {
 /// dynamics, quadratically for the mass matrix and derivatives. The number of expressions for all functions
 /// grows at most quadratically.
 #[test]
-fn curves_of_growth() {
+fn operation_counts_grow_with_the_expected_power() {
     let lines = ["inverse_dynamics", "bias_forces", "forward_dynamics"];
     let parabolas = ["mass_matrix", "inverse_dynamics_derivatives", "coriolis_matrix"];
     let all = [&lines[..], &parabolas].concat();
@@ -235,7 +235,7 @@ fn placed_chain(n: usize) -> String {
 /// Common terms of the particles are summed once. The mass matrix takes `3/2 n²` operations, the
 /// factorisation takes the `n³/3` of a full matrix, and all other functions grow linearly.
 #[test]
-fn chains_placed_by_expressions() {
+fn operation_counts_of_chains_in_absolute_coordinates() {
     let lines = [
         ("bias_forces", 16, -10),
         ("inverse_dynamics", 22, -24),
@@ -259,7 +259,7 @@ fn chains_placed_by_expressions() {
 /// Checks that a mechanism just below the size limit for comparing candidates takes fewer expressions to
 /// compile than one of twice the size.
 #[test]
-fn comparing_stays_cheaper_than_growing() {
+fn comparing_candidates_costs_less_than_doubling_the_size() {
     let chain_declaration = |n: usize| {
         let mut item = String::from("pub struct Chain {");
         for k in 0..n {
@@ -298,7 +298,7 @@ fn prepared_operation_counts(arguments: &str) -> [usize; 4] {
 /// coefficients of the file, unless its bodies are symmetric. Zeros in a file save operations only as
 /// numbers: the UR5, whose bodies are symmetric, takes twice as many.
 #[test]
-fn figures_as_parameters_cost_nothing_once_they_are_prepared() {
+fn prepared_mass_parameters_add_few_operations() {
     let locked = ", lock = [\"panda_finger_joint1\", \"panda_finger_joint2\"]";
     for (name, options, parameters) in [
         ("panda", locked, "inertial"),

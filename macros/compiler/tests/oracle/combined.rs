@@ -47,7 +47,7 @@ pub struct Row {
 }
 
 #[test]
-fn combinations_obey_dalemberts_principle() {
+fn random_force_laws_obey_dalemberts_principle() {
     const SKIPPED: &str = ", skip_passes = [frames, regroup, parallel, limbs]";
     for row in ROWS {
         let constrained = row.item.contains("#[constraint") || row.item.contains("closing");

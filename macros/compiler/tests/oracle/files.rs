@@ -105,7 +105,7 @@ fn reference_values(robot: &Robot, [q, v, a]: &[Vec<f64>; 3]) -> Truth {
 
 /// Files of two to seven links, some of which are locked, follow others or are in random order.
 #[test]
-fn random_files_move_as_the_format_says() {
+fn random_urdf_files_have_the_dynamics_of_the_format() {
     let mut kinds = [0; 7];
     for seed in test_seeds(20) {
         let mut random = Random::new(4_000_000 + seed);
@@ -118,7 +118,7 @@ fn random_files_move_as_the_format_says() {
 
 /// Files of all versions of SDF, which use different frames for links and axes, describe the same motion.
 #[test]
-fn random_sdf_files_move_as_their_version_says() {
+fn random_sdf_files_of_all_versions_have_equal_dynamics() {
     for seed in test_seeds(40) {
         let mut random = Random::new(4_500_000 + seed);
         let robot = Robot::random_robot(&sdf::OF_SDF, &mut random);

@@ -122,7 +122,7 @@ impl Motor {
 /// Checks that motors on sites do the work of their forces. Random files have two to seven links and one to
 /// four motors, on moving and fixed links.
 #[test]
-fn random_motors_on_sites_do_the_work_of_their_forces() {
+fn random_site_motors_do_the_work_of_their_forces() {
     for seed in test_seeds(60) {
         let mut random = Random::new(6_000_000 + seed);
         let robot = Robot::random_mjcf(&mut random);
@@ -185,7 +185,7 @@ fn random_motors_on_sites_do_the_work_of_their_forces() {
 
 /// Nozzle at the end of an arm: results calculated by hand and with MuJoCo 4.0.0.
 #[test]
-fn motors_on_sites_of_an_arm() {
+fn site_motors_of_an_arm_agree_with_mujoco() {
     let arm_model_text = |actuator: &str| {
         format!(
             "<mujoco><worldbody><site name='base'/><body name='arm'><inertial pos='0.2 0 0' mass='1' diaginertia='0.01 0.01 0.01'/>\

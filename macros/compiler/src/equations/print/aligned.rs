@@ -169,7 +169,7 @@ mod tests {
     use super::{break_equation, estimate_width, format_aligned, split_at_outer_signs};
 
     #[test]
-    fn widths_are_those_of_what_is_seen() {
+    fn latex_widths_count_visible_characters() {
         assert_eq!(estimate_width("a"), 10);
         assert_eq!(estimate_width("\\theta"), 10);
         assert_eq!(estimate_width("\\frac{a\\,b}{c}"), 22);
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn long_lines_are_broken_before_outer_signs() {
+    fn long_lines_break_before_outermost_signs() {
         let term = "a_{1}\\,b\\,\\cos\\theta\\,\\left(c + d\\right)";
         let long = [term; 12].join(" + ") + " = \\tau";
         let lines = break_equation(&long);
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_begin_with_terms() {
+    fn leading_minus_is_set_in_braces_in_latex() {
         let text = format_aligned(&["-a = 0".to_string(), "b = 1".to_string()]);
         assert_eq!(text, "\\begin{aligned}\n& {-}a = 0 \\\\\n& b = 1\n\\end{aligned}\n");
     }

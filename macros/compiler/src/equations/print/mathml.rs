@@ -244,7 +244,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn long_sums_are_broken_between_terms() {
+    fn long_sums_in_mathml_break_between_terms() {
         let term = "<mi>alpha</mi><mi>beta</mi>";
         let style = MathMl { name: &|_| (Name::parse("x"), 0) };
         let sum = [term; 8].join(style.sign(false, false));

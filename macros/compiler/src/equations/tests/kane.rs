@@ -181,7 +181,7 @@ pub(super) fn check_printed(model: &Model<'_>) -> String {
 }
 
 #[test]
-fn printed_equations_are_those_of_the_motion() {
+fn printed_kane_equations_equal_the_dynamics() {
     for (gravity, item) in [
         ("-9.81 * y", SLEIGH),
         ("-9.81 * z", SLEIGH_IN_SPEEDS),
@@ -200,7 +200,7 @@ fn printed_equations_are_those_of_the_motion() {
 /// The equations of the sleigh in the form of textbooks: m v' = m a ω² + push, (J + m a²) ω' = −m a v ω +
 /// steer.
 #[test]
-fn the_sleigh_in_its_own_speeds() {
+fn sleigh_prints_textbook_equations_in_its_own_speeds() {
     let text = with_model("-9.81 * z", SLEIGH_IN_SPEEDS, |model| check_printed(&model));
     let expected = "\
 pose.x' = cos(pose.angle) along
@@ -216,7 +216,7 @@ along and pose.angle' are the independent velocities; from them the others follo
 
 /// Upright rolling: 3/2 m r² roll'' = drive, 1/4 m r² heading'' = steer.
 #[test]
-fn an_upright_wheel() {
+fn upright_wheel_prints_textbook_equations() {
     let text = with_model("-9.81 * z", WHEEL, |model| check_printed(&model));
     assert!(text.contains("\n3/2 m r² roll'' = drive\n"), "{text}");
     assert!(text.contains("\n1/4 m r² heading'' = steer\n"), "{text}");

@@ -115,7 +115,7 @@ fn check_page(model: &Model<'_>) {
 }
 
 #[test]
-fn pages_say_what_the_text_says() {
+fn mathml_pages_state_the_same_equations_as_text() {
     for item in [CART_POLE, NUMBERS] {
         with_model("-9.81 * z", item, |model| check_page(&model));
     }
@@ -127,7 +127,7 @@ fn pages_say_what_the_text_says() {
 
 /// The pages of all other forms are well-formed as well.
 #[test]
-fn all_forms_have_pages() {
+fn mathml_pages_of_all_forms_are_well_formed() {
     for (words, item) in [("hamilton", CART_POLE), ("hamilton", ARM), ("routh", GYROSCOPE), ("kane", SPHERE)]
     {
         let g = if item.contains(" g: f64") { "g" } else { "9.81" };

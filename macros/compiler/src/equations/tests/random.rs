@@ -60,7 +60,7 @@ fn random_chain(r: &mut Random, driven: bool, constrained: bool, free: bool) -> 
 }
 
 #[test]
-fn all_forms_agree() {
+fn all_printed_forms_agree_for_random_mechanisms() {
     let mut random = Random(4321);
     (0..20).for_each(|_| _ = random.number_below(2));
     // Number of comparisons: Lagrange's and recursive equations, Hamilton's, Kane's, Routh's.

@@ -90,7 +90,7 @@ pub(super) fn check_whole(model: &Model<'_>) -> Vec<String> {
 }
 
 #[test]
-fn reduced_motion_is_that_of_the_whole() {
+fn routh_reduced_motion_equals_the_full_motion() {
     for (gravity, item, names) in ROWS {
         assert_eq!(with_model(gravity, item, |model| check_whole(&model)), names);
     }
@@ -98,7 +98,7 @@ fn reduced_motion_is_that_of_the_whole() {
 
 /// Chains of random links on a column that rotates freely about the direction of gravity.
 #[test]
-fn reduced_motion_of_random_chains_is_that_of_the_whole() {
+fn routh_reduction_of_random_chains_equals_the_full_motion() {
     let mut random = Random(77);
     (0..20).for_each(|_| _ = random.number_below(2));
     for length in [2, 3, 4, 2, 3, 4] {
@@ -202,7 +202,7 @@ fn lagranges_equations_hold_for_the_routhian() {
 
 /// The printed polynomials have the values of the generated functions.
 #[test]
-fn printed_reduction_is_that_of_the_functions() {
+fn printed_routhian_equals_generated_functions() {
     let mut texts = Vec::new();
     for (gravity, item, _) in ROWS {
         with_model(gravity, item, |model| {

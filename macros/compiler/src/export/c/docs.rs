@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_comment_ends_where_it_should() {
+    fn comment_terminators_are_escaped_in_c_comments() {
         assert_eq!(comment_safe_text("a */ b /* c ??/ d\n"), "a * / b / * c ? ?/ d ");
         assert_eq!(without_links("of [`x`](Self::x) and [`y`](Self::y)."), "of `x` and `y`.");
         for (text, plain) in [

@@ -330,7 +330,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_c_does_not_have_gets_other_names() {
+    fn reserved_c_names_are_replaced() {
         assert_eq!(
             ["mass", "r#type", "int", "class", "2nd", "_x", "µ", "NAN", "M_PI", "L", "left-arm"]
                 .map(identifier_from_name),

@@ -88,7 +88,7 @@ mod tests {
     use super::in_single_precision;
 
     #[test]
-    fn words_and_numbers_become_single() {
+    fn c_types_and_literals_become_single_precision() {
         let code = "/* 1.5 double */ double x[3] = {1.5, -2e-7, 1e300}; y = sqrt(x[0]) + my_sin(x) + \
                     self->sin + 0.1;";
         assert_eq!(

@@ -72,7 +72,7 @@ mod tests {
     use super::{exponents_of_unit, unit_of_rate};
 
     #[test]
-    fn products_and_quotients_have_exponents_of_base_units() {
+    fn unit_products_and_quotients_become_base_unit_exponents() {
         for (unit, expected) in [
             ("1", [0, 0, 0, 0]),
             ("kg·m²/s", [1, 2, -1, 0]),

@@ -247,7 +247,7 @@ mod tests {
     use super::{Array, Batch, Converter};
 
     #[test]
-    fn statements_are_converted() {
+    fn c_statements_are_converted_to_wgsl() {
         let batch = Batch::vector_signature("f", &[("q", 2), ("v", 2)], &[("by_q", 4), ("by_v", 4)]);
         assert_eq!(batch.arguments[0], Array::new("q", 2));
         let converter = Converter { batch: &batch, parameters: &["mass".to_string()] };

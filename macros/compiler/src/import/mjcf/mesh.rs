@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn a_box_of_triangles_is_a_box() {
+    fn triangulated_box_has_the_inertia_of_a_box() {
         let triangles = mesh::obj(BOX.as_bytes()).expect("a mesh");
         assert_eq!(triangles.len(), 12);
         check(&solid(&triangles, true).expect("a solid"), 0.0);

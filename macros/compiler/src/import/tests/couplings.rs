@@ -5,7 +5,7 @@ use super::*;
 use crate::syntax::Key;
 
 #[test]
-fn servos_are_inputs_with_springs() {
+fn position_servos_become_inputs_with_springs() {
     check_model(
         "<worldbody><body name='b'><joint name='j'/></body></worldbody><actuator>
          <motor name='m' joint='j' gear='5'/> <position joint='j' kp='4' gear='2'/>
@@ -23,7 +23,7 @@ fn servos_are_inputs_with_springs() {
 }
 
 #[test]
-fn a_joint_follows_or_is_held() {
+fn coupled_joints_follow_or_are_locked() {
     let model_with_equality = |equality: &str| {
         format!(
             "<worldbody><body name='b'><joint name='j' type='slide' ref='1'/><body name='c'><joint name='k' type='slide' ref='2'/>\
@@ -59,7 +59,7 @@ fn a_joint_follows_or_is_held() {
 }
 
 #[test]
-fn sums_and_polynomials_are_conditions() {
+fn linear_and_polynomial_couplings_become_constraints() {
     let model_with_equality = |equality: &str| {
         format!(
             "<worldbody><body name='b'><joint name='j' type='slide' ref='1'/><body name='c'><joint name='k' type='slide' ref='2'/>\
@@ -121,7 +121,7 @@ fn sums_and_polynomials_are_conditions() {
 /// defaults of the same shortcut, or of `<general>` with a constant gain, in the nearest class that has them.
 /// No shortcut takes the constant force of a bias.
 #[test]
-fn defaults_of_actuators_are_one_record() {
+fn actuator_defaults_of_a_class_form_one_record() {
     for (defaults, actuator, expected) in [
         (
             "<general gainprm='400' biasprm='1 -300 -20'/>",
@@ -184,7 +184,7 @@ fn defaults_of_actuators_are_one_record() {
 }
 
 #[test]
-fn what_newer_versions_have_is_refused() {
+fn attributes_of_newer_mujoco_versions_are_rejected() {
     let model_with_joint_and_motor = |joint: &str, motor: &str| {
         format!(
             "<worldbody><body name='b'><joint name='j' {joint}/></body></worldbody>\
@@ -220,7 +220,7 @@ fn what_newer_versions_have_is_refused() {
 }
 
 #[test]
-fn loops_are_closed() {
+fn connect_and_weld_constraints_close_loops() {
     let model_with_equality = |equality: &str| {
         format!(
             "<worldbody><body name='b' pos='1 0 0' euler='90 0 0'/><body name='c' mocap='true'/><body name='d' pos='0 0 2'>\
@@ -268,7 +268,7 @@ fn loops_are_closed() {
 /// The rotor inertia and viscous damping of an actuator are multiplied by the square of the gear ratio. They
 /// act even if actuators are not imported.
 #[test]
-fn rotors_of_actuators() {
+fn rotor_inertia_is_scaled_by_the_squared_gear_ratio() {
     let model = "<worldbody><body name='b'><joint name='j'/></body></worldbody>
          <actuator><motor name='m' joint='j' gear='3' armature='0.5' damping='0.2'/></actuator>";
     check_model(
@@ -295,7 +295,7 @@ fn rotors_of_actuators() {
 /// Checks that the maximum effort of a joint is the sum over its actuators, or unlimited if one of them has
 /// no limit, and at most the joint's own limit.
 #[test]
-fn efforts_of_several_actuators() {
+fn joint_effort_is_the_sum_over_actuators() {
     let site = "<motor site='s' gear='0 0 1' ctrlrange='-1 1'/>";
     for (joint, actuators, expected) in [
         (
@@ -335,7 +335,7 @@ fn efforts_of_several_actuators() {
 }
 
 #[test]
-fn actuators_that_do_not_act() {
+fn disabled_actuators_create_no_inputs() {
     let model_with_option = |option: &str| {
         format!(
             "<option {option}/><worldbody><body name='b'><joint name='j'/></body></worldbody>
@@ -361,7 +361,7 @@ fn actuators_that_do_not_act() {
 /// Checks that the free lengths of fixed tendons are those of MuJoCo 4.0.0 (`tendon_lengthspring`). The
 /// spring of the joint is relaxed at 17°.
 #[test]
-fn springs_of_tendons_are_free_where_they_say() {
+fn tendon_springs_have_the_rest_lengths_of_mujoco() {
     let rest = 2.0 * 17.0_f64.to_radians();
     for (length, expected) in [
         ("-0.3", "spring 10 from -0.3".to_string()),
@@ -387,7 +387,7 @@ fn springs_of_tendons_are_free_where_they_say() {
 
 /// `relpose` is the pose of the second body's anchor relative to the first body.
 #[test]
-fn a_weld_with_anchor_and_pose() {
+fn weld_with_anchor_has_the_relative_pose_of_the_file() {
     let model_with_weld = |said: &str| {
         format!(
             "<worldbody><body name='a'><joint name='j' type='slide'/></body><body name='b' pos='1 0 0'><joint name='k' type='slide'/>\
@@ -413,7 +413,7 @@ fn a_weld_with_anchor_and_pose() {
 /// Checks that a coupling that contradicts earlier ones is reported, and that a coupling of fixed joints that
 /// is satisfied is dropped.
 #[test]
-fn couplings_of_joints_that_stand_still() {
+fn contradictory_couplings_of_fixed_joints_are_reported() {
     let model_with_last_coupling = |last: &str| {
         format!(
             "<worldbody><body name='b'><joint name='j' type='slide'/><body name='c'><joint name='k' type='slide'/></body></body></worldbody>

@@ -40,7 +40,7 @@ fn spheres(count: usize) -> String {
 }
 
 #[test]
-fn meshes_share_the_points_of_contact() {
+fn meshes_share_a_budget_of_hull_vertices() {
     for (count, vertices) in [(1, 32), (5, 25), (10, 0)] {
         let found =
             read(&format!("hulls{count}"), "mjcf = \"r.xml\", contacts = file", "struct S;", &spheres(count));
@@ -58,7 +58,7 @@ fn meshes_share_the_points_of_contact() {
 }
 
 #[test]
-fn hulls_of_mesh_files_have_their_corners() {
+fn mesh_files_yield_hulls_with_their_corners() {
     let model = "<mujoco><asset><mesh name='m' file='stone.obj' scale='1 1 -2' refpos='1 0 0'/></asset>\
                  <worldbody><body name='b'><freejoint/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>\
                  <geom type='mesh' mesh='m'/></body></worldbody></mujoco>";

@@ -24,7 +24,7 @@ fn check_body(inside: &str, expected: &str) {
 const BALL: &str = "<geom size='.1' mass='1'/>";
 
 #[test]
-fn joints_of_a_body_stand_one_after_the_other() {
+fn joints_of_one_mjcf_body_are_chained() {
     check_body(
         "<joint name='j' pos='1 0 0'/><joint name='k' type='slide' axis='2 0 0' ref='3'/><geom size='1' mass='5'/>",
         "the root is the ground
@@ -37,7 +37,7 @@ fn joints_of_a_body_stand_one_after_the_other() {
 }
 
 #[test]
-fn what_has_no_name_gets_one() {
+fn unnamed_mjcf_elements_get_generated_names() {
     check_body(
         "<body><joint type='slide'/></body><body name='body2'/>",
         "the root is the ground
@@ -51,7 +51,7 @@ fn what_has_no_name_gets_one() {
 }
 
 #[test]
-fn classes_are_handed_down() {
+fn mjcf_default_classes_are_inherited() {
     let classes = "<default><joint damping='1'/><default class='a'><joint armature='2'/><default class='c'><joint type='slide'/></default></default></default>";
     let model_with_body = |inside: &str| {
         format!("{classes}<worldbody><body name='b' childclass='a'>{inside}{BALL}</body></worldbody>")
@@ -79,7 +79,7 @@ fn classes_are_handed_down() {
 
 /// Unsupported attributes that affect the motion are reported.
 #[test]
-fn what_is_not_supported_is_said() {
+fn unsupported_mjcf_attributes_are_reported() {
     for (inside, at, message, help) in [
         (
             "<joint type='ball' stiffness='1'/>",
@@ -150,7 +150,7 @@ fn what_is_not_supported_is_said() {
 }
 
 #[test]
-fn sections() {
+fn unknown_sections_and_unsupported_options_are_reported() {
     for (inside, expected) in [
         (
             "<worldbdy/>",
@@ -191,7 +191,7 @@ fn sections() {
 }
 
 #[test]
-fn another_format_is_named() {
+fn non_mjcf_file_names_its_format_in_the_error() {
     for (root, help) in [
         ("robot", "this is a URDF file: write `urdf = \"…\"` instead of `mjcf = \"…\"`"),
         ("sdf", "this is an SDF file: write `sdf = \"…\"` instead of `mjcf = \"…\"`"),
@@ -204,7 +204,7 @@ fn another_format_is_named() {
 }
 
 #[test]
-fn a_free_base_needs_a_body_that_nothing_holds() {
+fn free_base_requires_a_body_without_joints() {
     let free = FileOptions { base: Base::Free, ..mjcf_options() };
     check_with(
         &free,
@@ -220,7 +220,7 @@ fn a_free_base_needs_a_body_that_nothing_holds() {
 }
 
 #[test]
-fn included_files_stand_in_the_place_of_their_elements() {
+fn mjcf_includes_replace_the_include_element() {
     let files = [
         ("parts/arm.xml", "<mujoco>\n<!-- é --><worldbody><include file='hand.xml'/></worldbody></mujoco>"),
         ("hand.xml", "<x><body name='hand'><joint name='j'/></body>\n</x>"),
@@ -262,7 +262,7 @@ fn included_files_stand_in_the_place_of_their_elements() {
 }
 
 #[test]
-fn meshes_that_cannot_be_read() {
+fn unreadable_mesh_files_are_reported() {
     let files = [("a.obj", "v 0 0 0\nf 1 1 1\n"), ("b.stl", "solid ascii"), ("c.dae", "<COLLADA/>")];
     let folder = Folder::new("meshes", &files);
     for (asset, expected) in [
@@ -287,7 +287,7 @@ fn meshes_that_cannot_be_read() {
 }
 
 #[test]
-fn hostile_files_get_an_answer() {
+fn adversarial_mjcf_files_terminate() {
     let deep =
         format!("<mujoco><worldbody>{}{}</worldbody></mujoco>", "<body>".repeat(300), "</body>".repeat(300));
     assert!(import_as_text(&mjcf_options(), &deep).contains("more than 256 nested elements"));
@@ -323,7 +323,7 @@ const FILE: &str = r#"<mujoco model="m"><!-- c --><compiler angle="radian" setto
   <actuator><motor joint="j" gear="3"/><position tendon="t" kp="2"/><motor site="s" refsite="r" gear="1 2"/></actuator></mujoco>"#;
 
 #[test]
-fn planes_are_touched() {
+fn mjcf_planes_become_contacts() {
     let options = FileOptions { contacts: true, collisions: true, ..mjcf_options() };
     let contacts_with_world = |world: &str| {
         let text = format!(
@@ -380,12 +380,12 @@ fn planes_are_touched() {
 }
 
 #[test]
-fn damage_never_panics() {
+fn damaged_mjcf_never_panics() {
     super::fuzz::damage_gets_an_answer(&mjcf_options(), FILE, "ground");
 }
 
 #[test]
-fn every_beginning_of_a_file_gets_an_answer() {
+fn truncated_mjcf_never_panics() {
     for end in 0..FILE.len() {
         assert!(!import_as_text(&mjcf_options(), &FILE[..end]).contains("the root is"));
     }
@@ -395,7 +395,7 @@ fn every_beginning_of_a_file_gets_an_answer() {
 /// Checks that flags of `<option>` disable the effects that they name. The flag `constraint` disables
 /// couplings, limits and dry friction.
 #[test]
-fn flags() {
+fn mjcf_option_flags_disable_their_effects() {
     let model_with_flags = |flags: &str| {
         format!(
             "<option><flag {flags}/></option><worldbody><body name='b'><joint name='j' range='-1 1' stiffness='5' damping='0.3' frictionloss='2'/>\
@@ -441,7 +441,7 @@ fn flags() {
 /// Joints and mass properties in a `<frame>`: positions and axes as in MuJoCo 4.0.0 (`jnt_pos`, `jnt_axis`,
 /// `body_ipos`).
 #[test]
-fn what_stands_in_a_frame_is_placed_by_it() {
+fn mjcf_frames_place_their_contents() {
     check_body(
         "<frame pos='1 2 3' euler='0 0 90'><joint name='j' pos='1 0 0' axis='1 0 0'/><inertial pos='1 0 0' mass='1' diaginertia='1 2 2.5'/></frame>",
         "the root is the ground
@@ -453,7 +453,7 @@ fn what_stands_in_a_frame_is_placed_by_it() {
 /// Axes of a site between two points: z points from the second to the first point, as in MuJoCo 4.0.0
 /// (`site_xmat`).
 #[test]
-fn sites_between_two_points_have_their_axes() {
+fn sites_between_two_points_have_the_axes_of_mujoco() {
     check_body(
         "<joint name='j'/><site name='s' type='capsule' size='.1' fromto='0 0 0 2 0 0'/>",
         "the root is the ground
@@ -481,7 +481,7 @@ fn sites_between_two_points_have_their_axes() {
 
 /// Missing entries of an attribute are taken from the defaults: sizes as in MuJoCo 4.0.0 (`geom_size`).
 #[test]
-fn lists_are_completed_by_defaults() {
+fn short_attribute_lists_are_completed_by_defaults() {
     check_model(
         "<default><geom type='box' size='1 2 3'/></default><worldbody><body name='b'><geom size='.5' mass='3'/></body></worldbody>",
         "the root is the ground
@@ -493,7 +493,7 @@ fn lists_are_completed_by_defaults() {
 
 /// Checks that files that MuJoCo rejects are rejected, with one error for each fault.
 #[test]
-fn what_mujoco_refuses() {
+fn files_that_mujoco_rejects_are_rejected() {
     let body =
         |joint: &str| format!("<worldbody><body name='b'><joint name='j' {joint}/></body></worldbody>");
     let model_with_motor = |said: &str| format!("{}<actuator><motor {said}/></actuator>", body(""));
@@ -560,7 +560,7 @@ fn what_mujoco_refuses() {
 
 /// Joints and mass of the world move nothing.
 #[test]
-fn the_world_does_not_move() {
+fn joints_and_mass_of_the_world_have_no_effect() {
     let help = "= help: move it into a `<body>`";
     for (inside, found) in [
         ("<joint/>", "r.xml:2:12: `<joint>` of the world, which does not move"),
@@ -573,7 +573,7 @@ fn the_world_does_not_move() {
 
 /// Sites without a neighbour and pulleys that no site follows are errors, as in MuJoCo 4.0.0.
 #[test]
-fn parts_of_a_path_without_length_are_errors() {
+fn tendon_paths_without_length_are_rejected() {
     let help = "= help: a tendon and each part behind a pulley has two sites";
     let (a, b, pulley) = ("<site site='a'/>", "<site site='b'/>", "<pulley divisor='2'/>");
     for (path, element, column) in [
@@ -595,7 +595,7 @@ fn parts_of_a_path_without_length_are_errors() {
 
 /// Requested contacts that the file does not contain.
 #[test]
-fn planes_that_nothing_touches() {
+fn requested_planes_without_contacts_are_reported() {
     let options = FileOptions { contacts: true, collisions: true, ..mjcf_options() };
     let contacts_with = |bits: &str| {
         let text = format!(

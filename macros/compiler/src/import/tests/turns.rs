@@ -6,7 +6,7 @@ use super::*;
 const SAME_TURN: f64 = 2.0354056994857928;
 
 #[test]
-fn what_is_left_within_a_turn_turns_as_far() {
+fn equivalent_angle_has_the_same_sine_and_cosine() {
     let (sin, cos) = 90.0_f64.sin_cos();
     assert!((SAME_TURN.sin() - sin).abs() < 1e-14 && (SAME_TURN.cos() - cos).abs() < 1e-14);
 }
@@ -29,7 +29,7 @@ fn check_turns(options: &FileOptions, text: &str, place: &str, help: &str) {
 }
 
 #[test]
-fn degrees_in_a_urdf_are_told_once() {
+fn degrees_in_a_urdf_are_reported_once() {
     let robot_with_origin = |origin: &str| {
         format!(
             "<robot name='r'><link name='a'/><link name='b'><inertial><origin rpy='0 … 0'/><mass value='1'/>\
@@ -44,7 +44,7 @@ fn degrees_in_a_urdf_are_told_once() {
 }
 
 #[test]
-fn degrees_in_an_sdf_say_so() {
+fn degrees_in_an_sdf_are_reported() {
     let options = FileOptions { format: FileFormat::Sdf, path: test_name("r.sdf"), ..default_options() };
     let model_with_pose =
         |pose: &str| format!("<sdf><model name='m'><link name='a'>{pose}</link></model></sdf>");
@@ -56,7 +56,7 @@ fn degrees_in_an_sdf_say_so() {
 }
 
 #[test]
-fn degrees_in_an_mjcf_are_what_the_file_says() {
+fn degrees_in_an_mjcf_follow_its_compiler_option() {
     let options = FileOptions { format: FileFormat::Mjcf, path: test_name("r.xml"), ..default_options() };
     let model_with_angle_unit = |unit: &str, turn: &str| {
         format!(
