@@ -81,11 +81,11 @@ fn find_misaligned_brace(text: &str) -> Option<LineColumn> {
         for token in tokens {
             let TokenTree::Group(group) = token else { continue };
             let (open, close) = (group.span_open().start(), group.span_close().start());
-            let is_first = |at: LineColumn| indentation_of_line(at.line) == Some(at.column);
+            let is_first_on_line = |at: LineColumn| indentation_of_line(at.line) == Some(at.column);
             if group.delimiter() == Delimiter::Brace
                 && close.line <= last
                 && close.line > open.line
-                && is_first(close)
+                && is_first_on_line(close)
                 && indentation_of_line(open.line) != Some(close.column)
             {
                 found = found.max(Some(open));

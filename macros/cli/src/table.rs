@@ -6,20 +6,20 @@ use std::path::Path;
 
 /// Named columns of numbers, for times that do not decrease.
 pub struct Table {
-    /// Times of the rows, s.
+    /// Times of the rows of the CSV file, s.
     pub times: Vec<f64>,
-    /// Columns other than the time, with their names.
+    /// Columns of the CSV file other than the time, with their names.
     pub columns: Vec<(String, Vec<f64>)>,
 }
 
 impl Table {
-    /// Reads a file; one of its columns is `t`.
+    /// Reads a CSV file, one column of which must be `t`.
     pub fn read_table(path: &Path) -> Result<Table, Stop> {
         let text = text_of(path).map_err(Stop::Failure)?;
-        Table::parse(&text).map_err(|why| Stop::Failure(format!("{}: {why}", path.display())))
+        Table::parse_csv(&text).map_err(|why| Stop::Failure(format!("{}: {why}", path.display())))
     }
 
-    fn parse(text: &str) -> Result<Table, String> {
+    fn parse_csv(text: &str) -> Result<Table, String> {
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
         let head = lines.next().map(|(_, line)| split_csv_fields(line)).unwrap_or_default();
         let time = head.iter().position(|name| name == "t").ok_or_else(|| {
@@ -56,7 +56,7 @@ impl Table {
         }
     }
 
-    /// Returns a column by name.
+    /// Returns the column with a name.
     pub fn column_by_name(&self, name: &str) -> Option<&[f64]> {
         self.columns.iter().find(|(known, _)| known == name).map(|(_, values)| values.as_slice())
     }
@@ -124,7 +124,7 @@ mod tests {
             ("t\n1\n0\n", "decrease"),
             ("t,a,a\n0,1,2\n", "two columns `a`"),
         ] {
-            assert!(Table::parse(text).is_err_and(|why| why.contains(part)), "{text}");
+            assert!(Table::parse_csv(text).is_err_and(|why| why.contains(part)), "{text}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Conversion of robot files to structs with the same equations of motion.
+//! Tests of the conversion of robot files to structs with the same equations of motion.
 
 use linkwork_compiler::derive::Output;
 use linkwork_compiler::diag::Diagnostics;
@@ -58,7 +58,7 @@ fn convert_file(file: &Path, with: &str) -> (String, String) {
     (code, stderr)
 }
 
-/// Returns the arguments of the attribute, and the struct.
+/// Splits a converted struct into the arguments of its attribute and the struct.
 fn split_attribute_and_struct(code: &str) -> (String, String) {
     let (_, rest) = code.split_once("#[mechanism(").unwrap();
     let (arguments, item) = rest.split_once(")]\n").unwrap();
@@ -71,12 +71,12 @@ fn count_frames(model: &Model<'_>) -> usize {
 }
 
 fn check_conversion(format: &str, file: &Path, with: &str) {
-    check_beside(format, file, with, &[]);
+    check_conversion_with_notes(format, file, with, &[]);
 }
 
 /// Compares a struct with its file; `notes` are expected messages in addition to the list of renamed
 /// elements.
-fn check_beside(format: &str, file: &Path, with: &str, notes: &[&str]) {
+fn check_conversion_with_notes(format: &str, file: &Path, with: &str, notes: &[&str]) {
     let (code, stderr) = convert_file(file, with);
     let (arguments, item) = split_attribute_and_struct(&code);
     let is_expected = |line: &str| {
@@ -286,7 +286,7 @@ fn negative_damping_and_multi_joint_elements_are_converted() {
   </actuator></mujoco>"#,
     );
     let notes = ["acts on a constant length", "acts on a body that is fixed to the ground"];
-    check_beside("mjcf", &file, "", &notes);
+    check_conversion_with_notes("mjcf", &file, "", &notes);
     let inertia = |xx: &str, xy: &str| {
         format!(
             "<inertial><mass value='2'/><inertia ixx='{xx}' iyy='1' izz='1' ixy='{xy}' ixz='0' iyz='0'/>\
@@ -376,14 +376,15 @@ fn convert_rejects_mechanisms_that_check_rejects() {
     let inertial = "<inertial><mass value='1'/>\
         <inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>";
     let alone = "<limit lower='-1' upper='1' effort='1' velocity='1'/>";
-    let file = |name: &str, tip: &str, limits: &str| {
-        let joint = |name: &str, parent: &str, child: &str, limits: &str| {
+    let two_joint_file = |name: &str, tip: &str, limits: &str| {
+        let revolute_joint_element = |name: &str, parent: &str, child: &str, limits: &str| {
             format!(
                 "<joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{child}'/>\
                  {limits}</joint>"
             )
         };
-        let joints = joint("j", "base", "a", alone) + &joint("k", "a", "b", limits);
+        let joints =
+            revolute_joint_element("j", "base", "a", alone) + &revolute_joint_element("k", "a", "b", limits);
         let links = format!("<link name='base'/><link name='a'>{inertial}</link><link name='b'>{tip}</link>");
         write_test_file(name, &format!("<robot name='two'>{links}{joints}</robot>"))
     };
@@ -394,13 +395,13 @@ fn convert_rejects_mechanisms_that_check_rejects() {
         ("near.urdf", inertial, &near, None),
         ("massless.urdf", "", alone, Some("singular")),
     ] {
-        let file = file(name, tip, limits);
-        let run = |command: &str| {
+        let file = two_joint_file(name, tip, limits);
+        let run_command = |command: &str| {
             let mut of = Command::new(env!("CARGO_BIN_EXE_linkwork"));
             let output = of.arg(command).arg(&file).output().unwrap();
             (output.status.success(), String::from_utf8(output.stderr).unwrap())
         };
-        let (check, convert) = (run("check"), run("convert"));
+        let (check, convert) = (run_command("check"), run_command("convert"));
         assert_eq!(check.0, expected.is_none(), "{check:?}");
         assert_eq!(convert.0, check.0, "{convert:?}");
         if let Some(expected) = expected {

@@ -1,5 +1,5 @@
-//! FMUs of `linkwork export fmu`: their sources are compiled with a small importer, which simulates in both
-//! modes. The motions are compared with those of `linkwork simulate` and with closed forms.
+//! Tests of exported FMUs: a small importer simulates them in both modes, and the motions are compared with
+//! `linkwork simulate` and with closed forms.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -41,7 +41,7 @@ fn unpack_archive(archive: &[u8]) -> Vec<(String, Vec<u8>)> {
     files
 }
 
-/// An FMU whose sources are linked with the importer.
+/// Exported FMU whose C sources are linked with a small importer program.
 struct Fmu {
     /// Text of `modelDescription.xml`.
     description: String,
@@ -91,7 +91,7 @@ impl Fmu {
         text.lines().map(ToString::to_string).collect()
     }
 
-    /// Returns rows of numbers that the importer prints.
+    /// Runs the importer program and returns the rows of numbers that it prints.
     fn importer_rows(&self, kind: &str, numbers: [f64; 3]) -> Vec<Vec<f64>> {
         let parse_number = |word: &str| word.parse().unwrap_or_else(|_| panic!("expected a number: {word}"));
         let parse_numbers_of_line = |line: &String| line.split_whitespace().map(parse_number).collect();
@@ -112,7 +112,7 @@ fn simulate_states(arguments: &[&str], stop: f64, samples: usize) -> Vec<Vec<f64
     lines.map(|line| line.split(',').take(count).map(|x| x.parse().expect("a number")).collect()).collect()
 }
 
-/// Compares the rows of states of two motions.
+/// Compares the states of two motions row by row.
 fn compare_states(name: &str, found: &[Vec<f64>], expected: &[Vec<f64>], tolerance: f64) {
     assert_eq!(found.len(), expected.len(), "{name}");
     for (found, expected) in found.iter().zip(expected) {
@@ -142,7 +142,7 @@ fn check_derivatives(fmu: &Fmu, numbers: [f64; 3], count: usize) {
     }
 }
 
-/// Joins names and values to options of the command.
+/// Joins names and values to `--set` options of the command.
 fn set_options(values: &'static [&'static str]) -> Vec<&'static str> {
     values.iter().flat_map(|value| ["--set", value]).collect()
 }

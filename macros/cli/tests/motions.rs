@@ -28,7 +28,7 @@ fn run_linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     (output.status.code().unwrap(), decode_utf8(output.stdout), decode_utf8(output.stderr))
 }
 
-/// Returns the numbers of a log, line by line.
+/// Returns the numbers of a CSV log, line by line.
 fn rows_of_log(log: &str) -> Vec<Vec<f64>> {
     log.lines().skip(1).map(|line| line.split(',').map(|x| x.parse().unwrap()).collect()).collect()
 }
@@ -432,8 +432,8 @@ pub struct Closed {
 }
 ";
 
-/// Checks that a closed loop moves as in Rust, for the same four-bar linkage. The loop remains closed, and
-/// without a motor the energy is constant.
+/// Checks that a closed four-bar linkage moves as in Rust, remains closed, and conserves its energy without a
+/// motor.
 #[test]
 fn closed_loops_remain_closed_in_simulations() {
     let here = test_folder("closed");
@@ -793,8 +793,8 @@ struct Leg {
 }
 ";
 
-/// Checks that for any subset of given angles the others are found within half a revolution, and that the
-/// assembly mode is printed.
+/// Checks that for any subset of given angles the remaining angles are found within half a revolution, and
+/// that the assembly mode is printed.
 #[test]
 fn leg_assembly_stays_within_half_a_revolution() {
     let here = test_folder("leg");

@@ -21,7 +21,7 @@ fn run_linkwork(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     (output.status.code().unwrap(), decode_utf8(output.stdout), decode_utf8(output.stderr))
 }
 
-/// Checks the program of the project: one pole falls, and the other one is kept upright.
+/// Checks the program of a new project: one pole falls, and the other one is kept upright.
 #[test]
 fn new_project_balances_one_of_two_poles() {
     let page = starter::cart_pole_page().unwrap().html();

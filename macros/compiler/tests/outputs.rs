@@ -34,8 +34,8 @@ fn outputs_cannot_have_names_of_functions() {
     let emitted = expand(empty_tokens(), mechanism_tokens("place"), Path::new(""));
     let code = format!("{}{}", emitted.tokens, emitted.text);
     // Absent functions reserve no names, because they are visible only if no other function matches.
-    let is_there = |part: &&str| !part.contains("::__private::absent::");
-    let code: String = code.split("#[automatically_derived]").filter(is_there).collect();
+    let is_present_function = |part: &&str| !part.contains("::__private::absent::");
+    let code: String = code.split("#[automatically_derived]").filter(is_present_function).collect();
     let names = function_names(&code);
     assert!(names.contains("mass_matrix") && names.contains("place_jacobian"), "{names:?}");
     // Methods of the traits for frames and parameters are not functions of the mechanism.

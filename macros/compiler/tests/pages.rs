@@ -8,7 +8,7 @@ use std::path::Path;
 /// Files by their paths in the repository, each with the form in which `NAME` appears.
 type Places = &'static [(&'static str, &'static str)];
 
-/// Fails with the files in which names are missing.
+/// Checks that names are on pages, and fails with the files in which names are missing.
 fn check_names_on_pages(names: &[String], places: Places) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut missing = Vec::new();

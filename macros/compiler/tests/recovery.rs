@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use syn::{ImplItem, Item, ItemImpl, Type};
 
-/// Field with an error that affects no other field.
+/// Declaration of a field with an error that affects no other field.
 const MISTAKE: &str = "#[output(unknown)] mistake: Scalar,";
 
 const WORDS: &str = "derivatives, second_derivatives, momentum_derivatives, centroidal, hamilton, conserved, \
@@ -75,7 +75,7 @@ type Names = BTreeMap<String, Option<String>>;
 struct Generated {
     /// Names of the functions and constants that each generated struct has.
     present: Names,
-    /// Absent names, with the bound that names the reason.
+    /// Absent functions of a mechanism, with the bound that names the reason.
     absent: BTreeMap<String, String>,
     /// Traits that the generated structs implement.
     traits: BTreeSet<String>,
@@ -122,8 +122,8 @@ fn signature_text(f: &syn::ImplItemFn) -> String {
     if !UNSIZED.iter().any(|start| name.starts_with(start)) {
         return text;
     }
-    let is_size = |word: &str| word.trim_end_matches([']', ')']).parse::<usize>().is_ok();
-    let words = text.split(' ').map(|word| if is_size(word) { "_" } else { word });
+    let is_size_argument = |word: &str| word.trim_end_matches([']', ')']).parse::<usize>().is_ok();
+    let words = text.split(' ').map(|word| if is_size_argument(word) { "_" } else { word });
     words.collect::<Vec<_>>().join(" ")
 }
 

@@ -43,7 +43,7 @@ macro_rules! functions {
     };
 }
 
-/// Expands to calls of the functions of tree mechanisms.
+/// Expands to calls of the functions that tree mechanisms have.
 macro_rules! of_trees {
     ($m:ident($($t:ident)?), $q:ident, $v:ident, $a:ident, $tau:ident, $u:ident) => {{
         let (by_q, by_v) = $m.inverse_dynamics_derivatives($($t,)? &$q, &$v, &$a);
@@ -79,7 +79,7 @@ macro_rules! scalar {
     };
 }
 
-/// Test case of a mechanism at a state.
+/// Expands to a test case: a mechanism with its values at one state.
 macro_rules! case {
     ($prefix:literal, $kind:ident, $m:expr, [$($p:expr),*], time($($t:ident = $time:expr)?), $functions:ident) => {{
         let m = &$m;
@@ -118,18 +118,20 @@ macro_rules! case {
 
 /// Returns the derivative of the end state of a step with respect to the step size, by central differences of
 /// order six.
-fn by_length<const NQ: usize, const NV: usize>(
+fn derivative_by_step_size<const NQ: usize, const NV: usize>(
     end: impl Fn(f64) -> (SVector<f64, NQ>, SVector<f64, NV>),
     difference: impl Fn(&SVector<f64, NQ>, &SVector<f64, NQ>) -> SVector<f64, NV>,
 ) -> Vec<f64> {
     let d = 1e-4;
     let (start, _) = end(0.0);
-    let change_at = |x: f64| {
+    let change_after_displacement = |x: f64| {
         let (q, v) = end(x);
         [difference(&start, &q).as_slice(), v.as_slice()].concat()
     };
-    let sides: Vec<[Vec<f64>; 2]> =
-        [1.0, 2.0, 3.0].iter().map(|k| [change_at(k * d), change_at(-k * d)]).collect();
+    let sides: Vec<[Vec<f64>; 2]> = [1.0, 2.0, 3.0]
+        .iter()
+        .map(|k| [change_after_displacement(k * d), change_after_displacement(-k * d)])
+        .collect();
     let finite_difference_by_length = |i: usize| {
         let weighted_difference = |k: usize, weight: f64| weight * (sides[k][0][i] - sides[k][1][i]);
         (weighted_difference(0, 45.0) + weighted_difference(1, -9.0) + weighted_difference(2, 1.0))
@@ -156,9 +158,9 @@ macro_rules! steps {
                 entries.push(entry!($step, "q, v, u, 0.01", next_q, next_v));
                 let mut all = entry!($transition, "q, v, u, 0.01", next_q, next_v, a, b);
                 if $case.time.is_none() {
-                    let end =
+                    let state_after_step =
                         |x: f64| discrete::step(m, &$method::step(0.01 + x), t, &q, &v, &u).expect("a step");
-                    all.results.push(by_length(end, |a, b| m.difference(a, b)));
+                    all.results.push(derivative_by_step_size(state_after_step, |a, b| m.difference(a, b)));
                 }
                 entries.push(all);
             }};
@@ -352,7 +354,7 @@ fn c_code_of_driven_mechanisms_agrees_with_rust() {
     check_exported_code(&case, &["tests/mechanisms/mod.rs", "--struct", "Balloon"]);
 }
 
-/// Returns tables of [`Wing`]; `ARRAYS` has the same values in C.
+/// Returns the tables of the mechanism [`Wing`]; `ARRAYS` contains the same values in C.
 fn wing_tables(smooth: bool, extrapolated: bool) -> ([Table<1>; 1], [Table<2>; 1], [Table<3>; 1]) {
     let drag = Table::new([&[-1.0, 0.2, 0.5, 2.0]], &[0.3, -0.1, 0.4, 0.2]);
     let lift = Table::new([&[-0.2, 0.1, 0.5], &[-1.0, 1.0]], &[0.1, 0.2, 0.7, -0.3, 0.4, 0.9]);
@@ -382,7 +384,7 @@ const ARRAYS: &str = "    static const double d0[] = {-1.0, 0.2, 0.5, 2.0}, d[] 
     static const double m[] = {0.1, 0.2, 0.7, -0.3, 0.4, 0.9, 0.15, 0.25, 0.75, -0.35, 0.45, 0.95};
 ";
 
-/// Initialisers of the tables in C: linear, extrapolated, smooth, and both.
+/// C initialisers of the tables: linear, extrapolated, smooth, and both smooth and extrapolated.
 const TABLES: [&str; 4] = [
     ", {{l0, l1, 0}, {3, 2, 0}, l, 0, 0}, {{d0, 0, 0}, {4, 0, 0}, d, 0, 0}, {{m0, m1, m2}, {2, 3, 2}, m, 0, \
      0}",

@@ -21,7 +21,7 @@ Simulation.open({ ...motion.simulated, module: motion.module }).then(sim => {
 }).catch(error => { console.error(error); process.exit(1); });
 "#;
 
-/// Returns the first of these programs on the path.
+/// Returns the first of these programs that is installed.
 fn first_program_on_path(names: &[&str]) -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     std::env::split_paths(&path)

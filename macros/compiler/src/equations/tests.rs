@@ -33,7 +33,7 @@ fn with_model<R>(gravity: &str, item: &str, f: impl for<'g> FnOnce(Model<'g>) ->
     f(model.unwrap_or_else(|| panic!("{:?}", cx.messages())))
 }
 
-fn equations_of(gravity: &str, item: &str) -> String {
+fn equations_text(gravity: &str, item: &str) -> String {
     with_model(gravity, item, |model| crate::equations_as_text(&model))
 }
 
@@ -71,7 +71,7 @@ fn assert_near(a: &[f64], b: &[f64], what: &str) {
 }
 
 /// Returns the values of the symbols of a mechanism by their printed names.
-fn by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&str) -> f64 + 'a {
+fn values_by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&str) -> f64 + 'a {
     let rates = written::marks_of_coordinate_rates(model);
     let quantities_up_to = |n: usize, quantity: fn(usize) -> Quantity| (0..n).map(quantity);
     let quantities = quantities_up_to(model.parameters.len(), Quantity::Parameter)
@@ -94,7 +94,7 @@ fn by_name<'a>(model: &'a Model<'_>, at: &'a dyn Fn(Symbol) -> f64) -> impl Fn(&
     }
 }
 
-/// Returns both sides of each equation of a printed text, without the legend.
+/// Returns the left and right side of each equation of a printed text, without the legend.
 fn sides_of_equations(text: &str) -> Vec<(String, String)> {
     let (text, _) = text.trim_end().rsplit_once("\n\n").expect("a legend");
     let joined = text.replace("\n    ", " ");
@@ -102,14 +102,14 @@ fn sides_of_equations(text: &str) -> Vec<(String, String)> {
     lines.map(|(left, right)| (left.to_string(), right.to_string())).collect()
 }
 
-/// Checks that the values of the printed equations are those of the polynomials.
+/// Checks that the printed equations have the values of the polynomials.
 fn check_text(model: &Model<'_>, e: &Equations) {
     let text = format_equations(model, e).plain;
     let lines = sides_of_equations(&text);
     assert_eq!(lines.len(), 1 + e.motion.len(), "{text}");
     for seed in 1..4 {
         let symbol = random_symbol_values(model, seed);
-        let names = by_name(model, &symbol);
+        let names = values_by_name(model, &symbol);
         let read: Vec<f64> =
             lines.iter().flat_map(|(a, b)| [a, b]).skip(1).map(|side| evaluate_text(side, &names)).collect();
         let sides = e.motion.iter().zip(&e.forces).flat_map(|(a, b)| [a, b]);
@@ -167,7 +167,7 @@ fn printed_normal_forms_equal_generated_functions() {
     }
 }
 
-/// Places the tip of a link at `place`, rotated by `angle` about z.
+/// Places the tip of a link at the position `place`, rotated by `angle` about z.
 fn place_tip<'g>(model: &mut Model<'g>, link: usize, place: [Expr<'g>; 3], angle: Expr<'g>) {
     model.links[link].motion = Motion::Placed;
     model.links[link].parent = None;
@@ -216,15 +216,15 @@ m radius (radius theta'' + (g - radius speed² cos(theta)) sin(theta)) = 0
 /// Checks that the length of the equations decides whether they are printed, not the number of velocities.
 #[test]
 fn equation_length_decides_what_is_printed() {
-    let text = equations_of("-g * z", &masses_with_springs(5));
+    let text = equations_text("-g * z", &masses_with_springs(5));
     assert!(text.contains("m x2'' + k (2 x2 - x1 - x3) = 0\n"), "{text}");
-    let text = equations_of("-g * z", &masses_with_springs(20));
+    let text = equations_text("-g * z", &masses_with_springs(20));
     assert!(text.contains("m x19'' + k (x19 - x18) = 0\n"), "{text}");
-    let text = equations_of("-g * z", FREE);
+    let text = equations_text("-g * z", FREE);
     assert!(text.contains("a pose.wx' + (c - b) pose.wy pose.wz = 0\n"), "{text}");
-    let text = equations_of("-g * z", DISK);
+    let text = equations_text("-g * z", DISK);
     assert!(text.contains("1/4 m radius² (pose.wz' + pose.wx pose.wy)\n"), "{text}");
-    let text = equations_of("-g * z", SPHERE);
+    let text = equations_text("-g * z", SPHERE);
     assert!(text.contains("\n-radius + pose.z = 0\n"), "{text}");
     for item in [
         masses_with_springs(5),
@@ -240,7 +240,7 @@ fn equation_length_decides_what_is_printed() {
 /// Checks that the legend explains each multiplier by the name of its constraint.
 #[test]
 fn legend_names_the_constraint_of_each_multiplier() {
-    let text = equations_of("-g * z", SPHERE);
+    let text = equations_text("-g * z", SPHERE);
     let sentence = "lambda1, lambda2 and lambda3 are the multipliers of the constraints contact.normal,
 contact.x and contact.y, in this order.
 ";
@@ -252,7 +252,7 @@ contact.x and contact.y, in this order.
 /// rounding and is dropped.
 #[test]
 fn trivial_constraint_rows_are_dropped() {
-    let text = equations_of("-9.81 * z", CASTOR);
+    let text = equations_text("-9.81 * z", CASTOR);
     assert!(
         !text.contains("0 = 0") && text.contains("plane.x' - 0.3 cos(plane.angle) roll' = 0\n"),
         "{text}"
@@ -270,7 +270,7 @@ fn trivial_constraint_rows_are_dropped() {
 
 #[test]
 fn printed_numbers_follow_one_rule() {
-    let text = equations_of("-9.81 * z", TURNS);
+    let text = equations_text("-9.81 * z", TURNS);
     for part in ["coil (q - pi/2)", "1/(4 pi²) m lead²", "3/2 q''"] {
         assert!(text.contains(part), "{part}: {text}");
     }
@@ -278,7 +278,7 @@ fn printed_numbers_follow_one_rule() {
 
 #[test]
 fn large_mechanisms_print_no_equations() {
-    assert_eq!(equations_of("-9.81 * z", SKEW), "");
+    assert_eq!(equations_text("-9.81 * z", SKEW), "");
     let (mut bodies, mut parent) = (String::new(), "ground".to_string());
     for k in 0..5 {
         bodies += &format!(
@@ -286,7 +286,7 @@ fn large_mechanisms_print_no_equations() {
         );
         parent = format!("b{k}.at(x)");
     }
-    assert_eq!(equations_of("-9.81 * y", &format!("struct Five {{ {bodies} }}")), "");
+    assert_eq!(equations_text("-9.81 * y", &format!("struct Five {{ {bodies} }}")), "");
 }
 
 #[test]
@@ -303,7 +303,7 @@ pole_mass pole_length (1/3 pole_length hinge'' - 1/2 cos(hinge) rail'' - 4.905 s
 
 L is kinetic less potential energy; rail' and rail'' are the first and second rates of rail.
 ";
-    assert_eq!(equations_of("-9.81 * y", CART_POLE), expected);
+    assert_eq!(equations_text("-9.81 * y", CART_POLE), expected);
 }
 
 #[test]
@@ -317,7 +317,7 @@ mass (slide'' - slide turn'² + g sin(turn)) + damping slide' + stiffness (slide
 
 L is kinetic less potential energy; turn' and turn'' are the first and second rates of turn.
 ";
-    assert_eq!(equations_of("-g * y", SHAFT), expected);
+    assert_eq!(equations_text("-g * y", SHAFT), expected);
 }
 
 #[test]
@@ -332,7 +332,7 @@ fn gyroscope_equations_are_printed_as_text() {
     - mass lever g) sin(nutation) = 0
 axial (cos(nutation) precession'' + spin'' - sin(nutation) precession' nutation') = 0
 ";
-    let text = equations_of("-g * z", GYROSCOPE);
+    let text = equations_text("-g * z", GYROSCOPE);
     assert!(text.contains(expected), "{text}");
 }
 
@@ -347,7 +347,7 @@ c tip.wz' = 0
 
 L is kinetic less potential energy; tip.wx' is the rate of tip.wx.
 ";
-    let text = equations_of("-g * z", BALL);
+    let text = equations_text("-g * z", BALL);
     assert!(text.ends_with(expected), "{text}");
 }
 

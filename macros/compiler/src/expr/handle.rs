@@ -18,7 +18,7 @@ impl PartialEq for Expr<'_> {
 }
 
 impl<'g> Expr<'g> {
-    /// Returns the index of the expression's node.
+    /// Returns the index of the expression's node in its graph.
     pub fn id(self) -> Id {
         self.id
     }
@@ -33,7 +33,7 @@ impl<'g> Expr<'g> {
         self.graph.node(self.id)
     }
 
-    /// Returns the value if the expression is a constant.
+    /// Returns the value of the expression if it is a constant.
     pub fn constant_value(self) -> Option<f64> {
         self.graph.constant_value(self.id)
     }
@@ -52,27 +52,27 @@ impl<'g> Expr<'g> {
         self.id == ZERO
     }
 
-    /// Returns a constant of the same graph.
+    /// Returns a constant of the graph that owns this expression.
     pub fn num(self, value: f64) -> Expr<'g> {
         self.graph.num(value)
     }
 
-    /// Returns the constant zero of the same graph.
+    /// Returns the constant zero of the graph that owns this expression.
     pub fn zero(self) -> Expr<'g> {
         self.graph.zero()
     }
 
-    /// Returns an elementary function of this expression.
+    /// Returns an elementary function applied to this expression.
     pub fn apply_function(self, f: Function) -> Expr<'g> {
         self.graph.expr(self.graph.call_function(f, self.id))
     }
 
-    /// Returns the sine, of an angle in rad.
+    /// Returns the sine of the expression, an angle in rad.
     pub fn sin(self) -> Expr<'g> {
         self.apply_function(Function::Sin)
     }
 
-    /// Returns the cosine, of an angle in rad.
+    /// Returns the cosine of the expression, an angle in rad.
     pub fn cos(self) -> Expr<'g> {
         self.apply_function(Function::Cos)
     }

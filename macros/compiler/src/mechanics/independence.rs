@@ -16,7 +16,7 @@ pub type Combination = Vec<(usize, f64)>;
 /// Result of the test of one column for linear independence.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Part {
-    /// The column is independent of its predecessors.
+    /// Column that is linearly independent of its predecessors.
     Own,
     /// This combination of independent predecessors; empty if the column is zero.
     Combined(Combination),

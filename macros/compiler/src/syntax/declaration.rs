@@ -89,8 +89,7 @@ mod tests {
     fn field_note_is_the_first_doc_paragraph() {
         let item: ItemStruct = syn::parse_quote! {
             struct S {
-                /// The length,
-                /// of the rod.
+                /// Length of the rod in the test struct.
                 ///
                 /// More.
                 length: f64,

@@ -126,7 +126,7 @@ fn stages_use_only_stages_listed_above() {
     }
 }
 
-/// Maximum number of files in an import cycle.
+/// Maximum number of files in a permitted import cycle.
 const MOST_IN_A_CIRCLE: usize = 3;
 
 #[test]

@@ -1,8 +1,8 @@
 //! Tests of messages about angles that are probably meant in degrees.
 
-use super::{ARM, Row, check_error_rows, compiler_messages};
+use super::{ARM, ErrorRow, check_error_rows, compiler_messages};
 
-const ROWS: &[Row] = &[
+const ROWS: &[ErrorRow] = &[
     (
         "#[joint(ground.rotated(z(90)) -> tool, about = z)] wrist: Pin",
         "an angle of 90 rad is more than a full turn",

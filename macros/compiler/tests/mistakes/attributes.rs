@@ -1,8 +1,8 @@
-//! Attributes of fields in the terminology of other tools.
+//! Tests of error messages for attributes in the terminology of other tools.
 
-use super::{ARM, Row, check_error_rows};
+use super::{ARM, ErrorRow, check_error_rows};
 
-const ROWS: &[Row] = &[
+const ROWS: &[ErrorRow] = &[
     (
         "#[spring(on = hinge, stiffness = 1)] coil: Spring",
         "unknown attribute `#[spring]` on an element",

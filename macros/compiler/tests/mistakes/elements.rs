@@ -1,6 +1,6 @@
-//! Types of fields in the terminology of other tools.
+//! Tests of error messages for element types in the terminology of other tools.
 
-use super::{ARM, CART, Row, check_error_rows};
+use super::{ARM, CART, ErrorRow, check_error_rows};
 
 /// Type names of other tools, with the element of the language that corresponds to each.
 const ONE: &[(&str, &str)] = &[
@@ -70,7 +70,7 @@ fn synonyms_of_other_tools_get_suggestions() {
 }
 
 /// Types without a corresponding element, which are expressed in another way.
-const OTHERS: &[Row] = &[
+const OTHERS: &[ErrorRow] = &[
     ("Mass", "unknown element type `Mass`", "if it is extended or rotates"),
     ("Joint", "unknown element type `Joint`", "`Pin`, `Sleeve`"),
     ("Gear", "unknown element type `Gear`", "`#[constraint(second + ratio * first = 0)] gear: Holonomic`"),

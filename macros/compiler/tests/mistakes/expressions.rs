@@ -1,9 +1,9 @@
 //! Expressions: functions, names and numbers in the terminology of other tools.
 
-use super::{ARM, Row, check_error_rows};
+use super::{ARM, ErrorRow, check_error_rows};
 
 /// Values of an output of an arm on a hinge, with a parameter `theta` and a length `l`.
-const SCALARS: &[Row] = &[
+const SCALARS: &[ErrorRow] = &[
     ("arctan(hinge)", "unknown function `arctan`", "did you mean `atan`?"),
     ("arcsin(hinge)", "unknown function `arcsin`", "did you mean `asin`?"),
     ("atan(hinge, 1)", "`atan` takes 1 argument", "did you mean `atan2`?"),
@@ -210,7 +210,7 @@ fn invalid_scalar_expressions_are_reported() {
 }
 
 /// Vectors as the centre of mass of a body, with a length `l`.
-const VECTORS: &[Row] = &[
+const VECTORS: &[ErrorRow] = &[
     ("(0, 0, l)", "expected a scalar or a vector, found a list", "write `[0, 0, l]`"),
     ("vec(0, 0, l)", "unknown function `vec`", "`[a, b, c]`"),
     ("Vector3::new(0, 0, l)", "expected `,` or an operator", "`[a, b, c]`"),
@@ -242,7 +242,7 @@ fn invalid_vector_expressions_are_reported() {
 }
 
 /// Inertias of a body with mass `m` and length `l`.
-const INERTIAS: &[Row] = &[
+const INERTIAS: &[ErrorRow] = &[
     ("[1, 1, 1]", "expected a 3×3 matrix, found three numbers", "write `diagonal(1, 1, 1)`"),
     ("[m, l, m]", "expected a 3×3 matrix, found three numbers", "write `diagonal(m, l, m)`"),
     ("(1, 1, 1)", "expected an inertia, found a list", "write `diagonal(1, 1, 1)`"),

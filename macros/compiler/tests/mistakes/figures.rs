@@ -1,8 +1,8 @@
-//! Coefficients that are outside the range of computations.
+//! Tests of error messages for coefficients outside the range of computations.
 
-use super::{Row, check_error_rows, compiler_messages};
+use super::{ErrorRow, check_error_rows, compiler_messages};
 
-const ROWS: &[Row] = &[
+const ROWS: &[ErrorRow] = &[
     (
         "mass = 1e308, inertia = sphere(1, 1)",
         "this number is too large for `f64`: 1e308",
@@ -38,10 +38,10 @@ fn coefficients_near_overflow_are_rejected() {
     );
 }
 
-/// Functions that do not contain these coefficients are finite.
+/// Functions that do not contain the overflowing coefficients remain finite.
 #[test]
 fn overflowing_products_are_rejected_only_where_used() {
-    const ROWS: &[Row] = &[(
+    const ROWS: &[ErrorRow] = &[(
         "1e200 * hinge * 1e200",
         "the values of this mechanism are too large",
         "a product of masses, lengths or forces in its equations is not a finite number",
@@ -55,7 +55,7 @@ fn overflowing_products_are_rejected_only_where_used() {
     );
 }
 
-const SINGLE: &[Row] = &[
+const SINGLE: &[ErrorRow] = &[
     (
         "mass = 1e25, inertia = sphere(1, 1)",
         "this number is too large for `f32`: 1e25",

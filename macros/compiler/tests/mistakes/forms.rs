@@ -1,6 +1,6 @@
 //! Forms of the equations that do not exist for a mechanism.
 
-use super::{Row, check_error_rows};
+use super::{ErrorRow, check_error_rows};
 
 /// Inserts the text before `|` into the attribute and the text after it into the fields.
 fn mechanism_setting(said: &str) -> (String, String) {
@@ -14,7 +14,7 @@ fn mechanism_setting(said: &str) -> (String, String) {
 
 #[test]
 fn unavailable_forms_name_the_available_ones() {
-    const ROWS: &[Row] = &[
+    const ROWS: &[ErrorRow] = &[
         (
             "equations = hamilton|#[constraint(rail * rail + 1 * hinge * hinge = 1)] wire: Holonomic,",
             "Hamilton's equations are printed only for mechanisms without constraints",
@@ -81,7 +81,7 @@ fn overlong_routh_equations_are_rejected() {
         }
         (words.to_string(), fields)
     }
-    const ROWS: &[Row] = &[(
+    const ROWS: &[ErrorRow] = &[(
         "equations = routh",
         "Routh's equations of this mechanism are too long: more than three cyclic coordinates are coupled by \
          inertia, or thousands of terms",
@@ -99,7 +99,7 @@ fn kane_equations_are_rejected_for_sliding_contacts() {
             #[constraint(pose.x = 0.1 * pose.angle)] wire: Holonomic,";
         (format!("gravity = -9.81 * y, {words}"), fields.to_string())
     }
-    const ROWS: &[Row] = &[(
+    const ROWS: &[ErrorRow] = &[(
         "equations = kane",
         "the equations of a slipping contact contain its normal force, which is a multiplier",
         "write `equations = lagrange`",
@@ -123,7 +123,7 @@ fn overlong_kane_equations_are_rejected() {
             "#[constraint(dot(v(link4.at(0.4 * x) / ground / ground), link4.y) = 0)] blade: Nonholonomic,";
         (format!("gravity = -9.81 * z, {words}"), (0..5).map(link_declarations).collect::<String>() + blade)
     }
-    const ROWS: &[Row] = &[(
+    const ROWS: &[ErrorRow] = &[(
         "equations = kane",
         "Kane's equations of this mechanism have thousands of terms",
         "or declare generalized speeds in which the equations are shorter",
@@ -150,7 +150,7 @@ fn kane_equations_are_rejected_for_dependent_constraints() {
             cranks.collect::<String>() + plate + &ends.collect::<String>(),
         )
     }
-    const ROWS: &[Row] = &[(
+    const ROWS: &[ErrorRow] = &[(
         "equations = kane",
         "no velocities of this mechanism are determined by the others through its constraints in every \
          configuration",
@@ -162,7 +162,7 @@ fn kane_equations_are_rejected_for_dependent_constraints() {
 /// The canonical equations are not defined for forces that depend on accelerations.
 #[test]
 fn acceleration_forces_exclude_hamiltons_equations() {
-    fn added_force(words: &str) -> (String, String) {
+    fn arguments_and_force(words: &str) -> (String, String) {
         mechanism_setting(&format!(
             "{words}|#[acts(on = rail, value = -m * dot(a(arm / ground / ground), x))] added: Force,"
         ))
@@ -172,7 +172,7 @@ fn acceleration_forces_exclude_hamiltons_equations() {
     const SECOND: &str = "a force that depends on accelerations excludes second derivatives";
     const MOMENTA: &str = "a force that depends on accelerations excludes derivatives of momenta";
     const HELP: &str = "remove the option that requests them, or these terms of the force";
-    const ROWS: &[Row] = &[
+    const ROWS: &[ErrorRow] = &[
         ("hamilton", HAMILTON, HELP),
         ("equations = hamilton", HAMILTON, HELP),
         ("routh", ROUTH, HELP),
@@ -180,7 +180,7 @@ fn acceleration_forces_exclude_hamiltons_equations() {
         ("second_derivatives", SECOND, HELP),
         ("momentum_derivatives", MOMENTA, HELP),
     ];
-    check_error_rows(added_force, ROWS);
+    check_error_rows(arguments_and_force, ROWS);
 }
 
 /// Returns `count` carts on separate rails, with forces on the first `forces` of them.

@@ -1,8 +1,8 @@
 //! Tests of error messages about options of `#[mechanism]`.
 
-use super::{ARM, Row, check_error_rows};
+use super::{ARM, ErrorRow, check_error_rows};
 
-const ROWS: &[Row] = &[
+const ROWS: &[ErrorRow] = &[
     (
         "g = 9.81",
         "`#[mechanism]` has no argument `g`",

@@ -1,7 +1,7 @@
 //! Tests of errors by users who know Rust, other tools or mechanics, but not yet the language. Each causes
 //! one error with help.
 
-use super::{ARM, Row, compiler_messages};
+use super::{ARM, ErrorRow, compiler_messages};
 use std::path::Path;
 
 /// Erroneous sources: arguments of the attribute, and fields added to an arm on a hinge.
@@ -116,7 +116,7 @@ fn each_misspelling_is_one_error_with_help() {
 }
 
 /// Erroneous fields added to an arm on a hinge, with the first line of the message and a part of the help.
-const POINTERS: &[Row] = &[
+const POINTERS: &[ErrorRow] = &[
     (
         "#[acts(on = hinge, value = 3 * hinge_ddot)] k: Torque",
         "unknown name `hinge_ddot`",
@@ -147,7 +147,7 @@ fn misspelling_errors_point_at_the_token() {
 }
 
 /// Invalid options for an imported robot file, with the expected messages.
-const OPTIONS: &[Row] = &[
+const OPTIONS: &[ErrorRow] = &[
     ("lock = [hand_joint]", "expected a list of strings for `lock`", "write `lock = [\"hand_joint\"]`"),
     ("lock = \"hand_joint\"", "expected a list of strings for `lock`", "write `lock = [\"hand_joint\"]`"),
     ("lock = (a, b)", "expected a list of strings for `lock`", "write `lock = [\"a\", \"b\"]`"),

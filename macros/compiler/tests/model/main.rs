@@ -130,7 +130,7 @@ fn motion_text(link: &Link<'_>, model: &Model<'_>) -> String {
     text
 }
 
-/// Returns position and axes as text, without identity parts.
+/// Returns the position and axes of a pose as text, without identity parts.
 fn pose_text(pose: &Pose<'_>) -> String {
     let mut text = String::new();
     if !pose.translation.is_zero() {

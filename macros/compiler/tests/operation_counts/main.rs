@@ -62,7 +62,7 @@ fn main_operation_counts(arguments: &str, item: &str) -> [usize; 4] {
 }
 
 /// Checks that no operation count exceeds its bound.
-fn at_most(found: &[usize], bounds: &[usize], what: &str) {
+fn assert_within_bounds(found: &[usize], bounds: &[usize], what: &str) {
     assert!(found.iter().zip(bounds).all(|(n, most)| n <= most), "{what}: {found:?}, at most {bounds:?}");
 }
 
@@ -74,7 +74,7 @@ fn count_fused_instructions(program: &Program) -> usize {
 
 /// Returns the operations of the main functions of a robot, without sines and cosines, and the number of
 /// instructions after fusion. With `lanes`, the programs with lanes for identical limbs are counted.
-fn of_robot(name: &str, options: &str, lanes: bool) -> [[usize; 4]; 2] {
+fn robot_operation_counts(name: &str, options: &str, lanes: bool) -> [[usize; 4]; 2] {
     let arguments = format!("urdf = \"../../models/urdf/{name}.urdf\"{options}");
     let all = compiled_programs(&arguments, "pub struct Robot;", &MAIN);
     let all: Vec<&Program> =
@@ -87,9 +87,13 @@ fn of_robot(name: &str, options: &str, lanes: bool) -> [[usize; 4]; 2] {
 
 #[test]
 fn operation_counts_of_small_mechanisms_are_exact() {
-    assert_eq!(of_robot("ur5", "", false), [[229, 170, 93, 356], [149, 117, 70, 243]], "{MAIN:?}");
     assert_eq!(
-        of_robot("solo12", ", base = free", true),
+        robot_operation_counts("ur5", "", false),
+        [[229, 170, 93, 356], [149, 117, 70, 243]],
+        "{MAIN:?}"
+    );
+    assert_eq!(
+        robot_operation_counts("solo12", ", base = free", true),
         [[323, 292, 139, 757], [205, 187, 101, 499]],
         "{MAIN:?}"
     );
@@ -120,9 +124,9 @@ fn operation_counts_of_robots_are_exact() {
         ("simple_humanoid", free, false, [2000, 1910, 2380, 4850], [1250, 1190, 1640, 3210]),
         ("simple_humanoid", free, true, [1160, 1100, 1280, 2870], [730, 690, 890, 1880]),
     ] {
-        let [totals, instructions] = of_robot(name, options, lanes);
-        at_most(&totals, &total, &format!("{name}{options}, operations of {MAIN:?}"));
-        at_most(&instructions, &fused, &format!("{name}{options}, instructions of {MAIN:?}"));
+        let [totals, instructions] = robot_operation_counts(name, options, lanes);
+        assert_within_bounds(&totals, &total, &format!("{name}{options}, operations of {MAIN:?}"));
+        assert_within_bounds(&instructions, &fused, &format!("{name}{options}, instructions of {MAIN:?}"));
     }
 }
 
@@ -145,9 +149,13 @@ fn operation_counts_of_legged_contacts_are_exact() {
         .iter()
         .map(|p| count_fused_instructions(p.simd.as_deref().expect("its limbs are alike")))
         .collect();
-    at_most(&in_lanes, &[92, 126, 199, 1142, 1083], &format!("instructions in lanes of {functions:?}"));
+    assert_within_bounds(
+        &in_lanes,
+        &[92, 126, 199, 1142, 1083],
+        &format!("instructions in lanes of {functions:?}"),
+    );
     let alone: Vec<usize> = all.iter().map(count_fused_instructions).collect();
-    at_most(&alone, &[254, 262, 485, 3486, 3777], &format!("instructions of {functions:?}"));
+    assert_within_bounds(&alone, &[254, 262, 485, 3486, 3777], &format!("instructions of {functions:?}"));
 }
 
 /// Chains of pins about alternating axes, with numbers and with parameters. Inverse and forward dynamics grow
@@ -164,9 +172,9 @@ fn operation_counts_of_chains_grow_linearly() {
         (64, [4310, 4230, 30760, 12850], [5690, 5600, 33980, 14430]),
     ] {
         let found = main_operation_counts("gravity = -9.81 * z", &chain_source(n, false));
-        at_most(&found, &numbers, &format!("{n} joints with numbers: {MAIN:?}"));
+        assert_within_bounds(&found, &numbers, &format!("{n} joints with numbers: {MAIN:?}"));
         let symbolic = main_operation_counts("gravity = -9.81 * z", &chain_source(n, true));
-        at_most(&symbolic, &parameters, &format!("{n} joints with parameters: {MAIN:?}"));
+        assert_within_bounds(&symbolic, &parameters, &format!("{n} joints with parameters: {MAIN:?}"));
         // Beyond some length, articulated bodies replace the factorisation, so growth is tested from eight
         // joints on.
         if let Some(before) = before.filter(|_| n >= 16) {
@@ -306,7 +314,7 @@ fn prepared_mass_parameters_add_few_operations() {
         ("panda", locked, "inertial(\"panda_hand\")"),
     ] {
         let file = format!("urdf = \"../../models/urdf/{name}.urdf\"{options}");
-        let plain: [usize; 4] = of_robot(name, options, false)[0];
+        let plain: [usize; 4] = robot_operation_counts(name, options, false)[0];
         let all = prepared_operation_counts(&format!("{file}, prepare, parameters = {parameters}"));
         let is_close = |found: [usize; 4]| found.iter().zip(plain).all(|(n, plain)| 10 * n <= 11 * plain);
         assert!(is_close(all), "{name}: {all:?}, of the file's figures {plain:?}");

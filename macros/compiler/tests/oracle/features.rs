@@ -48,7 +48,7 @@ fn unbound_values(text: &str) -> Vec<String> {
     missing
 }
 
-/// Returns the generated code or the messages as text.
+/// Returns the generated code of a mechanism as text, or the error messages.
 fn expanded_text(arguments: &str, item: &str) -> String {
     let parse_tokens = |text: &str| text.parse().expect("the source is Rust");
     let emitted = expand(parse_tokens(arguments), parse_tokens(item), Path::new(""));

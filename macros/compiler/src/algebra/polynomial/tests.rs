@@ -11,7 +11,7 @@ pub fn rank_of_symbol(symbol: Symbol) -> Rank {
     if symbol.0 < 3 { Rank::Parameter } else { Rank::Position }
 }
 
-fn value_of(symbol: Symbol) -> f64 {
+fn value_of_symbol(symbol: Symbol) -> f64 {
     0.37 + 0.61 * f64::from(symbol.0)
 }
 
@@ -58,13 +58,13 @@ fn normal_forms_keep_values_of_random_expressions() {
     for _ in 0..400 {
         let graph = Graph::new();
         let e = random_expression(&graph, &mut r, 5, true);
-        let expected = eval_one(e, &value_of);
+        let expected = eval_one(e, &value_of_symbol);
         let mut normal = Normal::new(&graph, rank_of_symbol);
         let Some(p) = normal.normal_form(e) else { continue };
-        assert_near(normal.ring.evaluate_polynomial(&p, &value_of), expected, &format!("{e:?}"));
+        assert_near(normal.ring.evaluate_polynomial(&p, &value_of_symbol), expected, &format!("{e:?}"));
         let Some(short) = simplify_trigonometry(&mut normal.ring, &p) else { continue };
         assert!(short.terms.len() <= p.terms.len());
-        assert_near(normal.ring.evaluate_polynomial(&short, &value_of), expected, &format!("{e:?}"));
+        assert_near(normal.ring.evaluate_polynomial(&short, &value_of_symbol), expected, &format!("{e:?}"));
         found += 1;
     }
     assert!(found > 300, "only {found} of 400 are within the limits");

@@ -35,7 +35,7 @@ const COMMANDS: [&str; 27] = [
 /// One-character commands of LaTeX that may occur: thin spaces, an underscore, the end of a line.
 const SIGNS: [char; 4] = [',', '!', '_', '\\'];
 
-fn latex_of(gravity: &str, item: &str) -> String {
+fn equations_latex(gravity: &str, item: &str) -> String {
     with_model(gravity, item, |model| crate::equations_latex(&model))
 }
 
@@ -104,7 +104,7 @@ fn latex_of_all_mechanisms_is_well_formed() {
     let items = [DOUBLE_PENDULUM, GYROSCOPE, SHAFT, SPHERICAL, CHAIN, BALL, TRIPLE, ARM, WAGON];
     for (gravity, item) in numbers.into_iter().chain(items.map(|item| ("-g * z", item))) {
         for gravity in [gravity.to_string(), gravity.replace('z', "y")] {
-            let text = latex_of(&gravity, item);
+            let text = equations_latex(&gravity, item);
             assert_eq!(latex_errors(&text), [""; 0], "{text}");
             assert!(text.starts_with("\\begin{aligned}\n& \\mathcal{L} = "), "{text}");
             assert!(text.ends_with("\n\\end{aligned}\n"), "{text}");
@@ -116,7 +116,7 @@ fn latex_of_all_mechanisms_is_well_formed() {
             assert_eq!(count_equations(&text, "&"), count_equations(&text, " \\\\\n") + 1, "{text}");
         }
     }
-    assert_eq!(latex_of("-9.81 * z", SKEW), "");
+    assert_eq!(equations_latex("-9.81 * z", SKEW), "");
 }
 
 /// Words are upright with their underscores; rates have dots.
@@ -130,7 +130,7 @@ fn latex_of_cart_pole_has_upright_words_and_dots() {
 & \mathrm{pole\_mass}\,\mathrm{pole\_length}\,\bigl(\tfrac{1}{3}\,\mathrm{pole\_length}\,\ddot{\mathrm{hinge}} - \tfrac{1}{2}\,\cos(\mathrm{hinge})\,\ddot{\mathrm{rail}} - 4.905\,\sin(\mathrm{hinge})\bigr) = 0
 \end{aligned}
 ";
-    assert_eq!(latex_of("-9.81 * y", CART_POLE), expected);
+    assert_eq!(equations_latex("-9.81 * y", CART_POLE), expected);
 }
 
 /// Digits become subscripts; single letters are printed unchanged.
@@ -145,7 +145,7 @@ fn latex_of_double_pendulum_has_numeric_subscripts() {
 & m_{2}\,l_{2}\,\left(\bigl(\tfrac{1}{3}\,l_{2} + \tfrac{1}{2}\,l_{1}\,\cos\theta_{2}\bigr)\,\ddot{\theta}_{1} + \tfrac{1}{3}\,l_{2}\,\ddot{\theta}_{2} + \tfrac{1}{2}\,l_{1}\,\sin\theta_{2}\,\dot{\theta}_{1}^{2} + \tfrac{1}{2}\,g\,\sin(\theta_{1} + \theta_{2})\right) = \mathrm{motor}
 \end{aligned}
 ";
-    assert_eq!(latex_of("-g * y", &item), expected);
+    assert_eq!(equations_latex("-g * y", &item), expected);
 }
 
 /// Angular velocities and quaternion components have their joint as subscript.
@@ -158,5 +158,5 @@ fn latex_of_top_has_joint_names_as_subscripts() {
 & c\,\dot{\omega}_{\mathrm{tip},z} = 0
 \end{aligned}
 ";
-    assert_eq!(latex_of("-g * z", BALL), expected);
+    assert_eq!(equations_latex("-g * z", BALL), expected);
 }

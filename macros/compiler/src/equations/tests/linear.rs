@@ -23,7 +23,7 @@ fn with_linear(gravity: &str, item: &str, f: impl for<'g> Fn(&Model<'g>, &Linear
 
 /// Compares the rows of the linear equations with finite differences of force balances, constraints and rates
 /// of states.
-fn check_rows(model: &Model<'_>, found: &Linear) {
+fn check_linear_rows(model: &Model<'_>, found: &Linear) {
     let (nv, nu) = (model.nv(), model.nu());
     let at = &model.equilibria[0];
     let states = at.states.len();
@@ -118,7 +118,7 @@ fn pendulum_linearises_to_its_natural_frequency() {
     let pendulum_at = |equilibrium: &str| PENDULUM.replace("EQUILIBRIUM", equilibrium);
     let assert_lines_contained = |equilibrium: &str, lines: &'static [&'static str]| {
         with_linear("-g * y", &pendulum_at(equilibrium), |model, found, plain, _| {
-            check_rows(model, found);
+            check_linear_rows(model, found);
             for line in lines {
                 assert!(plain.contains(line), "{line} in {plain}");
             }
@@ -155,11 +155,11 @@ fn linear_equations_are_derivatives_of_the_dynamics() {
     for (gravity, item) in [("-7 * y", DOUBLE_PENDULUM), ("-7 * y", CART_POLE), ("-7 * z", SPHERICAL)] {
         let item = item.trim_end().trim_end_matches('}').to_string() + "#[equilibrium] rest: Equilibrium }";
         with_linear(gravity, &item.replace(" g: f64,", " _g: f64,"), |model, found, _, _| {
-            check_rows(model, found);
+            check_linear_rows(model, found);
         });
     }
     with_linear("-9.81 * z", LAG, |model, found, plain, _| {
-        check_rows(model, found);
+        check_linear_rows(model, found);
         assert!(plain.contains("power' + (gain rail + power)/lag = 0\n"), "{plain}");
     });
 }

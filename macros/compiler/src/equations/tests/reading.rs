@@ -11,7 +11,7 @@ pub(super) mod text;
 use numbers::{Numbers, assert_same_roots, eigenvalues, roots};
 use text::{Text, Values, evaluate_text};
 
-/// Compares the printed rows with accelerations by finite differences.
+/// Compares the printed linear rows with accelerations by finite differences.
 #[track_caller]
 fn check_rows_of(text: &Text, names: &[&str], a: &[Vec<f64>], parameters: Values<'_>) {
     let n = names.len();
@@ -115,8 +115,8 @@ fn linear_equations_linearise_lagranges_equations() {
                 let torque = values[3] * angle - 9.81 * values[1] * values[2] / 2.0 * angle.sin();
                 let a = numbers.linear_system_matrix(&[0.0, angle], &[0.0, torque], &values);
                 check_rows_of(text, &["rail", "hinge"], &a, &parameters);
-                let of_input = |name: &str| text.coefficient_column(name, true, &parameters);
-                assert_eq!([of_input("push"), of_input("motor")], [[1.0, 0.0], [0.0, 1.0]]);
+                let column_of_input = |name: &str| text.coefficient_column(name, true, &parameters);
+                assert_eq!([column_of_input("push"), column_of_input("motor")], [[1.0, 0.0], [0.0, 1.0]]);
                 assert_same_roots(&text.characteristic_roots(&parameters), &eigenvalues(&a), 1e-4);
             }
         }

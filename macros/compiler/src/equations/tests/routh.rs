@@ -59,7 +59,7 @@ fn state_values<'a>(
 
 /// Compares accelerations, velocities and Routhian with Lagrange's equations of the unreduced mechanism.
 /// Returns the names of the cyclic coordinates.
-pub(super) fn check_whole(model: &Model<'_>) -> Vec<String> {
+pub(super) fn check_against_lagrange(model: &Model<'_>) -> Vec<String> {
     let joints = crate::kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
     let cyclic = routh::cyclic_coordinates(model, &joints);
@@ -92,7 +92,7 @@ pub(super) fn check_whole(model: &Model<'_>) -> Vec<String> {
 #[test]
 fn routh_reduced_motion_equals_the_full_motion() {
     for (gravity, item, names) in ROWS {
-        assert_eq!(with_model(gravity, item, |model| check_whole(&model)), names);
+        assert_eq!(with_model(gravity, item, |model| check_against_lagrange(&model)), names);
     }
 }
 
@@ -119,12 +119,12 @@ fn routh_reduction_of_random_chains_equals_the_full_motion() {
                 vector()
             );
         }
-        let found = with_model("-9.81 * z", &(item + "}"), |model| check_whole(&model));
+        let found = with_model("-9.81 * z", &(item + "}"), |model| check_against_lagrange(&model));
         assert_eq!(found, ["column"]);
     }
 }
 
-/// Lagrange's equations of the Routhian hold for the other coordinates: `d/dt ∂R/∂v − ∂R/∂q` equals the
+/// Lagrange's equations hold for the Routhian in the noncyclic coordinates: `d/dt ∂R/∂v − ∂R/∂q` equals the
 /// forces without a potential.
 #[test]
 fn lagranges_equations_hold_for_the_routhian() {

@@ -63,7 +63,7 @@ pub fn wrap_paragraph(text: &str, first: &str, others: &str) -> String {
     out
 }
 
-/// Returns the description of an argument.
+/// Returns the description of a function argument for the C header.
 pub fn argument_description(a: Argument) -> &'static str {
     match a {
         Argument::T => "time, s",

@@ -1,4 +1,4 @@
-//! Conversion of the user's names to identifiers of C.
+//! Conversion of the user's names to C identifiers.
 
 /// Keywords of C and C++, and macros of headers and compilers.
 const RESERVED: &[&str] = &[
@@ -283,7 +283,7 @@ pub fn prefix_identifier(name: &str) -> String {
     text
 }
 
-/// Returns unique identifiers for several names in one scope.
+/// Returns C identifiers for several names that are unique in one scope.
 pub fn unique_identifiers<S: AsRef<str>>(names: &[S]) -> Vec<String> {
     make_unique(names.iter().map(|name| identifier_from_name(name.as_ref())))
 }

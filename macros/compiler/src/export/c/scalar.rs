@@ -7,7 +7,7 @@ pub const FUNCTIONS: &[&str] = &[
     "fabs", "copysign", "pow", "fmin", "fmax", "fma",
 ];
 
-/// Other tokens that differ between `double` and `float`.
+/// Tokens other than function names that differ between `double` and `float`.
 const WORDS: &[(&str, &str)] = &[
     ("double", "float"),
     ("FP_FAST_FMA", "FP_FAST_FMAF"),
@@ -20,7 +20,7 @@ pub fn numeric_literal(c: f64) -> String {
     format!("{c:?}")
 }
 
-/// Converts code for `double` to `float`.
+/// Converts C code with `double` to C code with `float`.
 pub fn in_single_precision(code: &str) -> String {
     replaced(code, &single_precision_literal, &word_in_single_precision)
 }

@@ -1,7 +1,7 @@
 //! Conversion of C code to functions of a CUDA device: function templates, whose arrays are pointers, or the
 //! strided entries of one state.
 
-/// Beginnings of lines that may define a function.
+/// Prefixes of lines of C code that may begin a function definition.
 const KINDS: [&str; 5] = ["static inline ", "static ", "void ", "double ", "int "];
 
 /// Converts definitions in C to device functions. Comments and statements do not change, except declarations

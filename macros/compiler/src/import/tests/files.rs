@@ -1,4 +1,4 @@
-//! Tests of the reading of files.
+//! Tests of reading robot files from paths.
 
 use crate::diag::Diagnostics;
 use crate::import::tests::{default_options, test_name};

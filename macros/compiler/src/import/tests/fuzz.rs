@@ -13,7 +13,7 @@ const FILE: &str = r#"<?xml version="1.0"?>
     <mimic joint="j" multiplier="2" offset="1"/></joint>
 </robot>"#;
 
-/// Returns a pseudorandom number (xorshift64).
+/// Advances the pseudorandom generator (xorshift64) and returns a number.
 fn next(state: &mut u64) -> usize {
     *state ^= *state << 13;
     *state ^= *state >> 7;

@@ -3,9 +3,9 @@
 use super::*;
 use crate::syntax::file_parameters::FileParameters;
 
-/// Checks the last joints of a chain.
+/// Checks the last joints imported from a chain of URDF joints.
 fn check_chain(options: &FileOptions, joints: &[(&str, &str)], expected: &str) {
-    check_with(options, &chain_of_links(joints), &(chain_bodies(joints.len()) + expected));
+    check_with_options(options, &chain_of_links(joints), &(chain_bodies(joints.len()) + expected));
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn locked_joint_becomes_a_weld() {
          Weld j4: l3 -> l4
          left out the coupling of j4, which is locked",
     );
-    check_with(
+    check_with_options(
         &options_with_locked_joints(&["j", "elbow"]),
         &chain_of_links(&[("revolute", ""), ("revolute", "")]),
         "unknown joint `j` in `lock`
@@ -203,7 +203,7 @@ fn near_round_numbers_are_rounded_on_request_and_reported() {
         ("prismatic", "<origin xyz='0.002 0 0' rpy='1.572 0 0'/><axis xyz='1 0 0.01'/>"),
         ("fixed", "<origin rpy='0 -1.571 0'/>"),
     ]);
-    check_with(
+    check_with_options(
         &FileOptions { snap: Some(1e-3), ..default_options() },
         &robot,
         "body l0\nbody l1\nbody l2\nbody l3
@@ -277,7 +277,7 @@ fn locked_slide_is_displaced_along_its_rotated_axis() {
 #[test]
 fn infinite_joint_offsets_are_rejected() {
     let inside = "<origin xyz='1.7e308 0 0'/><mimic joint='j2' offset='1.7e308'/>";
-    check_with(
+    check_with_options(
         &options_with_locked_joints(&["j2"]),
         &chain_of_links(&[("prismatic", inside), ("revolute", "")]),
         "r.urdf:3:14: joint `j1` has an infinite position",
@@ -397,8 +397,8 @@ fn unsupported_joint_properties_are_listed() {
     assert_eq!(ignored_elements(&options_with_locked_joints(&["j1"]), &follower), [""; 0]);
 }
 
-/// Checks a joint that follows a locked one: it is held at its offset, which its placement as a field
-/// contains, rotated by 0.5 rad about the axis after roll, pitch and yaw.
+/// Checks that a joint which follows a locked joint is locked at its offset, with its placement rotated by
+/// 0.5 rad about the axis.
 #[test]
 fn fixed_mimic_joints_include_their_rotation() {
     let figures = FileParameters { word: test_name("placement"), of: Some(vec![test_name("j2")]) };

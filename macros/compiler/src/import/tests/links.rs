@@ -59,12 +59,12 @@ fn invalid_mass_is_reported_at_its_source_position() {
 fn inertia_errors_are_ignored_for_kinematics() {
     let options = FileOptions { inertias: Inertias::None, ..default_options() };
     let text = "<robot><link name='a'><inertial><mass value='x'/></inertial></link></robot>";
-    check_with(&options, text, "body a\nWeld root_joint: ground -> a");
+    check_with_options(&options, text, "body a\nWeld root_joint: ground -> a");
 }
 
 #[test]
 fn missing_attributes_are_named_in_the_error() {
-    check_with(
+    check_with_options(
         &FileOptions { base: Base::Free, ..default_options() },
         "<robot>\n<link name='a'><inertial></inertial></link></robot>",
         r#"r.urdf:2:16: `<inertial>` without `<mass>`
@@ -202,8 +202,8 @@ fn links_fixed_to_the_ground_need_no_inertia() {
     };
     check_import(&text, &missing_inertia_message(4));
     let free = FileOptions { base: Base::Free, ..default_options() };
-    check_with(&free, &text, &[2, 3, 4].map(missing_inertia_message).concat());
-    check_with(
+    check_with_options(&free, &text, &[2, 3, 4].map(missing_inertia_message).concat());
+    check_with_options(
         &options_with_locked_joints(&["b"]),
         &text,
         "body base mass=1\nbody arms mass=1\nbody hand mass=1
@@ -309,6 +309,10 @@ fn second_shape_of_a_geometry_is_rejected() {
             FileFormat::Urdf => format!("<robot name='r'>\n{link}\n</robot>"),
             _ => format!("<sdf><model name='m'>\n{link}\n</model></sdf>"),
         };
-        check_with(&options, &text, &format!("r.urdf:2:{column}: second shape of one geometry\n{help}"));
+        check_with_options(
+            &options,
+            &text,
+            &format!("r.urdf:2:{column}: second shape of one geometry\n{help}"),
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! Files that are not XML, not URDF, or hostile.
+//! Tests of files that are not XML, not URDF, or adversarial.
 
 use super::*;
 
@@ -146,7 +146,11 @@ fn templates_of_other_formats_are_rejected() {
         ),
     ] {
         let help = format!("= help: expand the file first: `xacro robot.{word}.xacro > robot.{word}`");
-        check_with(&FileOptions { format, ..default_options() }, text, &format!("{expected}\n{help}"));
+        check_with_options(
+            &FileOptions { format, ..default_options() },
+            text,
+            &format!("{expected}\n{help}"),
+        );
     }
 }
 

@@ -12,20 +12,20 @@ pub(super) fn mjcf_options() -> FileOptions {
 }
 
 /// Compares the result of a file with these elements. The elements begin on the second line.
-pub(super) fn check_model(inside: &str, expected: &str) {
-    check_with(&mjcf_options(), &format!("<mujoco>\n{inside}\n</mujoco>"), expected);
+pub(super) fn check_mjcf_elements(inside: &str, expected: &str) {
+    check_with_options(&mjcf_options(), &format!("<mujoco>\n{inside}\n</mujoco>"), expected);
 }
 
-/// Compares the result of a body with these elements.
-fn check_body(inside: &str, expected: &str) {
-    check_model(&format!("<worldbody><body name=\"b\">{inside}</body></worldbody>"), expected);
+/// Compares the import of an MJCF body that contains these elements with `expected`.
+fn check_mjcf_body(inside: &str, expected: &str) {
+    check_mjcf_elements(&format!("<worldbody><body name=\"b\">{inside}</body></worldbody>"), expected);
 }
 
 const BALL: &str = "<geom size='.1' mass='1'/>";
 
 #[test]
 fn joints_of_one_mjcf_body_are_chained() {
-    check_body(
+    check_mjcf_body(
         "<joint name='j' pos='1 0 0'/><joint name='k' type='slide' axis='2 0 0' ref='3'/><geom size='1' mass='5'/>",
         "the root is the ground
          body b_j
@@ -38,7 +38,7 @@ fn joints_of_one_mjcf_body_are_chained() {
 
 #[test]
 fn unnamed_mjcf_elements_get_generated_names() {
-    check_body(
+    check_mjcf_body(
         "<body><joint type='slide'/></body><body name='body2'/>",
         "the root is the ground
          body b
@@ -58,19 +58,19 @@ fn mjcf_default_classes_are_inherited() {
     };
     let ball = "body b mass=1 inertia=[[0.004000000000000001, 0, 0], [0, 0.004000000000000001, 0], [0, 0, 0.004000000000000001]]";
     let end = "left out geometry of bodies, for contact: 1 shapes";
-    check_model(
+    check_mjcf_elements(
         &model_with_body("<joint name='j'/>"),
         &format!(
             "the root is the ground\n{ball}\nPin j: ground -> b about [0, 0, 1] damping=1\nj: inerter 2 on 1 j\n{end}"
         ),
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_body("<joint name='j' class='c' damping='7'/>"),
         &format!(
             "the root is the ground\n{ball}\nSleeve j: ground -> b along [0, 0, 1] damping=7\nj: inerter 2 on 1 j\n{end}"
         ),
     );
-    check_model(
+    check_mjcf_elements(
         &model_with_body("<joint name='j' class='d'/>"),
         "r.xml:2:204: unknown class `d`
          = help: expected `a`, `c` or `main`",
@@ -145,7 +145,7 @@ fn unsupported_mjcf_attributes_are_reported() {
     ] {
         let column = "<worldbody><body name=\"b\">".len() + inside.find(at).expect("it stands there") + 1;
         let help = if help.is_empty() { String::new() } else { format!("\n= help: {help}") };
-        check_body(inside, &format!("r.xml:2:{column}: {message}{help}"));
+        check_mjcf_body(inside, &format!("r.xml:2:{column}: {message}{help}"));
     }
 }
 
@@ -186,7 +186,7 @@ fn unknown_sections_and_unsupported_options_are_reported() {
              write `#[mechanism(…, inputs = joints)]`, or `none`",
         ),
     ] {
-        check_model(inside, expected);
+        check_mjcf_elements(inside, expected);
     }
 }
 
@@ -199,19 +199,19 @@ fn non_mjcf_file_names_its_format_in_the_error() {
         ("mujco", "did you mean `mujoco`?"),
     ] {
         let expected = format!("r.xml:1:1: expected `<mujoco>`, found `<{root}>`\n= help: {help}");
-        check_with(&mjcf_options(), &format!("<{root}/>"), &expected);
+        check_with_options(&mjcf_options(), &format!("<{root}/>"), &expected);
     }
 }
 
 #[test]
 fn free_base_requires_a_body_without_joints() {
     let free = FileOptions { base: Base::Free, ..mjcf_options() };
-    check_with(
+    check_with_options(
         &free,
         "<mujoco><worldbody><body name='b'/></worldbody></mujoco>",
         "the root is the ground\nbody b\nFree root_joint: ground -> b",
     );
-    check_with(
+    check_with_options(
         &free,
         "<mujoco><worldbody><body name='b'><joint/></body></worldbody></mujoco>",
         "`base = free` does not fit this file: its outermost body has joints
@@ -304,7 +304,7 @@ fn adversarial_mjcf_files_terminate() {
         import_as_text(&mjcf_options(), entity)
             .contains("an MJCF file has no document type and no entities of its own")
     );
-    check_body(
+    check_mjcf_body(
         "<geom size='1e200' mass='1'/><joint axis='1e300 1e300 0'/>",
         "r.xml:2:24: body `b` is too large, too heavy or too far away for floating-point numbers",
     );
@@ -442,7 +442,7 @@ fn mjcf_option_flags_disable_their_effects() {
 /// `body_ipos`).
 #[test]
 fn mjcf_frames_place_their_contents() {
-    check_body(
+    check_mjcf_body(
         "<frame pos='1 2 3' euler='0 0 90'><joint name='j' pos='1 0 0' axis='1 0 0'/><inertial pos='1 0 0' mass='1' diaginertia='1 2 2.5'/></frame>",
         "the root is the ground
          body b mass=1 com=[1, 3, 3] inertia=[[2, 0, 0], [0, 1, 0], [0, 0, 2.5]]
@@ -454,7 +454,7 @@ fn mjcf_frames_place_their_contents() {
 /// (`site_xmat`).
 #[test]
 fn sites_between_two_points_have_the_axes_of_mujoco() {
-    check_body(
+    check_mjcf_body(
         "<joint name='j'/><site name='s' type='capsule' size='.1' fromto='0 0 0 2 0 0'/>",
         "the root is the ground
          body b
@@ -482,7 +482,7 @@ fn sites_between_two_points_have_the_axes_of_mujoco() {
 /// Missing entries of an attribute are taken from the defaults: sizes as in MuJoCo 4.0.0 (`geom_size`).
 #[test]
 fn short_attribute_lists_are_completed_by_defaults() {
-    check_model(
+    check_mjcf_elements(
         "<default><geom type='box' size='1 2 3'/></default><worldbody><body name='b'><geom size='.5' mass='3'/></body></worldbody>",
         "the root is the ground
          body b mass=3 inertia=[[13, 0, 0], [0, 9.25, 0], [0, 0, 4.25]]
@@ -494,22 +494,23 @@ fn short_attribute_lists_are_completed_by_defaults() {
 /// Checks that files that MuJoCo rejects are rejected, with one error for each fault.
 #[test]
 fn files_that_mujoco_rejects_are_rejected() {
-    let body =
+    let body_with_joint =
         |joint: &str| format!("<worldbody><body name='b'><joint name='j' {joint}/></body></worldbody>");
-    let model_with_motor = |said: &str| format!("{}<actuator><motor {said}/></actuator>", body(""));
+    let model_with_motor =
+        |said: &str| format!("{}<actuator><motor {said}/></actuator>", body_with_joint(""));
     let model_with_fixed_tendon =
-        |inside: &str| format!("{}<tendon><fixed {inside}</fixed></tendon>", body(""));
+        |inside: &str| format!("{}<tendon><fixed {inside}</fixed></tendon>", body_with_joint(""));
     for (text, message) in [
         (
-            format!("<compiler autolimits='false'/>{}", body("range='0 1'")),
+            format!("<compiler autolimits='false'/>{}", body_with_joint("range='0 1'")),
             "`range` without `limited` has no effect",
         ),
         (
             format!("<compiler autolimits='false'/>{}", model_with_motor("joint='j' ctrlrange='0 1'")),
             "`ctrlrange` without `ctrllimited` has no effect",
         ),
-        (body("range='0 x' limited='true'"), "`x` is not a number"),
-        (body("limited='true'"), "`limited=\"true\"` without `range`"),
+        (body_with_joint("range='0 x' limited='true'"), "`x` is not a number"),
+        (body_with_joint("limited='true'"), "`limited=\"true\"` without `range`"),
         (model_with_motor(""), "an actuator without a target"),
         (
             model_with_motor("joint='j' site='s'"),
@@ -544,8 +545,8 @@ fn files_that_mujoco_rejects_are_rejected() {
         assert_eq!(answer.matches("r.xml:").count(), 1, "{answer}");
     }
     for text in [
-        body("range='0 0' limited='auto'"),
-        format!("<compiler autolimits='false'/>{}", body("range='0 1' limited='false'")),
+        body_with_joint("range='0 0' limited='auto'"),
+        format!("<compiler autolimits='false'/>{}", body_with_joint("range='0 1' limited='false'")),
         "<compiler alignfree='true'/><worldbody><body><freejoint align='false'/><geom size='1'/></body>\
          </worldbody>"
             .to_string(),
@@ -558,7 +559,7 @@ fn files_that_mujoco_rejects_are_rejected() {
     }
 }
 
-/// Joints and mass of the world move nothing.
+/// Joints and masses of the MJCF world have no effect on the mechanism.
 #[test]
 fn joints_and_mass_of_the_world_have_no_effect() {
     let help = "= help: move it into a `<body>`";
@@ -567,7 +568,7 @@ fn joints_and_mass_of_the_world_have_no_effect() {
         ("<frame><freejoint/></frame>", "r.xml:2:19: `<freejoint>` of the world, which does not move"),
         ("<inertial pos='0 0 0' mass='1'/>", "r.xml:2:12: `<inertial>` of the world, which does not move"),
     ] {
-        check_model(&format!("<worldbody>{inside}</worldbody>"), &format!("{found}\n{help}"));
+        check_mjcf_elements(&format!("<worldbody>{inside}</worldbody>"), &format!("{found}\n{help}"));
     }
 }
 
@@ -583,7 +584,7 @@ fn tendon_paths_without_length_are_rejected() {
         (format!("{a}{b}{pulley}{a}"), "<site>", 87),
         (format!("{a}{b}{pulley}{pulley}{a}{b}"), "<pulley>", 66),
     ] {
-        check_model(
+        check_mjcf_elements(
             &format!(
                 "<tendon><spatial stiffness='100'>{path}</spatial></tendon>\n\
                  <worldbody><site name='a'/><body><joint/>{BALL}<site name='b' pos='1 0 0'/></body></worldbody>"
@@ -593,7 +594,7 @@ fn tendon_paths_without_length_are_rejected() {
     }
 }
 
-/// Requested contacts that the file does not contain.
+/// Requested contacts with planes that the file does not contain are reported.
 #[test]
 fn requested_planes_without_contacts_are_reported() {
     let options = FileOptions { contacts: true, collisions: true, ..mjcf_options() };

@@ -29,7 +29,7 @@ fn joints_are_ordered_depth_first_and_alphabetically() {
 #[test]
 fn root_link_is_fixed_or_free() {
     let free = FileOptions { base: Base::Free, inputs: InputOption::Joints, ..default_options() };
-    check_with(
+    check_with_options(
         &free,
         "<robot><link name='any &amp; name'/></robot>",
         "body any & name\nFree root_joint: ground -> any & name",
@@ -85,7 +85,7 @@ fn duplicate_names_are_rejected() {
     );
     let free = FileOptions { base: Base::Free, inputs: InputOption::Joints, ..default_options() };
     let both = [massless_link("ground"), massless_link("ground_link")].concat();
-    check_with(
+    check_with_options(
         &free,
         &format!("<robot>{both}{}</robot>", joint_element("j", "fixed", "ground", "ground_link", "")),
         "body ground_link2
@@ -176,9 +176,9 @@ fn second_parent_joint_closes_a_loop() {
     let expected_tree =
         |joints: &str| format!("body a\nbody b\nbody c\nWeld root_joint: ground -> a\n{joints}");
     let last = expected_tree("Weld ab: a -> b\nWeld ac: a -> c\nPin cb: c -> b about [1, 0, 0]");
-    check_with(&options, &robot_with_joints(&[ab.clone(), ac, cb.clone()]), &last);
+    check_with_options(&options, &robot_with_joints(&[ab.clone(), ac, cb.clone()]), &last);
     let first = expected_tree("Weld ab: a -> b\nFree bc: b -> c\nPin cb: c -> b about [1, 0, 0]");
-    check_with(&options, &robot_with_joints(&[cb.clone(), ab, bc.clone()]), &first);
+    check_with_options(&options, &robot_with_joints(&[cb.clone(), ab, bc.clone()]), &first);
     let without_root = import_as_text(&options, &robot_with_joints(&[bc, cb]));
     assert!(without_root.contains("links `b`, `c` form a cycle"), "{without_root}");
 }

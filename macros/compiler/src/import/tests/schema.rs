@@ -36,10 +36,10 @@ const LISTS: [(&str, &str); 4] = [
     ("*target", "joint=k; jointinparent=k; site=s; slidersite=s; cranksite=s; tendon=t"),
 ];
 
-/// MJCF elements that are rejected, with all their attributes.
+/// MJCF elements that are rejected together with all their attributes.
 const REFUSED: [&str; 2] = ["adhesion", "orientation"];
 
-/// Returns the imported description as text, or the errors.
+/// Returns the imported MJCF description as text, or the error messages.
 fn import_mjcf_as_text(text: &str) -> String {
     let mut cx = Diagnostics::new();
     match import_text(text, &mjcf_options(), &mut cx) {
@@ -81,7 +81,7 @@ fn attributes_that_affect_motion_are_read_or_rejected() {
             }
         }
     }
-    for (element, attributes) in schema::read() {
+    for (element, attributes) in schema::read_schema() {
         if REFUSED.iter().any(|kind| element == format!("actuator/{kind}")) {
             let text =
                 format!("<mujoco>{BODIES}<actuator><{}/></actuator></mujoco>", &element["actuator/".len()..]);
@@ -103,7 +103,7 @@ fn attributes_that_affect_motion_are_read_or_rejected() {
 /// out, which the guide names.
 #[test]
 fn importer_schema_lists_the_elements_of_mujoco() {
-    let ours = schema::read();
+    let ours = schema::read_schema();
     let list = include_str!("mujoco_schema.txt").replace("\n    ", " ");
     let mut missing = Vec::new();
     for line in list.lines().skip_while(|line| !line.starts_with("mujoco:")) {
