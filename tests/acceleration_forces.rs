@@ -133,7 +133,7 @@ struct Case<const NQ: usize, const NV: usize, const NU: usize> {
     u: SVector<f64, NU>,
 }
 
-fn in_flight() -> Vec<Case<7, 7, 2>> {
+fn flight_cases() -> Vec<Case<7, 7, 2>> {
     let mut random = Random::new(3);
     let random_case = |k: usize| {
         let turn: SVector<f64, 4> = random.random_vector::<4>(1.0).normalize();
@@ -163,7 +163,7 @@ fn coupled_cases() -> Vec<Case<3, 3, 1>> {
 fn forward_dynamics_inverts_inverse_dynamics() {
     let craft = unsteady_aircraft();
     let whole = craft.extended();
-    for Case { t, q, v, a, .. } in in_flight() {
+    for Case { t, q, v, a, .. } in flight_cases() {
         let tau = whole.inverse_dynamics(t, &q, &v, &a);
         assert_similar("v̇", whole.forward_dynamics(t, &q, &v, &tau).as_slice(), a.as_slice(), 1e-11);
     }
@@ -212,7 +212,7 @@ fn derivatives_agree_with_finite_differences() {
     let whole = craft.extended();
     let (mut still, step) = ([1e-2; 7], [1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 1e-2, 10.0]);
     still[6] = 1.0;
-    for Case { t, q, v, a, u } in in_flight() {
+    for Case { t, q, v, a, u } in flight_cases() {
         let tau = whole.generalized_forces(t, &q, &v, &u);
         let (by_q, by_v, by_force) = whole.forward_dynamics_derivatives(t, &q, &v, &tau);
         let accelerations_of_whole = |q: &_, v: &_, tau: &_| whole.forward_dynamics(t, q, v, tau);

@@ -43,14 +43,16 @@ fn random_mechanism(k: u64) -> Spec {
     }
 }
 
-/// Returns the text that the generator writes to `mechanisms.rs`.
+/// Returns the text of the generated file `mechanisms.rs`.
 fn generated_mechanisms_text() -> String {
     let mut out =
         String::from("//! Written by the test `generated_file_is_up_to_date`.\n\nuse linkwork::mechanism;\n");
     for k in 0..COUNT {
         let (arguments, item) =
             words::mechanism_source(&random_mechanism(k), &format!("Random{k}"), ", derivatives");
-        let _ = write!(out, "\n/// Random.\n#[mechanism({arguments})]\n{item}\n");
+        let about =
+            format!("/// Random test mechanism {k}: bodies and joints with random masses and placements.");
+        let _ = write!(out, "\n{about}\n#[mechanism({arguments})]\n{item}\n");
     }
     out
 }

@@ -178,7 +178,7 @@ impl<T: Real, const N: usize, const L: usize> States<T, N, L> {
         Self::new(core::array::from_fn(|_| random.random_vector::<N>(bound).map(linkwork::nalgebra::convert)))
     }
 
-    /// Returns random displacements with magnitudes from 0 to 3.
+    /// Returns random displacements of a configuration with magnitudes from 0 to 3.
     fn random_displacements(random: &mut Random) -> Self {
         let sizes = [2.0, 1e-9, 0.1, 1e-3, 0.5, 3.0, 0.0, 1e-6];
         Self::new(core::array::from_fn(|k| {

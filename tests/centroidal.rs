@@ -11,11 +11,11 @@ const EXACT: f64 = 1e-11;
 /// Tolerance of derivatives against finite differences.
 const DIFFERENCE: f64 = 1e-7;
 
-/// Quadruped Solo12 with a free base.
+/// Solo12 quadruped robot with a free base.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, centroidal)]
 struct Quadruped;
 
-/// Humanoid with a free base.
+/// Humanoid robot with a free base.
 #[mechanism(urdf = "../models/urdf/simple_humanoid.urdf", base = free, centroidal)]
 struct Humanoid;
 

@@ -102,7 +102,7 @@ fn assert_same(what: &str, model: &Model<'_>, seed: u64, a: &[Expr<'_>], b: &[Ex
     assert_similar(what, &eval(a, &at), &eval(b, &at), DERIVATION);
 }
 
-fn check_recursion(model: &Model<'_>, seed: u64) {
+fn check_recursive_derivatives(model: &Model<'_>, seed: u64) {
     let joints = kinematics::joints_of_model(model);
     let (v, a) = (mechanics::velocity_symbols(model), mechanics::acceleration_symbols(model));
     let tau = rnea::inverse_dynamics(model, &joints, &v, Some(&a));
@@ -144,7 +144,7 @@ fn check_coriolis_matrix<'g>(model: &Model<'g>, seed: u64, lanes: usize) {
     assert_same("Ṁ", model, seed, &sum, &rate);
 }
 
-fn check_inverse<'g>(model: &Model<'g>, seed: u64) {
+fn check_inverse_derivatives<'g>(model: &Model<'g>, seed: u64) {
     let joints = kinematics::joints_of_model(model);
     let mass = crba::mass_matrix(model, &joints);
     let factor = derivatives::Factor::new(&mass, &joints);
@@ -317,11 +317,11 @@ proptest! {
     #[test]
     fn recursive_and_symbolic_derivatives_agree(tree in random_trees(4), seed in 0_u64..1000) {
         with_model(&tree.tree_source(), |_, model| {
-            check_recursion(model, seed);
+            check_recursive_derivatives(model, seed);
             for lanes in [1, 4, 8] {
                 check_coriolis_matrix(model, seed, lanes);
             }
-            check_inverse(model, seed);
+            check_inverse_derivatives(model, seed);
             check_what_is_known(model, seed);
         });
     }

@@ -10,12 +10,12 @@ use linkwork_models::{CarAxle, RollingDisk};
 use std::cell::Cell;
 
 /// Mechanism that counts evaluations of forward dynamics and hides its derivatives unless `KNOWN`.
-struct Counted<'m, M, const KNOWN: bool> {
+struct CountingMechanism<'m, M, const KNOWN: bool> {
     mechanism: &'m M,
     count: Cell<usize>,
 }
 
-impl<'m, M, const KNOWN: bool> Counted<'m, M, KNOWN> {
+impl<'m, M, const KNOWN: bool> CountingMechanism<'m, M, KNOWN> {
     fn new(mechanism: &'m M) -> Self {
         Self { mechanism, count: Cell::new(0) }
     }
@@ -30,7 +30,7 @@ macro_rules! pass {
 }
 
 impl<M, const NQ: usize, const NV: usize, const NU: usize, const KNOWN: bool> Mechanism<NQ, NV, NU>
-    for Counted<'_, M, KNOWN>
+    for CountingMechanism<'_, M, KNOWN>
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
@@ -74,7 +74,7 @@ where
 }
 
 impl<M, const NQ: usize, const NV: usize, const NU: usize, const KNOWN: bool> Hooks<f64, NQ, NV, NU>
-    for Counted<'_, M, KNOWN>
+    for CountingMechanism<'_, M, KNOWN>
 where
     M: Mechanism<NQ, NV, NU, Scalar = f64>,
 {
@@ -210,7 +210,7 @@ where
     M: Mechanism<NQ, NV, 1, Scalar = f64>,
 {
     fn count_evaluations<M, const NQ: usize, const NV: usize, const KNOWN: bool>(
-        m: &Counted<'_, M, KNOWN>,
+        m: &CountingMechanism<'_, M, KNOWN>,
         q: SVector<f64, NQ>,
         v: SVector<f64, NV>,
     ) -> usize
@@ -222,8 +222,8 @@ where
         m.count.get()
     }
     [
-        count_evaluations(&Counted::<_, true>::new(m), q, v),
-        count_evaluations(&Counted::<_, false>::new(m), q, v),
+        count_evaluations(&CountingMechanism::<_, true>::new(m), q, v),
+        count_evaluations(&CountingMechanism::<_, false>::new(m), q, v),
     ]
 }
 
@@ -238,7 +238,7 @@ where
     S: Method<f64> + Clone,
 {
     fn end_under_feedback<M, S, const NQ: usize, const NV: usize, const KNOWN: bool>(
-        m: &Counted<'_, M, KNOWN>,
+        m: &CountingMechanism<'_, M, KNOWN>,
         (q, v): (SVector<f64, NQ>, SVector<f64, NV>),
         method: S,
     ) -> (SVector<f64, NQ>, SVector<f64, NV>)
@@ -252,8 +252,8 @@ where
         let end = run.finish().unwrap();
         (end.q, end.v)
     }
-    let known = end_under_feedback(&Counted::<_, true>::new(m), (q, v), method.clone());
-    [known, end_under_feedback(&Counted::<_, false>::new(m), (q, v), method)]
+    let known = end_under_feedback(&CountingMechanism::<_, true>::new(m), (q, v), method.clone());
+    [known, end_under_feedback(&CountingMechanism::<_, false>::new(m), (q, v), method)]
 }
 
 #[track_caller]
@@ -326,7 +326,7 @@ fn implicit_method_has_order_four_under_constraints() {
 fn large_clock_times_cost_no_extra_steps() {
     let cart = Cart {};
     let end_from_start_time = |start: f64| {
-        let counted = Counted::<_, true>::new(&cart);
+        let counted = CountingMechanism::<_, true>::new(&cart);
         let run = simulate(&counted).from([0.01, 0.4], [0.0, 1.0]).start_at(start).duration(1.0);
         let run = run.inputs(|t, _, _| [5.0 * (3.0 * (t - start)).sin()].into());
         let end = run.clone().method(Rodas::new().tolerance(1e-9, 1e-9)).finish().unwrap();

@@ -100,7 +100,7 @@ struct Gripper {
     bend_thumb: Pin,
 }
 
-fn quadruped<T: Real>() -> Quadruped<T> {
+fn sample_quadruped<T: Real>() -> Quadruped<T> {
     let number = linkwork::nalgebra::convert::<f64, T>;
     Quadruped {
         trunk_mass: number(8.0),
@@ -114,12 +114,12 @@ fn quadruped<T: Real>() -> Quadruped<T> {
 
 /// Returns a random configuration, velocity and acceleration of the quadruped.
 fn random_state(random: &mut Random) -> (SVector<f64, 15>, [SVector<f64, 14>; 2]) {
-    (random.random_configuration(&quadruped()), [random.random_vector(2.0), random.random_vector(2.0)])
+    (random.random_configuration(&sample_quadruped()), [random.random_vector(2.0), random.random_vector(2.0)])
 }
 
 #[test]
 fn limb_lanes_give_equal_functions() {
-    let (robot, mut random) = (quadruped::<f64>(), Random::new(7));
+    let (robot, mut random) = (sample_quadruped::<f64>(), Random::new(7));
     for _ in 0..20 {
         let (q, [v, a]) = random_state(&mut random);
         let (m, h) = (robot.mass_matrix(&q), robot.bias_forces(&q, &v));
@@ -151,7 +151,7 @@ fn difference_columns(f: impl Fn(f64, &SVector<f64, 14>) -> SVector<f64, 14>) ->
 
 #[test]
 fn limb_derivatives_agree_with_finite_differences() {
-    let (robot, mut random) = (quadruped::<f64>(), Random::new(5));
+    let (robot, mut random) = (sample_quadruped::<f64>(), Random::new(5));
     let is_close =
         |x: &SMatrix<f64, 14, 14>, y: &SMatrix<f64, 14, 14>| (x - y).amax() < 1e-7 * (1.0 + y.amax());
     for _ in 0..5 {
@@ -189,8 +189,8 @@ fn limb_derivatives_agree_with_finite_differences() {
 #[test]
 fn limb_lanes_agree_for_every_scalar_type() {
     let mut random = Random::new(11);
-    let (double, single) = (quadruped::<f64>(), quadruped::<f32>());
-    let lanes = quadruped::<Lanes<f64, 2>>();
+    let (double, single) = (sample_quadruped::<f64>(), sample_quadruped::<f32>());
+    let lanes = sample_quadruped::<Lanes<f64, 2>>();
     for _ in 0..20 {
         let (q, [v, a]) = random_state(&mut random);
         let (tau, m) = (double.inverse_dynamics(&q, &v, &a), double.mass_matrix(&q));

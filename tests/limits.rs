@@ -155,7 +155,7 @@ fn structs_declare_joint_limits() {
     );
 }
 
-/// Slide that rotates as a function of time.
+/// Slide whose direction rotates as a function of time.
 #[mechanism]
 struct Turning {
     rate: f64,
@@ -177,7 +177,7 @@ fn joint_limits_are_independent_of_time() {
     assert_eq!(Mechanism::neutral(&turning)[0], 0.0);
 }
 
-/// Robot without inertia, of which only kinematics are generated.
+/// Robot without inertia, for which only kinematics are generated.
 #[mechanism(urdf = "data/urdf/limits.urdf", inertia = none)]
 struct Weightless;
 

@@ -181,7 +181,7 @@ fn linearisation_covers_a_driven_pivot() {
     check_differences!(Driven { amplitude: 0.2 }, Driven, m => at(&m, 0.4_f64), 0.4);
 }
 
-/// Panda arm whose second finger follows the first.
+/// Panda robot arm whose second finger follows the first.
 #[mechanism(urdf = "../models/urdf/panda.urdf", derivatives)]
 struct PandaMimic;
 

@@ -334,7 +334,7 @@ struct Loaded {
     of_grease: Scalar,
 }
 
-/// Two rods on a cart without force elements.
+/// Two rods on a cart, without force elements.
 #[mechanism(gravity = -9.81 * y)]
 struct Bare {
     #[body(mass = 2)]

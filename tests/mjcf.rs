@@ -5,7 +5,7 @@ use linkwork::{Limits, Mechanism};
 use support::compare::assert_close;
 use support::table::Record;
 
-/// MuJoCo computes principal axes only to some 1e-11.
+/// Tolerance of results: MuJoCo computes principal axes only to about 1e-11.
 const TOLERANCE: f64 = 1e-10;
 /// Tolerance of forward dynamics, which includes the condition of the mass matrix.
 const FORWARD: f64 = 1e-9;
@@ -120,7 +120,7 @@ fn mjcf_actuators_with_states_agree_with_mujoco() {
     assert_eq!(Drives::INPUTS[14..], ["wound_pos", "wound_vel", "wound_ff", "wound_voltage"]);
     let drives = Drives::FILE;
     let whole = drives.extended();
-    let rates = |q: &SVector<f64, 6>, v: &SVector<f64, 18>, u: &SVector<f64, 18>| {
+    let state_rates = |q: &SVector<f64, 6>, v: &SVector<f64, 18>, u: &SVector<f64, 18>| {
         whole.forward_dynamics(0.0, q, v, &whole.generalized_forces(0.0, q, v, u))
     };
     for case in Record::load("mujoco/drives.json").records_with_key("cases") {
@@ -128,15 +128,15 @@ fn mjcf_actuators_with_states_agree_with_mujoco() {
         let v =
             SVector::from_column_slice(&[case.numbers_with_key("v"), case.numbers_with_key("x")].concat());
         let expected = [case.numbers_with_key("a"), case.numbers_with_key("rates")].concat();
-        assert_close("rates", rates(&q, &v, &u).as_slice(), &expected, FORWARD);
+        assert_close("rates", state_rates(&q, &v, &u).as_slice(), &expected, FORWARD);
 
         let linear = at(&whole, 0.0).linear_motion(&q, &v, &u);
         let step = SVector::<f64, 18>::from_fn(|k, _| (1.3 * k as f64).cos());
-        let displaced = |h: f64| {
+        let displaced_rates = |h: f64| {
             let q = whole.integrate(&q, &(step * h));
-            rates(&q, &(v + step * h), &(u + step * h))
+            state_rates(&q, &(v + step * h), &(u + step * h))
         };
-        let slope = (displaced(1e-6) - displaced(-1e-6)) / 2e-6;
+        let slope = (displaced_rates(1e-6) - displaced_rates(-1e-6)) / 2e-6;
         let found = (linear.by_q + linear.by_v + linear.by_u) * step;
         assert_close("derivatives", found.as_slice(), slope.as_slice(), 1e-6);
     }

@@ -105,7 +105,7 @@ where
     assert_eq!(heap_calls(|| simulate_with_control().count()), 0, "control, samples and events");
 }
 
-/// Checks the functions that are not in the trait.
+/// Checks that kinematic functions outside the trait `Mechanism` allocate no memory.
 macro_rules! check_kinematics {
     ($mechanism:expr, $type:ident, $frame:literal) => {
         let m = $mechanism;
@@ -135,7 +135,7 @@ fn generated_functions_do_not_allocate() {
     check_all_functions(&PandaMimic);
     check_all_functions(&Solo12);
     check_all_functions(&Humanoid);
-    check_all_functions(&workshop());
+    check_all_functions(&sample_workshop());
     check_all_functions(&Spacecraft {});
     check_all_functions(&OnScrew {});
     check_all_functions(&OnUniversal {});
@@ -144,11 +144,11 @@ fn generated_functions_do_not_allocate() {
     check_kinematics!(Panda, Panda, "panda_hand_tcp");
     check_kinematics!(Solo12, Solo12, "HR_FOOT");
     check_kinematics!(Humanoid, Humanoid, "r_wrist");
-    check_kinematics!(workshop(), Workshop, "tip");
+    check_kinematics!(sample_workshop(), Workshop, "tip");
     check_kinematics!(Spacecraft {}, Spacecraft, "weight");
 }
 
-/// Panda arm with generated derivatives of the dynamics.
+/// Panda robot arm with generated derivatives of the dynamics.
 #[mechanism(urdf = "../models/urdf/panda.urdf", mimic = independent, derivatives)]
 struct PandaWithDerivatives;
 
@@ -168,7 +168,7 @@ fn derivatives_do_not_allocate() {
     assert_eq!(heap_calls(|| m.linearize(q, v, u)), 0, "linearize");
 }
 
-/// Quadruped Solo12 with generated batched functions.
+/// Solo12 quadruped robot with generated functions of several states.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, batch)]
 struct Solo12InLanes;
 
@@ -296,8 +296,8 @@ fn contacts_do_not_allocate() {
         "event by event"
     );
     let (u, step) = (SVector::zeros(), TimeStepping::step(0.02));
-    let transition = || discrete::transition(&m, &step, 0.0, &at, &rates, &u).unwrap();
-    assert!(transition().v[2].abs() < 0.2 && heap_calls(transition) == 0, "transition");
+    let transition_at_state = || discrete::transition(&m, &step, 0.0, &at, &rates, &u).unwrap();
+    assert!(transition_at_state().v[2].abs() < 0.2 && heap_calls(transition_at_state) == 0, "transition");
     assert_eq!(heap_calls(|| contact::impact(&m, 0.0, &at, &rates)), 0, "impact");
     assert_eq!(heap_calls(|| contact::forces(&m, 0.0, &at, &rates, &SVector::zeros(), 1e-3)), 0, "forces");
 }

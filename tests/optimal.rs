@@ -56,16 +56,16 @@ fn block_recursion_satisfies_riccatis_equation() {
     let (s, c, r) =
         (random_positive_definite::<12>(&mut random), random_positive_definite::<14>(&mut random), 0.3);
     let (g, w) = (random.random_vector::<14>(1.0), random.random_vector::<12>(1.0));
-    let block =
+    let diagonal_block =
         |m: &SMatrix<f64, 14, 14>, i: usize, j: usize| m.fixed_view::<6, 6>(6 * i, 6 * j).into_owned();
     let mixed_block = |i: usize| c.fixed_view::<6, 2>(6 * i, 12).into_owned();
     let cost = Quadratic {
         q: g.fixed_rows::<6>(0).into_owned(),
         v: g.fixed_rows::<6>(6).into_owned(),
         u: g.fixed_rows::<2>(12).into_owned(),
-        qq: block(&c, 0, 0),
-        qv: block(&c, 0, 1),
-        vv: block(&c, 1, 1),
+        qq: diagonal_block(&c, 0, 0),
+        qv: diagonal_block(&c, 0, 1),
+        vv: diagonal_block(&c, 1, 1),
         qu: mixed_block(0),
         vu: mixed_block(1),
         uu: c.fixed_view::<2, 2>(12, 12).into_owned(),

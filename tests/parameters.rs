@@ -22,7 +22,7 @@ struct Everything;
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct AllOfIt;
 
-/// Quadruped whose inertial parameters are parameters of the struct.
+/// Quadruped robot whose inertial parameters are fields of the struct.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, parameters = inertial, prepare)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quadruped;
@@ -63,7 +63,7 @@ fn parametric_robot_with_file_values_equals_the_file_robot() {
     assert_same_dynamics(&quadruped.prepare(), &linkwork_models::Solo12, 10, TOLERANCE);
 }
 
-/// Arm with the constant values of two different files.
+/// Arm with the constant values of the file before its numbers are changed.
 #[mechanism(urdf = "data/urdf/arm_before.urdf")]
 struct Before;
 #[mechanism(urdf = "data/urdf/arm_after.urdf")]
@@ -81,12 +81,12 @@ struct Arm<T> {
     tool: Particle,
 }
 
-/// Parameters with the default values of the second file.
+/// Parameters of the arm with the default values of another file.
 #[mechanism(urdf = "data/urdf/arm_after.urdf", parameters = [inertial, placement, damping, friction])]
 #[derive(Clone, Copy)]
 struct Figures;
 
-fn arm_of(f: &Figures) -> Arm<f64> {
+fn arm_with_parameters(f: &Figures) -> Arm<f64> {
     Arm {
         load: 0.0,
         upper_arm: f.upper_arm,
@@ -108,7 +108,7 @@ fn arm_of(f: &Figures) -> Arm<f64> {
 fn parametric_robot_with_new_values_equals_the_new_file_robot() {
     let before = Arm::<f64>::from_file(0.0);
     assert_same_dynamics(&before, &Before, 20, TOLERANCE);
-    let after = arm_of(&Figures::FILE);
+    let after = arm_with_parameters(&Figures::FILE);
     assert_same_dynamics(&after, &After, 20, TOLERANCE);
     assert_ne!(before, after);
     // The parameters have the values that the file states; the inertia of the file is in other axes.
@@ -241,7 +241,7 @@ fn other_inertial(random: &mut Random, link: &Inertial<f64>) -> Inertial<f64> {
 
 /// Checks that two robots have the same inverse dynamics in random motions. They may differ only in
 /// parameters without effect.
-fn same_torques(one: &Panda, other: &Panda) {
+fn check_same_torques(one: &Panda, other: &Panda) {
     let mut random = Random::new(2);
     for _ in 0..20 {
         let [q, v, a] = [random.random_vector(2.0), random.random_vector(2.0), random.random_vector(3.0)];
@@ -263,7 +263,7 @@ fn identified_base_parameters_convert_to_mass_parameters() {
         assert_eq!(found.validate(), Ok(()));
         let again = found.base_parameters(&found.standard_parameters());
         assert_similar("base parameters", again.as_slice(), base.as_slice(), 1e-9);
-        same_torques(&found, &truth);
+        check_same_torques(&found, &truth);
         // The bodies differ: combinations of parameters without effect on the torques cannot be identified.
         assert_ne!(found, truth);
         // Setting the same base parameters again does not change the result.
@@ -277,7 +277,7 @@ fn identified_base_parameters_convert_to_mass_parameters() {
     // physical consistency.
     let mut same = Panda::FILE;
     same.set_base_parameters(&same.base_parameters(&same.standard_parameters())).unwrap();
-    same_torques(&same, &Panda::FILE);
+    check_same_torques(&same, &Panda::FILE);
 }
 
 #[test]

@@ -182,7 +182,7 @@ fn prepared_driven_mechanism_equals_the_mechanism() {
     assert!((end_coordinate(one) - end_coordinate(other)).abs() < 1e-9);
 }
 
-/// Four-bar linkage with all options of generated functions.
+/// Four-bar linkage with all options that request functions.
 #[mechanism(
     gravity = -g * y,
     prepare,

@@ -257,8 +257,8 @@ fn locked_joints_stay_at_zero() {
     for case in reference_table("panda").records_with_key("cases") {
         let [q, v, a] =
             ["q", "v", "a"].map(|key| case.vector_with_key::<9>(key).fixed_rows::<7>(0).into_owned());
-        let with_fingers = |x: SVector<f64, 7>| x.insert_rows(7, 2, 0.0);
-        let [q_free, v_free, a_free] = [q, v, a].map(|x| SVector::from_fn(|i, _| with_fingers(x)[i]));
+        let add_finger_entries = |x: SVector<f64, 7>| x.insert_rows(7, 2, 0.0);
+        let [q_free, v_free, a_free] = [q, v, a].map(|x| SVector::from_fn(|i, _| add_finger_entries(x)[i]));
 
         let mass_matrix = Panda.mass_matrix(&q_free).fixed_view::<7, 7>(0, 0).into_owned();
         assert_close("mass matrix", PandaArm.mass_matrix(&q).as_slice(), mass_matrix.as_slice(), DYNAMICS);

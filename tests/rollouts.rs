@@ -74,7 +74,12 @@ fn proportional_derivative_law<const L: usize, const N: usize>(
     SVector::from_fn(|i, _| (rest - q[i]) * 20.0 - v[i] * 3.0 + t)
 }
 
-fn one_law<const N: usize>(k: usize, t: f64, q: &SVector<f64, N>, v: &SVector<f64, N>) -> SVector<f64, N> {
+fn command_of_state<const N: usize>(
+    k: usize,
+    t: f64,
+    q: &SVector<f64, N>,
+    v: &SVector<f64, N>,
+) -> SVector<f64, N> {
     proportional_derivative_law::<1, N>(k, Lanes([t]), &q.map(|x| Lanes([x])), &v.map(|x| Lanes([x])))
         .map(|x| x.0[0])
 }
@@ -85,7 +90,8 @@ fn one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut States, co
         let (q, v) = (state_column::<6>(&states.q, count, k), state_column::<6>(&states.v, count, k));
         let mut state = State { t: 0.5, q, v };
         let mut memory = method.memory();
-        let inputs = ContinuousInputs(move |t, q: &SVector<f64, 6>, v: &SVector<f64, 6>| one_law(k, t, q, v));
+        let inputs =
+            ContinuousInputs(move |t, q: &SVector<f64, 6>, v: &SVector<f64, 6>| command_of_state(k, t, q, v));
         let mut system: System<'_, _, _, 6> = System::new(&Ur5, inputs);
         for _ in 0..steps {
             state = method.advance(&mut memory, &mut system, &state, None, false).expect("finite").end;
@@ -99,7 +105,7 @@ fn one_by_one<S: Lockstep<f64>>(method: S, steps: usize, states: &mut States, co
 
 #[test]
 fn rollout_equals_integrator_runs_of_each_state() {
-    fn check_method<S: Lockstep<f64> + Copy>(method: S) {
+    fn check_lockstep_method<S: Lockstep<f64> + Copy>(method: S) {
         for count in [1, 5, 8, 19] {
             let mut expected = States::new(&Ur5, count);
             one_by_one(method, 50, &mut expected, count);
@@ -120,8 +126,8 @@ fn rollout_equals_integrator_runs_of_each_state() {
             compare_bits(&eight, "eight lanes");
         }
     }
-    check_method(Rk4::step(2e-3));
-    check_method(SemiImplicitEuler::step(1e-3));
+    check_lockstep_method(Rk4::step(2e-3));
+    check_lockstep_method(SemiImplicitEuler::step(1e-3));
 }
 
 #[test]

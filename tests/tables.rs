@@ -118,18 +118,22 @@ fn table_of_a_parabola_equals_the_parabola() {
     let (table, formula) = (tabulated_aircraft(900.0, 16.0), Written { mass: 900.0, area: 16.0 });
     let prepared = table.prepare();
     for State { q, v, u } in random_states() {
-        let same =
+        let check_same_values =
             |what: &str, found: &[f64], expected: &[f64]| assert_similar(what, found, expected, FORMULA);
         let (tau, expected) = (table.generalized_forces(&q, &v, &u), formula.generalized_forces(&q, &v, &u));
-        same("τ", tau.as_slice(), expected.as_slice());
-        same("τ, prepared", prepared.generalized_forces(&q, &v, &u).as_slice(), expected.as_slice());
-        same("output", &[table.coefficient(&q, &v, &u)], &[formula.coefficient(&q, &v, &u)]);
+        check_same_values("τ", tau.as_slice(), expected.as_slice());
+        check_same_values(
+            "τ, prepared",
+            prepared.generalized_forces(&q, &v, &u).as_slice(),
+            expected.as_slice(),
+        );
+        check_same_values("output", &[table.coefficient(&q, &v, &u)], &[formula.coefficient(&q, &v, &u)]);
         let ((a, b), (c, d)) = (table.linearize(&q, &v, &u), formula.linearize(&q, &v, &u));
-        same("A", a.as_slice(), c.as_slice());
-        same("B", b.as_slice(), d.as_slice());
+        check_same_values("A", a.as_slice(), c.as_slice());
+        check_same_values("B", b.as_slice(), d.as_slice());
         let (a, b) = prepared.linearize(&q, &v, &u);
-        same("A, prepared", a.as_slice(), c.as_slice());
-        same("B, prepared", b.as_slice(), d.as_slice());
+        check_same_values("A, prepared", a.as_slice(), c.as_slice());
+        check_same_values("B, prepared", b.as_slice(), d.as_slice());
     }
 }
 

@@ -34,7 +34,7 @@ fn machine_source(more: &str) -> String {
     )
 }
 
-fn of_machine(more: &str) -> Result<Units, Vec<String>> {
+fn units_of_machine(more: &str) -> Result<Units, Vec<String>> {
     units_of_mechanism("", &machine_source(more))
 }
 
@@ -43,7 +43,7 @@ fn of_machine(more: &str) -> Result<Units, Vec<String>> {
 #[track_caller]
 fn check_units(fields: &str, expected: &[&str]) {
     let names: String = ('a'..='f').take(expected.len()).map(|c| format!("{c}: f64, ")).collect();
-    match of_machine(&format!("{names}{fields}")) {
+    match units_of_machine(&format!("{names}{fields}")) {
         Ok(units) => assert_eq!(units.parameters, expected, "{fields}"),
         Err(messages) => panic!("{fields}: {messages:?}"),
     }
@@ -56,23 +56,23 @@ fn note_of_line(line: &str) -> Option<&str> {
 
 /// Whether an expected text belongs to a note. Notes state the unit of a parameter and the argument that
 /// determines it, or the unit that would be required.
-fn is_note(text: &str) -> bool {
+fn is_note_text(text: &str) -> bool {
     text.starts_with("it is ") || text.ends_with(" in")
 }
 
 /// Checks the errors of a machine with the parameters `a`, `b`, `c`, and the notes of these errors.
 #[track_caller]
 fn check_unit_errors(fields: &str, expected: &[&str]) {
-    let has =
+    let has_word =
         |name: &&&str| fields.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == **name);
-    let names: String = ["a", "b", "c"].iter().filter(has).map(|n| format!("{n}: f64, ")).collect();
+    let names: String = ["a", "b", "c"].iter().filter(has_word).map(|n| format!("{n}: f64, ")).collect();
     let names = if fields.contains("unit(") { String::new() } else { names };
-    match of_machine(&format!("{names}{fields}")) {
+    match units_of_machine(&format!("{names}{fields}")) {
         Ok(units) => panic!("{fields} is accepted with {units:?}"),
         Err(messages) => {
             let first: Vec<&str> = messages.iter().map(|m| m.lines().next().unwrap_or_default()).collect();
             let notes: Vec<&str> = messages.iter().flat_map(|m| m.lines()).filter_map(note_of_line).collect();
-            let (told, errors): (Vec<&str>, Vec<&str>) = expected.iter().partition(|text| is_note(text));
+            let (told, errors): (Vec<&str>, Vec<&str>) = expected.iter().partition(|text| is_note_text(text));
             assert_eq!(first, errors, "{fields}");
             assert_eq!(notes.len(), told.len(), "{fields}: {notes:?}");
             for (note, told) in notes.iter().zip(&told) {
@@ -201,7 +201,7 @@ fn numeric_literals_take_any_unit() {
         "#[acts(on = cart, value = sin(t) * x - 3 * v(cart / ground / ground))] s: Force, \
          #[energy(a)] e: Potential,",
     ] {
-        if let Err(messages) = of_machine(&format!("a: f64, {fields}")) {
+        if let Err(messages) = units_of_machine(&format!("a: f64, {fields}")) {
             panic!("{fields}: {messages:?}");
         }
     }
@@ -209,7 +209,7 @@ fn numeric_literals_take_any_unit() {
 
 #[test]
 fn coordinates_inputs_and_outputs_have_units() {
-    let units = of_machine(
+    let units = units_of_machine(
         "m: f64, s: Coordinate, phi: Coordinate, gain: f64, #[unit(m)] lever: f64, steer: Input,
         #[particle(mass = m, at = s * (cos(phi) * x + sin(phi) * y))] p: Particle,
         #[acts(on = rail)] push: Force, #[acts(on = hinge)] turn: Torque,
@@ -380,13 +380,13 @@ fn factors_of_parameters_are_dimensionless() {
             format!("#[unit(kg / m)] rho: f64, #[body(mass = {value})] w: Body, #[joint(cart -> w)] j: Weld,")
         };
         for value in [format!("rho * {number}"), format!("{number} * rho"), format!("rho / ({number})")] {
-            let messages = of_machine(&body_with_mass(&value)).unwrap_err();
+            let messages = units_of_machine(&body_with_mass(&value)).unwrap_err();
             assert!(
                 messages[0].starts_with("`rho` is declared as a quantity in kg/m, but used as a mass (kg)")
             );
             assert!(messages[0].contains("`#[define(9.81)] g: Scalar`"), "{messages:?}");
         }
-        of_machine(&format!("{} #[define({number})] length: Scalar,", body_with_mass("rho * length")))
+        units_of_machine(&format!("{} #[define({number})] length: Scalar,", body_with_mass("rho * length")))
             .unwrap();
     }
 }
@@ -394,7 +394,7 @@ fn factors_of_parameters_are_dimensionless() {
 #[test]
 fn unit_attributes_fix_the_units_of_parameters() {
     let unit_of_attribute = |written: &str| {
-        let units = of_machine(&format!("#[unit({written})] a: f64, #[output(3.5 * a)] o: Scalar,"))?;
+        let units = units_of_machine(&format!("#[unit({written})] a: f64, #[output(3.5 * a)] o: Scalar,"))?;
         Ok::<String, Vec<String>>(units.parameters[0].clone())
     };
     for (written, shown) in [

@@ -193,7 +193,7 @@
 //! | 4 | rolling as a condition on the velocity of the lowest point | `wheel.at(-radius * fork.z)` in a `Nonholonomic` | `wheel_rolls_on_a_point_in_fork_axes` |
 //! | 5 | cylindrical and spherical coordinates and their frames | `#[frame(ground, cylindrical(r(point / ground)))]`, `spherical`; a chain of joints or `Coordinate`s | `spherical_and_cylindrical_accelerations_have_textbook_terms`; [`SphericalPendulum`]; `spherical_pendulum_agrees_in_two_coordinate_charts` |
 //! | 5 | frames along curves (Frenet and Serret), curvature, torsion | `#[frame(ground, frenet(curve, s))]`, `curvature(curve, s)`, `torsion(curve, s)` | `textbook/curves.rs`: `helix_has_constant_curvature_and_torsion`, `curvature_of_cubics_and_ellipses_has_closed_forms` |
-//! | 5 | a coordinate along a curve of any form | a `Coordinate`, `at = expression` | `beads_on_wires_have_the_textbook_equations` |
+//! | 5 | coordinates along a curve | `Coordinate`, `at = expression` | `beads_on_wires_have_closed_forms` |
 //! | 6 | reactions of joints, equilibrium of each free body | `reaction_force`, `reaction_torque` | `constraints/reactions.rs`: `reactions_balance_every_free_body` |
 //! | 6 | free-body diagrams: all forces on a body, in any frame, as data and as a drawing | `#[output(body)] loads: FreeBody`, `linkwork_view::free_body` | `free_body_diagrams/main.rs`: `free_body_forces_equal_momentum_rates` |
 //! | 6 | forces along lines, ropes over pegs, cables around drums | `between = (a, b)`, `on = expression`, `cable(a / b, drum.cylinder(radius, axis))` | `textbook/curves.rs`: `elements_act_on_any_length_expression`, `cables_wrap_along_the_shortest_path`, `cable_lengths_have_exact_derivatives` |

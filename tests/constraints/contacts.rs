@@ -202,17 +202,19 @@ fn parametric_surface_contact_has_exact_derivatives() {
     let any = [0.0, 0.0, 0.3, 0.1, -0.4, 2.0, -3.0, 1.0].into();
     let v = OnPoints {}.project_velocity(&q, &any).expect("regular");
     let (by_q, by_v, _) = OnPoints {}.forward_dynamics_derivatives(&q, &v, &SVector::zeros());
-    let accelerations =
+    let accelerations_on_points =
         |q: &SVector<f64, 9>, v: &SVector<f64, 8>| OnPoints {}.forward_dynamics(q, v, &SVector::zeros());
     for k in 0..8 {
         let unit_step = |h: f64| SVector::<f64, 8>::from_fn(|i, _| if i == k { h } else { 0.0 });
         let five_point_derivative = |f: &dyn Fn(f64) -> SVector<f64, 8>, h: f64| {
             ((f(h) - f(-h)) * 8.0 - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h)
         };
-        let found =
-            five_point_derivative(&|h| accelerations(&OnPoints {}.integrate(&q, &unit_step(h)), &v), 1e-3);
+        let found = five_point_derivative(
+            &|h| accelerations_on_points(&OnPoints {}.integrate(&q, &unit_step(h)), &v),
+            1e-3,
+        );
         assert!((found - by_q.column(k)).amax() < 1e-6 * by_q.amax(), "{found} {}", by_q.column(k));
-        let found = five_point_derivative(&|h| accelerations(&q, &(v + unit_step(h))), 1e-3);
+        let found = five_point_derivative(&|h| accelerations_on_points(&q, &(v + unit_step(h))), 1e-3);
         assert!((found - by_v.column(k)).amax() < 1e-6 * by_v.amax(), "{found} {}", by_v.column(k));
     }
 }

@@ -94,7 +94,7 @@ fn check_completed_velocities<
     assert_eq!(m.assemble(0.0, q, &[0, NV]), outside.map(|_: SVector<f64, NV>| *q));
 }
 
-/// Returns the energy after a short time `h`.
+/// Returns the energy of a mechanism after a short time `h` along its motion.
 fn energy_after<M, const NQ: usize, const NV: usize, const NU: usize>(
     m: &M,
     q: &SVector<f64, NQ>,

@@ -49,7 +49,7 @@ fn bennetts_linkage_follows_its_closed_form() {
     let linkage = Bennett {};
     let (q, v) = state_with_angle(0.7, 1.0);
     assert!((bennett_ratio(&q) + 1.0).abs() < 1e-12, "{}", bennett_ratio(&q));
-    let energy =
+    let total_energy =
         |q: &SVector<f64, 3>, v: &SVector<f64, 3>| linkage.kinetic_energy(q, v) + linkage.potential_energy(q);
     let method = DormandPrince::new().tolerance(1e-11, 1e-11);
     let mut farthest = 0.0_f64;
@@ -57,7 +57,7 @@ fn bennetts_linkage_follows_its_closed_form() {
         let sample = sample.expect("the linkage turns on");
         assert!((bennett_ratio(&sample.q) + 1.0).abs() < 1e-9, "{}", sample.q);
         assert!((sample.q[2] + sample.q[0]).abs() < 1e-12, "opposite pins turn alike");
-        assert!((energy(&sample.q, &sample.v) - energy(&q, &v)).abs() < 1e-8);
+        assert!((total_energy(&sample.q, &sample.v) - total_energy(&q, &v)).abs() < 1e-8);
         farthest = farthest.max((sample.q[0] - q[0]).abs());
     }
     assert!(farthest > 1.0, "{farthest}");

@@ -1,4 +1,4 @@
-//! Checks of sliding contact constraints with dry friction.
+//! Tests of sliding contact constraints with dry friction.
 
 use linkwork::integrate::DormandPrince;
 use linkwork::nalgebra::{Matrix3, UnitQuaternion, Vector3};

@@ -141,7 +141,7 @@ struct Block {
 }
 
 impl Block {
-    fn lying_configuration(&self) -> SVector<f64, 7> {
+    fn configuration_on_slope(&self) -> SVector<f64, 7> {
         let mut q = self.neutral();
         q[2] = 0.05;
         q
@@ -153,7 +153,7 @@ impl Block {
 #[test]
 fn block_sticks_on_a_slope_for_an_hour() {
     let m = Block { tilt: 15.0_f64.to_radians(), friction: 0.5 };
-    let q = m.lying_configuration();
+    let q = m.configuration_on_slope();
     let run = simulate(&m).from(q, [0.0; 6]).method(TimeStepping::step(0.1)).duration(3600.0);
     let end = run.sample_every(3600.0).last().unwrap().unwrap();
     assert!((end.q - q).norm() < 1e-9, "{:e}", (end.q - q).norm());
@@ -165,8 +165,10 @@ fn block_sticks_on_a_slope_for_an_hour() {
 fn block_slides_down_a_steep_slope() {
     let (tilt, friction) = (30.0_f64.to_radians(), 0.3);
     let m = Block { tilt, friction };
-    let run =
-        simulate(&m).from(m.lying_configuration(), [0.0; 6]).method(TimeStepping::step(1e-3)).duration(1.0);
+    let run = simulate(&m)
+        .from(m.configuration_on_slope(), [0.0; 6])
+        .method(TimeStepping::step(1e-3))
+        .duration(1.0);
     let end = run.last().unwrap().unwrap();
     let acceleration = G * (tilt.sin() - friction * tilt.cos());
     assert!((end.q[0] - acceleration / 2.0).abs() < 1e-9, "{:e}", end.q[0] - acceleration / 2.0);
@@ -179,7 +181,7 @@ fn sliding_block_stops_after_the_coulomb_distance() {
     let m = Block { tilt: 0.0, friction: 0.3 };
     let mut v = SVector::zeros();
     v[0] = 1.5;
-    let run = simulate(&m).from(m.lying_configuration(), v).method(TimeStepping::step(1e-3)).duration(2.0);
+    let run = simulate(&m).from(m.configuration_on_slope(), v).method(TimeStepping::step(1e-3)).duration(2.0);
     let end = run.last().unwrap().unwrap();
     let way = 1.5 * 1.5 / (2.0 * 0.3 * G);
     assert!((end.q[0] - way).abs() < 1e-5 && end.v.norm() < 1e-13, "{:e}", end.q[0] - way);

@@ -61,19 +61,25 @@ struct Tile {
 fn tiles_falling_into_a_corner_agree_with_located_events() {
     let mut random = Random(7);
     for _ in 0..10 {
-        let m = Tile { friction: random.one_of([0.0, 0.3, 0.8]), restitution: random.one_of([0.0, 0.3]) };
+        let m = Tile {
+            friction: random.random_choice([0.0, 0.3, 0.8]),
+            restitution: random.random_choice([0.0, 0.3]),
+        };
         let q = SVector::from([0.3, 0.3, random.next() * 3.0]);
         let (_, end) = follow_motion(&m, &q, &random.random_vector(1.0), 2.0);
         assert!(end.iter().all(|x| x.is_finite()));
     }
 }
 
-/// Balls of very different masses fall on each other.
+/// Balls of very different masses that fall on each other move as with located events.
 #[test]
 fn colliding_balls_agree_with_located_events() {
     let mut random = Random(8);
     for _ in 0..3 {
-        let m = Pile { friction: random.one_of([0.0, 0.3, 0.8]), restitution: random.one_of([0.0, 0.4]) };
+        let m = Pile {
+            friction: random.random_choice([0.0, 0.3, 0.8]),
+            restitution: random.random_choice([0.0, 0.4]),
+        };
         let mut q = m.neutral();
         (q[0], q[2], q[7], q[9], q[16]) = (-0.11, 0.12, 0.11, 0.15, 0.4);
         follow_motion(&m, &q, &random.random_vector(0.3), 0.4);
@@ -87,8 +93,8 @@ fn double_pendulum_on_the_floor_agrees_with_located_events() {
     for _ in 0..30 {
         let q = SVector::from([random.next() * 1.5, random.next() * 1.5]);
         let m = Chain {
-            friction: random.one_of([0.0, 0.3, 0.7]),
-            restitution: random.one_of([0.0, 0.5]),
+            friction: random.random_choice([0.0, 0.3, 0.7]),
+            restitution: random.random_choice([0.0, 0.5]),
             height: 0.1 - (0.5 * q[0].sin() + 0.5 * (q[0] + q[1]).sin()).min(0.0),
         };
         follow_motion(&m, &q, &random.random_vector(2.0), 2.0);

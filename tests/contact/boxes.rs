@@ -7,7 +7,7 @@ use linkwork::prelude::*;
 
 const G: f64 = 9.81;
 
-/// Half of the edge lengths of both boxes.
+/// Half of the edge lengths of the lower and of the upper box, m.
 const LOW: [f64; 3] = [0.1, 0.1, 0.05];
 const HIGH: [f64; 3] = [0.15, 0.1, 0.025];
 
@@ -127,7 +127,7 @@ fn scaled_axes(turn: &UnitQuaternion<f64>, half: [f64; 3]) -> Matrix3<f64> {
     turn.to_rotation_matrix().into_inner() * Matrix3::from_diagonal(&half.into())
 }
 
-pub fn any_turn(random: &mut Random) -> UnitQuaternion<f64> {
+pub fn random_rotation(random: &mut Random) -> UnitQuaternion<f64> {
     let [x, y, z]: [f64; 3] = random.random_vector::<3>(3.0).into();
     UnitQuaternion::from_scaled_axis(Vector3::new(x, y, z))
 }
@@ -153,7 +153,7 @@ fn box_gaps_are_distances_near_contact() {
     let (low, bar) = (Matrix3::from_diagonal(&LOW.into()), Matrix3::from_diagonal(&[0.1, 1.0, 0.1].into()));
     for _ in 0..60 {
         let (turn, far) =
-            (any_turn(&mut random), Vector3::from(random.random_vector::<3>(1.0)).normalize() * 2.0);
+            (random_rotation(&mut random), Vector3::from(random.random_vector::<3>(1.0)).normalize() * 2.0);
         let (high, line) = (scaled_axes(&turn, HIGH), scaled_axes(&turn, [0.3, 0.0, 0.0]));
         let least_gap_to_seat = |place: Vector3<f64>| {
             let q = configuration_of_boxes(&m, [place[0], place[1], place[2] + LOW[2]], turn);
@@ -264,10 +264,10 @@ fn random_box_impacts_satisfy_contact_conditions() {
     for k in 0..60 {
         let m = Two {
             gravity: 0.0,
-            friction: random.one_of([0.0, 0.3, 2.0]),
-            restitution: random.one_of([0.0, 0.6, 1.0]),
+            friction: random.random_choice([0.0, 0.3, 2.0]),
+            restitution: random.random_choice([0.0, 0.6, 1.0]),
         };
-        let turn = if k % 3 == 0 { UnitQuaternion::identity() } else { any_turn(&mut random) };
+        let turn = if k % 3 == 0 { UnitQuaternion::identity() } else { random_rotation(&mut random) };
         let far = Vector3::from(random.random_vector::<3>(1.0)).normalize();
         // Both boxes are above the floor.
         let configuration_at_place = |place: Vector3<f64>| {
@@ -285,11 +285,11 @@ fn random_box_impacts_satisfy_contact_conditions() {
         let found = contact::impact(&m, 0.0, &q, &v).unwrap();
         let linear_and_angular_momentum = |v: &SVector<f64, 12>| {
             let p = m.mass_matrix(&q) * v;
-            let turn =
+            let orientation_at =
                 |k: usize| UnitQuaternion::from_quaternion([q[k], q[k + 1], q[k + 2], q[k + 3]].into());
             let momentum_of_body =
                 |k: usize, turn: UnitQuaternion<f64>| turn * Vector3::new(p[k], p[k + 1], p[k + 2]);
-            let (a, b) = (turn(3), turn(10));
+            let (a, b) = (orientation_at(3), orientation_at(10));
             let (pa, pb) = (momentum_of_body(0, a), momentum_of_body(6, b));
             let spin = momentum_of_body(3, a) + momentum_of_body(9, b);
             let position_of_body = |k: usize| Vector3::new(q[k], q[k + 1], q[k + 2]);

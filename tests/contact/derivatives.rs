@@ -32,7 +32,7 @@ pub struct Hollow {
     rest: Contact,
 }
 
-/// Crank that pushes a piston onto a stop.
+/// Slider-crank whose crank pushes a piston onto a stop.
 #[mechanism(gravity = -9.81 * y, derivatives)]
 struct Engine {
     #[body(mass = 2, com = 0.02 * x, inertia = rod(2, 0.04, x))]
@@ -151,7 +151,7 @@ fn contact_derivatives_of_a_ball_in_a_windy_hollow() {
     }
 }
 
-/// Derivatives of a contact force through a closed loop.
+/// Derivatives of the contact force on a piston act through a closed loop.
 #[test]
 fn contact_derivatives_of_a_piston_on_its_stop() {
     let m = Engine {};
@@ -439,7 +439,7 @@ fn touchdown_has_exact_derivatives() {
         M: ContactDerivatives<NQ, NV, NU, NK, NR, Scalar = f64>,
     {
         let found = contact::land_derivatives(m, 0.0, q, v, touches).unwrap();
-        let landed =
+        let velocity_after_touchdown =
             |q: &SVector<f64, NQ>, v: &SVector<f64, NV>| contact::land(m, 0.0, q, v, touches).unwrap();
         // Balance of momentum, and velocities of closed contacts after the touchdown.
         let step = found.transition::<NQ, NU>(q);
@@ -453,8 +453,9 @@ fn touchdown_has_exact_derivatives() {
         assert!(M::CONSTRAINED || balance.amax() < 1e-10, "{balance}");
         for k in 0..NV {
             let unit_step = |s: f64| SVector::<f64, NV>::from_fn(|i, _| if i == k { s } else { 0.0 });
-            let touchdown_at_displacement = |s: f64| landed(&m.integrate(q, &unit_step(s)), v);
-            let touchdown_at_velocity_step = |s: f64| landed(q, &(v + unit_step(s)));
+            let touchdown_at_displacement =
+                |s: f64| velocity_after_touchdown(&m.integrate(q, &unit_step(s)), v);
+            let touchdown_at_velocity_step = |s: f64| velocity_after_touchdown(q, &(v + unit_step(s)));
             let of_velocity = [
                 (derivative_at_zero(|s| touchdown_at_displacement(s).v), found.by_q.column(k)),
                 (derivative_at_zero(|s| touchdown_at_velocity_step(s).v), found.by_v.column(k)),

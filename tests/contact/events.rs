@@ -1,4 +1,4 @@
-//! Motions with located events against closed-form solutions, to rounding.
+//! Tests of motions with located contact events against closed-form solutions, to rounding.
 
 use linkwork::integrate::EventDriven;
 use linkwork::prelude::*;

@@ -56,7 +56,7 @@ struct Drum {
     floor: Contact,
 }
 
-fn last_sample(m: &Drum, q: [f64; 7], h: f64, t: f64) -> Sample<f64, 7, 6, 0> {
+fn last_sample_of_drum(m: &Drum, q: [f64; 7], h: f64, t: f64) -> Sample<f64, 7, 6, 0> {
     let run = simulate(m).from(q, [0.0; 6]).method(TimeStepping::step(h)).duration(t);
     run.finish().unwrap()
 }
@@ -67,15 +67,19 @@ fn last_sample(m: &Drum, q: [f64; 7], h: f64, t: f64) -> Sample<f64, 7, 6, 0> {
 fn drum_stands_on_its_face_on_a_slope() {
     for slope in [0.0, 20.0_f64.to_radians(), 30.0_f64.to_radians()] {
         let m = Drum { slope };
-        let end = last_sample(&m, [0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0], 1e-3, 2.0);
+        let end = last_sample_of_drum(&m, [0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0], 1e-3, 2.0);
         assert!(
             (end.q - SVector::from([0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0])).amax() < 1e-6,
             "{slope} {end:?}"
         );
     }
     // Beyond 2/3 the drum tips over.
-    let end =
-        last_sample(&Drum { slope: 34.5_f64.to_radians() }, [0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0], 1e-3, 2.0);
+    let end = last_sample_of_drum(
+        &Drum { slope: 34.5_f64.to_radians() },
+        [0.0, 0.0, 0.15, 0.0, 0.0, 0.0, 1.0],
+        1e-3,
+        2.0,
+    );
     assert!(end.q[2] < 0.12, "{end:?}");
 }
 
@@ -84,7 +88,7 @@ fn drum_stands_on_its_face_on_a_slope() {
 fn drum_rolls_on_its_side() {
     let m = Drum { slope: 0.2 };
     let turn = core::f64::consts::FRAC_1_SQRT_2;
-    let end = last_sample(&m, [0.0, 0.0, 0.1, turn, 0.0, 0.0, turn], 1e-3, 1.0);
+    let end = last_sample_of_drum(&m, [0.0, 0.0, 0.1, turn, 0.0, 0.0, turn], 1e-3, 1.0);
     let fallen = 9.81 * 0.2_f64.sin() / 3.0;
     assert!((end.q[0] - fallen).abs() < 2e-3 * fallen, "{} {fallen}", end.q[0]);
     let speed = end.v.fixed_rows::<3>(0).norm();

@@ -1,4 +1,4 @@
-//! Contact problems of textbooks against their closed-form solutions.
+//! Tests of contact problems of textbooks against their closed-form solutions.
 
 use linkwork::contact::{self, Touch};
 use linkwork::integrate::EventDriven;

@@ -1,6 +1,6 @@
 //! Convex hulls on planes and terrains, and spheres on hulls.
 
-use super::boxes::any_turn;
+use super::boxes::random_rotation;
 use super::laws::Random;
 use linkwork::contact;
 use linkwork::nalgebra::{UnitQuaternion, Vector3};
@@ -42,7 +42,7 @@ struct BlockHull {
 }
 
 /// Returns the configuration of a block with a face on the slope.
-fn on_slope(tilt: f64) -> [f64; 7] {
+fn block_on_slope(tilt: f64) -> [f64; 7] {
     let (sine, cosine) = (tilt / 2.0).sin_cos();
     [0.05 * tilt.sin(), 0.0, 0.05 * tilt.cos(), 0.0, sine, 0.0, cosine]
 }
@@ -66,7 +66,7 @@ fn hull_of_a_box_tumbles_like_the_box() {
 fn hull_slides_down_a_slope() {
     let (tilt, friction, t) = (0.5_f64, 0.3, 0.4);
     let m = BlockHull { tilt, friction };
-    let run = simulate(&m).from(on_slope(tilt), [0.0; 6]);
+    let run = simulate(&m).from(block_on_slope(tilt), [0.0; 6]);
     let end = run.method(TimeStepping::step(1e-3)).duration(t).finish().unwrap();
     let path = 0.5 * G * (tilt.sin() - friction * tilt.cos()) * t * t;
     assert!((end.q[0] - 0.05 * tilt.sin() - path * tilt.cos()).abs() < 1e-6, "{}", end.q[0]);
@@ -117,14 +117,14 @@ fn hull_contact_forces_balance_its_weight() {
     let m = Nut { radius: 0.1, height: 0.08 };
     let q = SVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
     let found = contact::acting(&m, 0.0, &q, &SVector::zeros(), &SVector::zeros()).unwrap();
-    let normal = |k: usize| found[Nut::CONTACT_ROWS[k].first];
+    let normal_force = |k: usize| found[Nut::CONTACT_ROWS[k].first];
     let weight = 2.0 * G;
-    let total: f64 = (0..6).map(normal).sum();
+    let total: f64 = (0..6).map(normal_force).sum();
     let moment = (0..6).fold([0.0; 2], |sum, k| {
         let angle = k as f64 * core::f64::consts::FRAC_PI_3;
-        [sum[0] + 0.1 * angle.cos() * normal(k), sum[1] + 0.1 * angle.sin() * normal(k)]
+        [sum[0] + 0.1 * angle.cos() * normal_force(k), sum[1] + 0.1 * angle.sin() * normal_force(k)]
     });
-    assert!((total - weight).abs() < 1e-6 && (6..12).all(|k| normal(k) == 0.0), "{found}");
+    assert!((total - weight).abs() < 1e-6 && (6..12).all(|k| normal_force(k) == 0.0), "{found}");
     assert!(
         (moment[0] - 0.0125 * weight).abs() < 1e-6 && (moment[1] - 0.02 * weight).abs() < 1e-6,
         "{moment:?}"
@@ -176,7 +176,7 @@ struct BallAndBlock {
 #[test]
 fn hull_distances_equal_box_distances() {
     let (m, mut random) = (BallAndBlock {}, Random(5));
-    let sorted = |gaps: &[f64]| {
+    let sorted_gaps = |gaps: &[f64]| {
         let mut gaps = gaps.to_vec();
         gaps.sort_by(f64::total_cmp);
         gaps
@@ -185,7 +185,7 @@ fn hull_distances_equal_box_distances() {
         let (ball, block, turn) = (
             random.random_vector::<3>(1.0).normalize() * 0.5,
             random.random_vector::<3>(0.2),
-            any_turn(&mut random).coords,
+            random_rotation(&mut random).coords,
         );
         let ball = ball * (1.0 + random.next() * 0.5);
         let q: SVector<f64, 14> = [
@@ -209,7 +209,7 @@ fn hull_distances_equal_box_distances() {
         let (gaps, rates) = (m.contact_gaps(&q), m.contact_rates(&q, &v));
         assert!((gaps[0] - gaps[1]).abs() < 1e-12, "{gaps}");
         assert!((rates[0] - rates[1]).abs() < 1e-10, "{rates}");
-        let (boxes, hulls) = (sorted(&gaps.as_slice()[2..10]), sorted(&gaps.as_slice()[10..18]));
+        let (boxes, hulls) = (sorted_gaps(&gaps.as_slice()[2..10]), sorted_gaps(&gaps.as_slice()[10..18]));
         assert!(boxes.iter().zip(&hulls).all(|(a, b)| (a - b).abs() < 1e-12), "{gaps}");
     }
     let inside =
@@ -234,10 +234,13 @@ struct BallOnOctahedron {
 #[test]
 fn ball_rolls_on_a_face_of_an_octahedron() {
     let m = BallOnOctahedron {};
-    let gap = |p: [f64; 3]| m.contact_gaps(&[p[0], p[1], p[2], 0.0, 0.0, 0.0, 1.0].into())[0];
-    assert!((gap([1.0; 3]) - (2.0 / 3_f64.sqrt() - 0.1)).abs() < 1e-12);
-    assert!((gap([0.0, 1.0, -1.0]) - (0.5 * 2_f64.sqrt() - 0.1)).abs() < 1e-12);
-    assert!((gap([0.1, -0.2, 3.0]) - (Vector3::<f64>::new(0.1, -0.2, 2.0).norm() - 0.1)).abs() < 1e-12);
+    let gap_at_position = |p: [f64; 3]| m.contact_gaps(&[p[0], p[1], p[2], 0.0, 0.0, 0.0, 1.0].into())[0];
+    assert!((gap_at_position([1.0; 3]) - (2.0 / 3_f64.sqrt() - 0.1)).abs() < 1e-12);
+    assert!((gap_at_position([0.0, 1.0, -1.0]) - (0.5 * 2_f64.sqrt() - 0.1)).abs() < 1e-12);
+    assert!(
+        (gap_at_position([0.1, -0.2, 3.0]) - (Vector3::<f64>::new(0.1, -0.2, 2.0).norm() - 0.1)).abs()
+            < 1e-12
+    );
     let (normal, down) = (Vector3::repeat(1.0).normalize(), Vector3::new(1.0, 1.0, -2.0).normalize());
     let start = Vector3::repeat(1.0 / 3.0) + normal * 0.1;
     let q = [start[0], start[1], start[2], 0.0, 0.0, 0.0, 1.0];
@@ -278,16 +281,16 @@ fn meshes_come_to_rest_as_in_mujoco() {
         q.fixed_rows_mut::<4>(10).copy_from(&wedge);
         let run = simulate(&Stones).from(q, [0.0; 12]).method(TimeStepping::step(2e-3)).duration(2.5);
         let end = run.finish().unwrap();
-        let upright = |k: usize| {
+        let upright_direction = |k: usize| {
             let turn = UnitQuaternion::new_normalize(linkwork::nalgebra::Quaternion::from(
                 end.q.fixed_rows::<4>(k).into_owned(),
             ));
             turn.inverse() * Vector3::z()
         };
         assert!(end.v.amax() < 1e-6, "{}", end.v);
-        assert!((upright(3) - Vector3::from(up)).amax() < 3e-3, "{} {up:?}", upright(3));
+        assert!((upright_direction(3) - Vector3::from(up)).amax() < 3e-3, "{} {up:?}", upright_direction(3));
         assert!((end.q[2] - height).abs() < 4e-4, "{} {height}", end.q[2]);
-        assert!((upright(10) - Vector3::z()).amax() < 1e-6 && end.q[9].abs() < 1e-6, "{}", end.q);
+        assert!((upright_direction(10) - Vector3::z()).amax() < 1e-6 && end.q[9].abs() < 1e-6, "{}", end.q);
     }
 }
 
@@ -309,14 +312,14 @@ fn mesh_vertices_are_scaled_and_placed_by_the_urdf() {
     let c = turn.coords;
     let gaps = Stone {}.contact_gaps(&[0.0, 0.0, 0.5, c[0], c[1], c[2], c[3]].into());
     let placed = UnitQuaternion::from_euler_angles(0.0, 0.0, core::f64::consts::FRAC_PI_6);
-    let height = |p: Vector3<f64>| 0.5 + (turn * (Vector3::new(0.01, 0.0, 0.0) + p))[2];
-    let check = |range: core::ops::Range<usize>, vertex: &dyn Fn([f64; 3]) -> Vector3<f64>| {
-        let mut expected = VERTICES.map(|p| height(vertex(p)));
+    let height_of_vertex = |p: Vector3<f64>| 0.5 + (turn * (Vector3::new(0.01, 0.0, 0.0) + p))[2];
+    let check_vertices = |range: core::ops::Range<usize>, vertex: &dyn Fn([f64; 3]) -> Vector3<f64>| {
+        let mut expected = VERTICES.map(|p| height_of_vertex(vertex(p)));
         let mut found = gaps.as_slice()[range].to_vec();
         expected.sort_by(f64::total_cmp);
         found.sort_by(f64::total_cmp);
         assert!(expected.iter().zip(&found).all(|(a, b)| (a - b).abs() < 1e-9), "{expected:?} {found:?}");
     };
-    check(0..8, &|p| placed * (Vector3::from(p) * 0.01));
-    check(8..16, &|p| Vector3::from(p));
+    check_vertices(0..8, &|p| placed * (Vector3::from(p) * 0.01));
+    check_vertices(8..16, &|p| Vector3::from(p));
 }

@@ -1,4 +1,4 @@
-//! Bodies that lie, lean and collide on each other.
+//! Tests of bodies that lie, lean and collide on each other.
 
 use linkwork::prelude::*;
 use std::thread;

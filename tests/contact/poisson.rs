@@ -234,8 +234,8 @@ fn check_impact_conditions<M, const NQ: usize, const NV: usize, const NK: usize,
 fn poisson_impacts_satisfy_contact_conditions() {
     let mut random = Random(31);
     for _ in 0..300 {
-        let friction = random.one_of([0.0, 0.05, 0.3, 0.8, 2.0]);
-        let m = Block { friction, restitution: random.one_of([0.2, 0.6, 1.0]) };
+        let friction = random.random_choice([0.0, 0.05, 0.3, 0.8, 2.0]);
+        let m = Block { friction, restitution: random.random_choice([0.2, 0.6, 1.0]) };
         let mut q = m.neutral();
         q[2] = 0.05;
         if random.next() > 0.3 {
@@ -246,8 +246,8 @@ fn poisson_impacts_satisfy_contact_conditions() {
     for _ in 0..2000 {
         let (a, b) = (random.next() * 3.0, random.next() * 3.0);
         let height = -(0.5 * a.sin() + 0.5 * (a + b).sin());
-        let friction = random.one_of([0.0, 0.3, 0.7, 3.0]);
-        let m = Pendulum { friction, restitution: random.one_of([0.5, 0.9, 1.0]), height };
+        let friction = random.random_choice([0.0, 0.3, 0.7, 3.0]);
+        let m = Pendulum { friction, restitution: random.random_choice([0.5, 0.9, 1.0]), height };
         check_impact_conditions(&m, &[a, b].into(), &random.random_vector(3.0));
     }
 }

@@ -1,6 +1,6 @@
 //! Bodies that fall on each other and on the ground: a step always exists, and takes no energy in.
 
-use super::boxes::any_turn;
+use super::boxes::random_rotation;
 use super::laws::Random;
 use linkwork::nalgebra::UnitQuaternion;
 use linkwork::prelude::*;
@@ -81,8 +81,8 @@ fn random_scenes_of_two_bricks_complete() {
             a,
             b,
             c,
-            friction: random.one_of([0.0, 0.1, 0.3, 0.5, 1.0, 2.0]),
-            restitution: random.one_of([0.0, 0.0, 0.3, 1.0]),
+            friction: random.random_choice([0.0, 0.1, 0.3, 0.5, 1.0, 2.0]),
+            restitution: random.random_choice([0.0, 0.0, 0.3, 1.0]),
         };
         let far = (a * a + b * b + c * c).sqrt() / 2.0;
         let level = UnitQuaternion::identity();
@@ -91,8 +91,8 @@ fn random_scenes_of_two_bricks_complete() {
             0 => {
                 v = random.random_vector(2.0);
                 [
-                    ([0.0, 0.0, far], any_turn(&mut random)),
-                    ([0.3 * far, 0.0, 3.1 * far], any_turn(&mut random)),
+                    ([0.0, 0.0, far], random_rotation(&mut random)),
+                    ([0.3 * far, 0.0, 3.1 * far], random_rotation(&mut random)),
                 ]
             }
             1 => [([0.0, 0.0, c / 2.0], level), ([0.3 * a, 0.2 * b, 1.5 * c], level)],

@@ -1,4 +1,4 @@
-//! Checks of compliant contacts, in which surfaces indent.
+//! Tests of compliant contacts, in which surfaces indent.
 
 use linkwork::prelude::*;
 
@@ -64,16 +64,16 @@ fn rebound_time_and_velocity(at: impl Fn(f64) -> Sample<f64, 1, 1, 0>, longest: 
 fn compliant_impacts_have_closed_form_durations() {
     let precise_method = || DormandPrince::new().tolerance(1e-12, 1e-14);
     let m = Ball { g: 0.0, mass: 0.5, stiffness: 1e4, dissipation: 0.0 };
-    let state_at =
+    let state_after =
         |t: f64| simulate(&m).from([0.0], [-1.0]).method(precise_method()).duration(t).finish().unwrap();
     let half = core::f64::consts::PI * (m.mass / m.stiffness).sqrt();
-    let (time, speed) = rebound_time_and_velocity(state_at, half * 1.5);
+    let (time, speed) = rebound_time_and_velocity(state_after, half * 1.5);
     assert!((time / half - 1.0).abs() < 1e-9 && (speed - 1.0).abs() < 1e-9, "{time} {half} {speed}");
     let m = Round { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation: 0.0 };
-    let state_at =
+    let state_after =
         |t: f64| simulate(&m).from([0.0], [-1.0]).method(precise_method()).duration(t).finish().unwrap();
     let depth = (5.0 * m.mass / (4.0 * m.stiffness)).powf(0.4);
-    let (time, speed) = rebound_time_and_velocity(state_at, 4.0 * depth);
+    let (time, speed) = rebound_time_and_velocity(state_after, 4.0 * depth);
     assert!(
         (time / depth - 2.943_274).abs() < 1e-5 && (speed - 1.0).abs() < 1e-8,
         "{} {speed}",
@@ -88,11 +88,11 @@ fn compliant_restitution_decreases_with_speed() {
     for dissipation in [0.003, 0.03] {
         let expected_restitution = |speed: f64| 1.0 - 2.0 / 3.0 * dissipation * speed;
         let m = Ball { g: 0.0, mass: 0.5, stiffness: 1e4, dissipation };
-        let state_at = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
-        let (_, linear) = rebound_time_and_velocity(state_at, 0.05);
+        let state_after = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
+        let (_, linear) = rebound_time_and_velocity(state_after, 0.05);
         let m = Round { g: 0.0, mass: 0.5, stiffness: 1e6, dissipation };
-        let state_at = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
-        let (_, round) = rebound_time_and_velocity(state_at, 0.05);
+        let state_after = |t: f64| simulate(&m).from([0.0], [-1.0]).duration(t).finish().unwrap();
+        let (_, round) = rebound_time_and_velocity(state_after, 0.05);
         for found in [linear, round] {
             assert!(
                 (found - expected_restitution(1.0)).abs() < dissipation * dissipation,

@@ -1,4 +1,4 @@
-//! Terrain whose height is an expression or a table.
+//! Tests of contacts with terrain whose height is an expression or a table.
 
 use linkwork::prelude::*;
 

@@ -29,7 +29,7 @@ struct Ball {
 const LEVEL: Ball = Ball { tilt: 0.0, friction: 0.5, torsional: 0.002, rolling: 0.001 };
 
 impl Ball {
-    fn lying_configuration(&self) -> SVector<f64, 7> {
+    fn ball_on_ground(&self) -> SVector<f64, 7> {
         let mut q = self.neutral();
         q[2] = RADIUS;
         q
@@ -52,7 +52,7 @@ fn friction_moments_have_rows_after_their_contact() {
 /// at rest.
 #[test]
 fn spinning_ball_stops_by_the_friction_moment() {
-    let (m, q) = (LEVEL, LEVEL.lying_configuration());
+    let (m, q) = (LEVEL, LEVEL.ball_on_ground());
     let v = SVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 20.0]);
     let inertia = 0.4 * MASS * RADIUS * RADIUS;
     let stops = 20.0 * inertia / (0.002 * MASS * G);
@@ -74,7 +74,7 @@ fn spinning_ball_stops_by_the_friction_moment() {
 /// rest for an hour.
 #[test]
 fn rolling_ball_stops_by_rolling_friction() {
-    let (m, q) = (LEVEL, LEVEL.lying_configuration());
+    let (m, q) = (LEVEL, LEVEL.ball_on_ground());
     let v = SVector::from([1.0, 0.0, 0.0, 0.0, 20.0, 0.0]);
     let brakes = 5.0 / 7.0 * 0.001 * G / RADIUS;
     let way = 0.5 / brakes;
@@ -100,7 +100,7 @@ fn ball_rests_on_slopes_below_the_rolling_limit() {
         let (sin, cos) = m.tilt.sin_cos();
         let a = 5.0 / 7.0 * G * (sin - 0.1 * cos).max(0.0);
         for t in [1.0, 3.0] {
-            let run = simulate(&m).from(m.lying_configuration(), [0.0; 6]);
+            let run = simulate(&m).from(m.ball_on_ground(), [0.0; 6]);
             let events = run.clone().method(exact_method()).duration(t).finish().unwrap();
             let steps = run.method(TimeStepping::step(1e-3)).duration(t).finish().unwrap();
             assert!((events.q[0] + a * t * t / 2.0).abs() < 1e-9, "{tilt}: {events:?}");
@@ -111,7 +111,7 @@ fn ball_rests_on_slopes_below_the_rolling_limit() {
 
 #[test]
 fn friction_moments_oppose_the_angular_velocity() {
-    let (m, q) = (LEVEL, LEVEL.lying_configuration());
+    let (m, q) = (LEVEL, LEVEL.ball_on_ground());
     let (u, none) = (SVector::<f64, 0>::zeros(), SVector::<f64, 6>::zeros());
     let weight = MASS * G;
     let spins = contact::acting(&m, 0.0, &q, &[0.0, 0.0, 0.0, 0.0, 0.0, 3.0].into(), &u).unwrap();
@@ -138,7 +138,7 @@ fn contact_derivatives_include_friction_moments() {
     use Touch::{Open, Slips, Sticks};
     let m = Ball { tilt: 0.2, ..LEVEL };
     let mut random = Random(11);
-    let q = m.integrate(&m.lying_configuration(), &random.random_vector(1.0));
+    let q = m.integrate(&m.ball_on_ground(), &random.random_vector(1.0));
     let (v, tau) = (random.random_vector(1.0), random.random_vector(1.0));
     for touches in [
         [Sticks, Slips, Slips],
@@ -159,12 +159,11 @@ fn impacts_with_friction_moments_gain_no_energy() {
     for _ in 0..2000 {
         let m = Ball {
             tilt: 0.0,
-            friction: random.one_of([0.0, 0.1, 1.0]),
-            torsional: random.one_of([0.0, 1e-3, 0.1]),
-            rolling: random.one_of([0.0, 1e-3, 0.1]),
+            friction: random.random_choice([0.0, 0.1, 1.0]),
+            torsional: random.random_choice([0.0, 1e-3, 0.1]),
+            rolling: random.random_choice([0.0, 1e-3, 0.1]),
         };
-        let q =
-            m.integrate(&m.lying_configuration(), &SVector::from([0.0, 0.0, 0.0, 1.0, 2.0, random.next()]));
+        let q = m.integrate(&m.ball_on_ground(), &SVector::from([0.0, 0.0, 0.0, 1.0, 2.0, random.next()]));
         let v =
             random.random_vector::<6>(3.0).component_mul(&SVector::from([1.0, 1.0, 1.0, 20.0, 20.0, 20.0]));
         let found = contact::impact(&m, 0.0, &q, &v).unwrap();
@@ -254,7 +253,7 @@ fn outputs_include_friction_moments() {
     let v: SVector<f64, 6> = [1.0, 0.0, 0.0, 0.0, 20.0, -15.0].into();
     let moments = SVector::<f64, 3>::from([0.0, -0.001, 0.002]) * (MASS * G);
     let lost = -(0.001 * 20.0 + 0.002 * 15.0) * MASS * G;
-    let q = LEVEL.lying_configuration();
+    let q = LEVEL.ball_on_ground();
     let m = Felt {};
     assert!((m.couple(&q, &v).unwrap() + moments).amax() < 1e-8);
     assert!((m.taken(&q, &v).unwrap() - lost).abs() < 1e-6, "{:?} {lost}", m.taken(&q, &v));

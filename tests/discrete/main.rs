@@ -48,7 +48,7 @@ struct Driven {
 )]
 struct Panda;
 
-/// Closed loop, whose derivatives include the constraint forces.
+/// Closed loop whose derivatives include the constraint forces.
 #[mechanism(gravity = -9.81 * y, momentum_derivatives)]
 struct Linkage {
     #[body(mass = 1, com = 0.5 * x, inertia = rod(1, 1, x))]

@@ -74,7 +74,7 @@ fn wrapped_angle(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
 }
 
-/// Returns the largest difference of angles modulo whole turns.
+/// Returns the largest difference of joint angles, modulo whole turns.
 fn largest_angle_difference(a: &SVector<f64, 3>, b: &SVector<f64, 3>) -> f64 {
     (a - b).iter().fold(0.0, |most, off| most.max(wrapped_angle(*off).abs()))
 }

@@ -1,11 +1,11 @@
-//! Forms of a struct that the macro accepts.
+//! Forms of the struct that the attribute `#[mechanism]` accepts.
 
 #![deny(warnings)]
 #![deny(missing_docs)]
 
 use linkwork::prelude::*;
 
-/// Mechanism whose struct has no parameters.
+/// Mechanism without parameters, whose struct has no fields left.
 #[mechanism]
 pub struct Plain {
     #[body(mass = 1)]

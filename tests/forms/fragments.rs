@@ -1,4 +1,4 @@
-//! Types that a macro substitutes into a mechanism.
+//! Mechanisms into which a user's macro substitutes types.
 
 macro_rules! cart {
     ($number:ty, $body:path, $joint:ty) => {

@@ -171,10 +171,10 @@ undamped! {
     spacecraft: Spacecraft {},
 }
 
-/// Checks that dashpots dissipate the power `c v²`.
+/// Dashpots dissipate the power `c v²`.
 #[test]
 fn dashpots_dissipate_quadratic_power() {
-    let m = workshop();
+    let m = sample_workshop();
     check_trait_consequences(&m, |v| {
         m.shoulder_damping * v[0] * v[0] + m.slide_damping * v[1] * v[1] + m.turn_damping * v[2] * v[2]
     });
@@ -236,7 +236,7 @@ fn frame_velocities_are_rates_of_placements() {
     check_kinematics!(OnPlanar {}, OnPlanar, "carried");
     check_kinematics!(OnFree {}, OnFree, "carried");
     check_kinematics!(OnWeld {}, OnWeld, "carried");
-    check_kinematics!(workshop(), Workshop, "tip");
+    check_kinematics!(sample_workshop(), Workshop, "tip");
 }
 
 /// Motors do not change the momentum of a robot in the air: it changes only by the robot's weight.
@@ -259,7 +259,7 @@ fn motors_preserve_the_momentum_of_flying_robots() {
 /// Checks that the power of each input is its force times the velocity of the point on which it acts.
 #[test]
 fn input_power_is_force_times_point_velocity() {
-    let m = workshop();
+    let m = sample_workshop();
     assert_eq!(Workshop::INPUTS, ["motor", "drive", "spin", "thrust", "lift", "wheel", "gust"]);
     assert_eq!(Workshop::VELOCITIES, ["shoulder", "track.slide", "track.turn"]);
     let mut random = Random::new(7);
@@ -319,7 +319,7 @@ fn spacecraft_conserves_momentum_and_energy() {
 /// dashpots dissipate.
 #[test]
 fn workshop_energy_changes_by_work_minus_dissipation() {
-    let m = workshop();
+    let m = sample_workshop();
     let input_at_time = |t: f64| SVector::<f64, 7>::from_fn(|i, _| (t * (1.0 + i as f64) + i as f64).sin());
     let net_power = |t: f64, q: &_, v: &SVector<f64, 3>| {
         v.dot(&m.generalized_forces(q, &input_at_time(t)))
@@ -335,20 +335,20 @@ fn workshop_energy_changes_by_work_minus_dissipation() {
         .method(Rk4::step(1e-3));
     let samples: Vec<_> = run.map(|sample| sample.expect("the integrator goes on")).collect();
     assert_eq!(samples.len(), 2001);
-    let energy =
+    let total_energy =
         |k: usize| m.kinetic_energy(&samples[k].q, &samples[k].v) + m.potential_energy(&samples[k].q);
     // Integration by Simpson's rule.
     let simpson_weight = |k: usize| [1.0, 4.0, 2.0][if k == 0 || k == 2000 { 0 } else { 2 - k % 2 }];
     let work: f64 =
         samples.iter().enumerate().map(|(k, s)| simpson_weight(k) * net_power(s.t, &s.q, &s.v)).sum::<f64>()
             / 3e3;
-    assert_close("energy", &[energy(2000) - energy(0)], &[work], 1e-9);
+    assert_close("energy", &[total_energy(2000) - total_energy(0)], &[work], 1e-9);
 }
 
 // ----
 // Scalars ---------------------------------------------------------------------------------------------------
 
-/// Mechanism that is generic over the scalar type.
+/// Robot that is generic over the scalar type.
 #[mechanism(gravity = -g * y)]
 struct Robot<T> {
     g: T,

@@ -297,13 +297,13 @@ struct Trampoline<T> {
     spring53: Spring,
 }
 
-fn trampoline() -> Trampoline<f64> {
+fn sample_trampoline() -> Trampoline<f64> {
     Trampoline { k: 30.0, c: 0.7 }
 }
 
 #[test]
 fn spring_forces_are_gradients_of_the_stored_energy() {
-    let m = trampoline();
+    let m = sample_trampoline();
     let mut random = Random::new(31);
     for _ in 0..5 {
         let q = random.random_configuration(&m);
@@ -325,7 +325,7 @@ fn spring_forces_are_gradients_of_the_stored_energy() {
 
 #[test]
 fn all_functions_agree_for_many_springs() {
-    let m = trampoline();
+    let m = sample_trampoline();
     let mut random = Random::new(32);
     for _ in 0..5 {
         let q = random.random_configuration(&m);
@@ -342,7 +342,7 @@ fn all_functions_agree_for_many_springs() {
 
 #[test]
 fn derivatives_include_the_dependencies_of_passive_forces() {
-    let m = trampoline();
+    let m = sample_trampoline();
     let mut random = Random::new(33);
     for _ in 0..3 {
         let q = random.random_configuration(&m);
@@ -399,9 +399,9 @@ fn derivatives_include_the_dependencies_of_passive_forces() {
 
 #[test]
 fn prepared_trampoline_equals_the_trampoline() {
-    assert_same_dynamics(&trampoline().prepare(), &trampoline(), 5, 1e-10);
+    assert_same_dynamics(&sample_trampoline().prepare(), &sample_trampoline(), 5, 1e-10);
     let single = Trampoline::<f32> { k: 30.0, c: 0.7 };
     let h = single.bias_forces(&single.neutral(), &SVector::from_element(0.1));
-    let exact = trampoline().bias_forces(&trampoline().neutral(), &SVector::from_element(0.1));
+    let exact = sample_trampoline().bias_forces(&sample_trampoline().neutral(), &SVector::from_element(0.1));
     assert_similar("single precision", h.cast::<f64>().as_slice(), exact.as_slice(), 1e-5);
 }

@@ -1,4 +1,4 @@
-//! Shared function of spring forces in SIMD lanes.
+//! Tests of the shared function of spring forces in SIMD lanes.
 
 use linkwork::nalgebra::SVector;
 use linkwork::prelude::*;

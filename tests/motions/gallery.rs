@@ -31,9 +31,9 @@ pub fn check_constraint_drift<
 where
     M: Constrained<NQ, NV, NU, NH, NC, Scalar = f64> + Mechanism<NQ, NV, NU, Scalar = f64>,
 {
-    let energy =
+    let total_energy =
         |q: &_, v: &_| Mechanism::kinetic_energy(m, 0.0, q, v) + Mechanism::potential_energy(m, 0.0, q);
-    let start = energy(q, v);
+    let start = total_energy(q, v);
     let run = simulate(m).from(*q, *v).method(Rk4::step(h)).duration(h * steps as f64).sample_every(h);
     let (mut changes, mut count) = ([0.0_f64; 2], 0);
     for sample in run {
@@ -42,7 +42,7 @@ where
         let (residual, rate) = (m.constraint_residuals(t, &q).amax(), m.constraint_rates(t, &q, &v).amax());
         assert!(residual <= rounding * q.amax().max(1.0), "{residual:e} in step {count}");
         assert!(rate <= rounding * v.amax().max(1.0), "{rate:e} in step {count}");
-        let change = (energy(&q, &v) - start).abs();
+        let change = (total_energy(&q, &v) - start).abs();
         changes[1] = changes[1].max(change);
         if 10 * count <= steps {
             changes[0] = changes[0].max(change);

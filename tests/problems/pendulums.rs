@@ -1,4 +1,4 @@
-//! Checks of pendulums, some of them on a cart.
+//! Tests of pendulums, some of them on a cart, against references.
 
 use linkwork::nalgebra::{SMatrix, SVector, Vector2};
 use linkwork::{frame, mechanism};

@@ -1,4 +1,4 @@
-//! Checks of springs, dashpots, screw joints and impulses.
+//! Tests of springs, dashpots, screw joints and impulses against closed forms.
 
 use linkwork::nalgebra::{Matrix2, SVector, Vector2, Vector3};
 use linkwork::{frame, mechanism};

@@ -51,7 +51,7 @@ fn heavy_top_agrees_with_the_reference() {
     }
 }
 
-/// Top in gimbals with Euler angles: precession, nutation, spin.
+/// Top in gimbals with Euler angles: precession, nutation and spin.
 #[mechanism(gravity = -10 * z)]
 struct TopOnGimbals {
     #[body]

@@ -56,11 +56,11 @@ struct Driven {
     motor: Torque,
 }
 
-/// Panda arm with seven axes and a gripper.
+/// Panda robot arm with seven axes and a gripper.
 #[mechanism(urdf = "../models/urdf/panda.urdf", second_derivatives)]
 struct Panda;
 
-/// Quadruped Solo12 with a free base.
+/// Solo12 quadruped robot with a free base.
 #[mechanism(urdf = "../models/urdf/solo12.urdf", base = free, second_derivatives)]
 struct Solo;
 
@@ -245,23 +245,24 @@ fn check_steps_from<M, S, const NV: usize, const NU: usize>(
     let gradient_of_step = |q: &_, v: &_, u: &_| {
         discrete::transition(m, method, t, q, v, u).expect("it moves").adjoint(&factors.0, &factors.1)
     };
-    let transposed =
+    let transposed_columns =
         |columns: Vec<SMatrix<f64, NV, 1>>| SMatrix::<f64, NV, NV>::from_fn(|i, j| columns[j][i]);
-    let by_q =
-        transposed(derivatives_along_directions(|d: &SVector<f64, NV>| gradient_of_step(&(q + d), &v, &u).0));
+    let by_q = transposed_columns(derivatives_along_directions(|d: &SVector<f64, NV>| {
+        gradient_of_step(&(q + d), &v, &u).0
+    }));
     let size = by_q.amax().max(1.0);
     assert_block(&format!("{name}: qq"), &qq, &by_q, size);
     let gradient_at_velocity_step = |d: &SVector<f64, NV>| gradient_of_step(&q, &(v + d), &u);
     assert_block(
         &format!("{name}: qv"),
         &qv,
-        &transposed(derivatives_along_directions(|d| gradient_at_velocity_step(d).0)),
+        &transposed_columns(derivatives_along_directions(|d| gradient_at_velocity_step(d).0)),
         size,
     );
     assert_block(
         &format!("{name}: vv"),
         &vv,
-        &transposed(derivatives_along_directions(|d| gradient_at_velocity_step(d).1)),
+        &transposed_columns(derivatives_along_directions(|d| gradient_at_velocity_step(d).1)),
         size,
     );
     let gradient_at_input_step = |d: &SVector<f64, NU>| gradient_of_step(&q, &v, &(u + d));

@@ -1,4 +1,4 @@
-//! Second derivatives of mechanisms with declared generalized speeds.
+//! Tests of second derivatives of mechanisms with declared generalized speeds.
 
 use super::check_second_derivatives;
 use linkwork::prelude::*;

@@ -104,8 +104,8 @@ fn tripod_start() -> (SVector<f64, 7>, SVector<f64, 6>) {
     (q, [0.6, -0.3, -0.8, 0.5, -1.2, 2.0].into())
 }
 
-/// Returns `Z(q)`, which maps generalized speeds to joint velocities.
-fn rates_of(q: &SVector<f64, 7>) -> SMatrix<f64, 6, 6> {
+/// Returns the matrix `Z(q)`, which maps generalized speeds to joint velocities.
+fn velocity_map(q: &SVector<f64, 7>) -> SMatrix<f64, 6, 6> {
     let unit_vector = |i: usize| SVector::<f64, 6>::from_fn(|j, _| if i == j { 1.0 } else { 0.0 });
     SMatrix::from_columns(&std::array::from_fn::<_, 6, _>(|i| {
         TripodInSpeeds {}.rates_of_speeds(q, &unit_vector(i))
@@ -115,7 +115,7 @@ fn rates_of(q: &SVector<f64, 7>) -> SMatrix<f64, 6, 6> {
 #[test]
 fn contacts_in_speeds_equal_contacts_in_velocities() {
     let (plain, m, (q, rates)) = (Tripod {}, TripodInSpeeds {}, tripod_start());
-    let (u, z) = (m.speeds_of_rates(&q, &rates), rates_of(&q));
+    let (u, z) = (m.speeds_of_rates(&q, &rates), velocity_map(&q));
     assert_close("gaps", m.contact_gaps(&q).as_slice(), plain.contact_gaps(&q).as_slice(), 1e-14);
     assert_close(
         "rates",
@@ -157,7 +157,7 @@ fn contacts_in_speeds_equal_contacts_in_velocities() {
     let expected = contact::impact(&plain, 0.0, &down, &rates).unwrap();
     assert!(expected.impulses.amax() > 0.1, "{expected:?}");
     assert_close("impulses", struck.impulses.as_slice(), expected.impulses.as_slice(), 1e-11);
-    assert_close("struck", (rates_of(&down) * struck.v).as_slice(), expected.v.as_slice(), 1e-11);
+    assert_close("struck", (velocity_map(&down) * struck.v).as_slice(), expected.v.as_slice(), 1e-11);
 }
 
 /// Motions with located events are equal; time stepping converges to the same motion as the step decreases.

@@ -14,7 +14,7 @@ mod singular;
 /// Tolerance of derivatives against finite differences of order four.
 const DIFFERENCE: f64 = 1e-8;
 
-/// Rigid body about a fixed point, in Euler angles.
+/// Rigid body about a fixed point, with Euler angles as coordinates.
 #[mechanism(gravity = -9.81 * z, derivatives)]
 struct Angles {
     #[body(mass = 0, inertia = 0)]
@@ -183,40 +183,40 @@ where
             derivative_columns::<NV, 1>(|e| m.difference(&there, &m.integrate(q, &(dv + rate * e[0]))));
         assert_close("displacement rate", back.as_slice(), v.as_slice(), DIFFERENCE);
         let (by_q, by_dv) = m.integrate_derivatives_at(q, &dv);
-        let displacement =
+        let displacement_between =
             |q: &SVector<f64, NQ>, dv: &SVector<f64, NV>| m.difference(&there, &m.integrate(q, dv));
         assert_similar(
             "∂(q ⊕ dv)/∂q",
             by_q.as_slice(),
-            derivative_columns(|e| displacement(&m.integrate(q, &e), &dv)).as_slice(),
+            derivative_columns(|e| displacement_between(&m.integrate(q, &e), &dv)).as_slice(),
             DIFFERENCE,
         );
         assert_similar(
             "∂(q ⊕ dv)/∂dv",
             by_dv.as_slice(),
-            derivative_columns(|e| displacement(q, &(dv + e))).as_slice(),
+            derivative_columns(|e| displacement_between(q, &(dv + e))).as_slice(),
             DIFFERENCE,
         );
         let (by_q, by_dv, by_v) = m.displacement_rate_derivatives(q, &dv, &v);
-        let rate =
+        let perturbed_rate =
             |e: [SVector<f64, NV>; 3]| m.displacement_rate(&m.integrate(q, &e[0]), &(dv + e[1]), &(v + e[2]));
         let o = SVector::zeros();
         assert_similar(
             "∂/∂q",
             by_q.as_slice(),
-            derivative_columns(|e| rate([e, o, o])).as_slice(),
+            derivative_columns(|e| perturbed_rate([e, o, o])).as_slice(),
             DIFFERENCE,
         );
         assert_similar(
             "∂/∂dv",
             by_dv.as_slice(),
-            derivative_columns(|e| rate([o, e, o])).as_slice(),
+            derivative_columns(|e| perturbed_rate([o, e, o])).as_slice(),
             DIFFERENCE,
         );
         assert_similar(
             "∂/∂v",
             by_v.as_slice(),
-            derivative_columns(|e| rate([o, o, e])).as_slice(),
+            derivative_columns(|e| perturbed_rate([o, o, e])).as_slice(),
             DIFFERENCE,
         );
     }

@@ -1,4 +1,4 @@
-//! Checks of particles in user-defined coordinates.
+//! Tests of particles in user-defined coordinates.
 
 use super::{EXACT, MOTION};
 use linkwork::mechanism;
@@ -57,7 +57,7 @@ struct BeadOnHelix {
 }
 
 #[test]
-fn beads_on_wires_have_the_textbook_equations() {
+fn beads_on_wires_have_closed_forms() {
     let (g, m, p) = (9.81, 0.4, 0.6);
     let wire = BeadOnParabola { g, m, p };
     let (s, v) = (0.7, 1.3);

@@ -5,7 +5,7 @@ use linkwork::prelude::*;
 use std::f64::consts::PI;
 use support::random::Random;
 
-/// Bead that slides on a helical wire.
+/// Bead that slides on a helical wire, with its closed-form equation.
 #[mechanism(gravity = -9.81 * z)]
 struct Helix {
     a: f64,
@@ -198,7 +198,7 @@ struct Cables {
 
 /// Returns the length of the shortest path of two straight lines and a helix, by search over the points of
 /// contact with the cylinder that are visible from the ends.
-fn shortest_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
+fn shortest_path_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
     let length_of_path = |[alpha, beta, za, zb]: [f64; 4]| {
         let point_on_cylinder = |angle: f64, z: f64| [radius * angle.cos(), radius * angle.sin(), z];
         let distance_between =
@@ -227,7 +227,7 @@ fn shortest_around(a: [f64; 3], b: [f64; 3], radius: f64) -> f64 {
 #[test]
 fn cables_wrap_along_the_shortest_path() {
     let m = Cables { radius: 0.5 };
-    let configuration =
+    let ball_configuration =
         |a: [f64; 3], b: [f64; 3]| SVector::from([a[0] + 0.1, a[1], a[2], b[0] + 0.1, b[1], b[2]]);
     // The cable passes the far side from below to above, level and rising, with more than half a turn of
     // contact.
@@ -236,18 +236,22 @@ fn cables_wrap_along_the_shortest_path() {
         ([0.2, -0.9, 0.3], [-0.1, 1.2, 1.1]),
         ([0.1, 0.8, 0.0], [0.9, -0.6, -0.7]),
     ] {
-        let q = configuration(a, b);
+        let q = ball_configuration(a, b);
         let found = m.drum(&q);
-        assert!((found - shortest_around(a, b, 0.5)).abs() < 1e-7, "{found} {}", shortest_around(a, b, 0.5));
+        assert!(
+            (found - shortest_path_around(a, b, 0.5)).abs() < 1e-7,
+            "{found} {}",
+            shortest_path_around(a, b, 0.5)
+        );
         assert!((m.back(&q) - found).abs() < 1e-14);
         assert!(found > m.straight(&q));
     }
     // Half a turn of a level cable with ends that hang straight down: two weights over a pulley.
-    let q = configuration([0.5, -2.0, 0.0], [-0.5, -3.0, 0.0]);
+    let q = ball_configuration([0.5, -2.0, 0.0], [-0.5, -3.0, 0.0]);
     assert!((m.drum(&q) - (2.0 + 3.0 + 0.5 * PI)).abs() < 1e-14);
     // A cable without contact with the drum is straight; a cable without contact with the ball is straight,
     // too.
-    let free = configuration([0.7, -1.0, 0.2], [0.9, 1.0, 0.4]);
+    let free = ball_configuration([0.7, -1.0, 0.2], [0.9, 1.0, 0.4]);
     assert!((m.drum(&free) - m.straight(&free)).abs() < 1e-14);
     let q = SVector::from([1.0, 0.0, 0.0, 0.0, 0.8, 0.6]);
     assert!((m.ball(&q) - m.straight(&q)).abs() < 1e-14);

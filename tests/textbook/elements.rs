@@ -66,16 +66,28 @@ fn inductance_is_the_inertia_of_the_charge() {
     let (mass, stiffness, damping) = (m, k, c);
     let speaker = Loudspeaker { mass, stiffness, damping, inductance: l, resistance: r, coupling: bl };
     let order = Loudspeaker::VELOCITIES.map(|name| usize::from(name == "travel"));
-    let ordered =
+    let charge_and_travel_in_order =
         |charge: f64, travel: f64| Vector2::from(order.map(|is_travel| [charge, travel][is_travel]));
-    let (q, v, u) = (ordered(0.1, 2e-3), ordered(0.4, 0.3), Vector1::new(5.0));
+    let (q, v, u) =
+        (charge_and_travel_in_order(0.1, 2e-3), charge_and_travel_in_order(0.4, 0.3), Vector1::new(5.0));
     // L q̈ = u − R q̇ − B ẋ, m ẍ = B q̇ − c ẋ − k x.
-    let expected = ordered((5.0 - r * 0.4 - bl * 0.3) / l, (bl * 0.4 - c * 0.3 - k * 2e-3) / m);
+    let expected =
+        charge_and_travel_in_order((5.0 - r * 0.4 - bl * 0.3) / l, (bl * 0.4 - c * 0.3 - k * 2e-3) / m);
     let found = speaker.forward_dynamics(&q, &v, &speaker.generalized_forces(&q, &u));
     assert_close("accelerations", found.as_slice(), expected.as_slice(), EXACT);
-    assert_close("mass", speaker.mass_matrix(&q).diagonal().as_slice(), ordered(l, m).as_slice(), EXACT);
+    assert_close(
+        "mass",
+        speaker.mass_matrix(&q).diagonal().as_slice(),
+        charge_and_travel_in_order(l, m).as_slice(),
+        EXACT,
+    );
     let inverse = speaker.mass_matrix_inverse(&q);
-    assert_close("its inverse", inverse.diagonal().as_slice(), ordered(1.0 / l, 1.0 / m).as_slice(), EXACT);
+    assert_close(
+        "its inverse",
+        inverse.diagonal().as_slice(),
+        charge_and_travel_in_order(1.0 / l, 1.0 / m).as_slice(),
+        EXACT,
+    );
     let (by_q, by_v, _) = speaker.forward_dynamics_derivatives(&q, &v, &Vector2::zeros());
     let (charge, travel) = (usize::from(order[0] != 0), usize::from(order[0] == 0));
     assert_close("stiffness", &[by_q[(travel, travel)], by_q[(charge, charge)]], &[-k / m, 0.0], EXACT);

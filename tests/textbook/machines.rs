@@ -1,4 +1,4 @@
-//! Checks of complete machines against closed-form solutions.
+//! Tests of complete machines against closed-form solutions.
 
 use super::{EXACT, MOTION};
 use linkwork::nalgebra::{Matrix2, Matrix3, Rotation3, Vector1, Vector2, Vector3, Vector6};

@@ -78,7 +78,7 @@ impl<'m, M, const NQ: usize, const NV: usize> Start<'m, M, NQ, NV> {
     }
 
     /// Returns the observed order of convergence from the errors with steps of `h` and `h / 2`.
-    fn order<const NU: usize, S: Method<f64>>(&self, method: fn(f64) -> S, h: f64) -> f64
+    fn observed_order<const NU: usize, S: Method<f64>>(&self, method: fn(f64) -> S, h: f64) -> f64
     where
         M: Mechanism<NQ, NV, NU, Scalar = f64>,
     {
@@ -131,7 +131,10 @@ fn constrained_methods_have_their_orders() {
     macro_rules! check {
         ($($start:expr, $h:expr;)+) => {$({
             let start = $start;
-            let orders = [start.order(SemiImplicitEuler::step, $h), start.order(ImplicitMidpoint::step, $h)];
+            let orders = [
+                start.observed_order(SemiImplicitEuler::step, $h),
+                start.observed_order(ImplicitMidpoint::step, $h),
+            ];
             assert!((orders[0] - 1.0).abs() < 0.1 && (orders[1] - 2.0).abs() < 0.05, "{orders:?}");
         })+};
     }

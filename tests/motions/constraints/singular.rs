@@ -87,7 +87,7 @@ fn accelerations_are_continuous_through_singularities() {
 
 /// Returns the distance between the top of a post at this angle and the exact position of the first post's
 /// top after ten seconds.
-fn off_top(angle: f64) -> f64 {
+fn distance_from_post_top(angle: f64) -> f64 {
     // IFToMM benchmark A02, integrated in 160 bits.
     (angle.sin() + 0.328_458_111_540_815).hypot(angle.cos() - 0.944_518_538_078_601)
 }
@@ -95,10 +95,10 @@ fn off_top(angle: f64) -> f64 {
 /// Returns the error of the first post's top after ten seconds, and the change of the energy.
 fn window_errors<M: Method<f64>>(method: M) -> (f64, f64) {
     let (q, v) = state_of_posts(0.0, 1.0);
-    let energy =
+    let total_energy =
         |q: &SVector<f64, 5>, v: &SVector<f64, 5>| WINDOWS.kinetic_energy(q, v) + WINDOWS.potential_energy(q);
     let end = simulate(&WINDOWS).from(q, v).method(method).duration(10.0).finish().expect("it turns on");
-    (off_top(end.q[0]), (energy(&end.q, &end.v) - energy(&q, &v)).abs())
+    (distance_from_post_top(end.q[0]), (total_energy(&end.q, &end.v) - total_energy(&q, &v)).abs())
 }
 
 #[test]
@@ -119,13 +119,13 @@ struct Swing {
     pin: Pin,
 }
 
-/// Returns the same errors as [`turned`], for the equivalent pendulum.
+/// Returns the same errors as [`window_errors`], for the equivalent pendulum.
 fn pendulum_errors<M: Method<f64>>(method: M) -> (f64, f64) {
     let swing = Swing {};
     let total_energy = |q: &_, v: &_| swing.kinetic_energy(q, v) + swing.potential_energy(q);
     let (q, v) = (SVector::from([0.0]), SVector::from([-1.0]));
     let end = simulate(&swing).from(q, v).method(method).duration(10.0).finish().expect("it turns on");
-    (off_top(end.q[0]), (total_energy(&end.q, &end.v) - total_energy(&q, &v)).abs())
+    (distance_from_post_top(end.q[0]), (total_energy(&end.q, &end.v) - total_energy(&q, &v)).abs())
 }
 
 /// Implicit methods have the accuracy of the equivalent pendulum while the windows pass their singular

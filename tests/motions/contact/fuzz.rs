@@ -113,7 +113,7 @@ where
 /// ends.
 fn random_contact_coefficients(random: &mut Random) -> (f64, f64) {
     let friction = if random.next() > 0.7 { 0.0 } else { 10.0_f64.powf(1.5 + 4.5 * random.next()) };
-    (friction, random.one_of([0.0, 0.0, 1.0, 1.0, 0.5, 1e-9]))
+    (friction, random.random_choice([0.0, 0.0, 1.0, 1.0, 0.5, 1e-9]))
 }
 
 /// Checks `count` random states of each mechanism. Returns the number of errors.
@@ -123,36 +123,39 @@ pub fn check_random_states(seed: u64, count: usize) -> usize {
         let (friction, restitution) = random_contact_coefficients(&mut random);
         let m = Twice { friction, restitution };
         let mut q = m.neutral();
-        q[2] = 0.05 + random.one_of([0.0, 0.0, -1e-3, 1e-9, 0.1]);
-        q[0] = random.one_of([0.0, 1.0, -1e-12]);
+        q[2] = 0.05 + random.random_choice([0.0, 0.0, -1e-3, 1e-9, 0.1]);
+        q[0] = random.random_choice([0.0, 1.0, -1e-12]);
         if random.next() > 0.5 {
-            let size = random.one_of([1e-12, 1e-6, 0.1, 3.0]);
+            let size = random.random_choice([1e-12, 1e-6, 0.1, 3.0]);
             let mut turn = random.random_vector(size);
             (turn[0], turn[1], turn[2]) = (0.0, 0.0, 0.0);
             q = m.integrate(&q, &turn);
         }
-        let speed = random.one_of([0.0, 1e-12, 1.0, 10.0]);
+        let speed = random.random_choice([0.0, 1e-12, 1.0, 10.0]);
         errors += check_impact_and_steps(&m, q, random.random_vector(speed));
 
         let m = Pile { friction, restitution };
         let mut q = m.neutral();
         (q[0], q[2], q[7], q[9], q[16]) = (-0.1, 0.1, 0.1, 0.1, 0.1 + 0.03_f64.sqrt());
-        q[16] += random.one_of([0.0, 1e-9, -1e-6]);
-        let speed = random.one_of([0.0, 1e-9, 2.0]);
+        q[16] += random.random_choice([0.0, 1e-9, -1e-6]);
+        let speed = random.random_choice([0.0, 1e-9, 2.0]);
         errors += check_impact_and_steps(&m, q, random.random_vector(speed));
 
-        let m = Rubbed { friction, moment: random.one_of([0.0, 1e-3, 0.05, 1e6]), restitution };
+        let m = Rubbed { friction, moment: random.random_choice([0.0, 1e-3, 0.05, 1e6]), restitution };
         let turn = SVector::from([0.0, 0.0, 0.0, random.next(), 3.0 * random.next(), random.next()]);
         let mut q = m.integrate(&m.neutral(), &turn);
-        (q[0], q[2]) = (random.one_of([0.0, 0.0, 1.0, -1e-9]), 0.05 + random.one_of([0.0, 0.0, -1e-6, 0.01]));
-        let speed = random.one_of([0.0, 1e-9, 2.0, 50.0]);
+        (q[0], q[2]) = (
+            random.random_choice([0.0, 0.0, 1.0, -1e-9]),
+            0.05 + random.random_choice([0.0, 0.0, -1e-6, 0.01]),
+        );
+        let speed = random.random_choice([0.0, 1e-9, 2.0, 50.0]);
         errors += check_impact_and_steps(&m, q, random.random_vector(speed));
 
         let (a, b) = (random.next() * 3.0, random.next() * 3.0);
         let m = Chain { friction, restitution, height: -(0.5 * a.sin() + 0.5 * (a + b).sin()) };
         errors += check_impact_and_steps(&m, [a, b].into(), random.random_vector(3.0));
 
-        let m = Jammed { gap: random.one_of([1e-300, 1e-12, 1e-6, 0.3]), restitution };
+        let m = Jammed { gap: random.random_choice([1e-300, 1e-12, 1e-6, 0.3]), restitution };
         errors += check_impact_and_steps(&m, [random.next() * m.gap].into(), random.random_vector(5.0));
     }
     errors

@@ -26,8 +26,8 @@ struct Dice {
 fn corner_impacts_of_a_block_satisfy_contact_conditions() {
     let mut random = Random(1);
     for _ in 0..400 {
-        let friction = random.one_of([0.0, 0.05, 0.3, 0.8, 2.0]);
-        let m = Dice { friction, restitution: random.one_of([0.0, 0.0, 0.4, 1.0]) };
+        let friction = random.random_choice([0.0, 0.05, 0.3, 0.8, 2.0]);
+        let m = Dice { friction, restitution: random.random_choice([0.0, 0.0, 0.4, 1.0]) };
         let mut q = m.neutral();
         q[2] = 0.05;
         if random.next() > 0.3 {
@@ -44,8 +44,8 @@ fn corner_impacts_of_a_block_satisfy_contact_conditions() {
 fn pile_impacts_of_balls_satisfy_contact_conditions() {
     let mut random = Random(2);
     for _ in 0..400 {
-        let friction = random.one_of([0.0, 0.05, 0.3, 0.8, 2.0]);
-        let m = Pile { friction, restitution: random.one_of([0.0, 0.0, 0.4, 1.0]) };
+        let friction = random.random_choice([0.0, 0.05, 0.3, 0.8, 2.0]);
+        let m = Pile { friction, restitution: random.random_choice([0.0, 0.0, 0.4, 1.0]) };
         let mut q = m.neutral();
         (q[0], q[2], q[7], q[9], q[16]) = (-0.1, 0.1, 0.1, 0.1, 0.1 + 0.03_f64.sqrt());
         let v = random.random_vector(2.0);
@@ -64,8 +64,8 @@ fn double_pendulum_impact_gains_no_energy() {
         let q = SVector::from([a, b]);
         let height = -(0.5 * a.sin() + 0.5 * (a + b).sin());
         let m = Chain {
-            friction: random.one_of([0.0, 0.3, 0.7]),
-            restitution: random.one_of([0.5, 0.9, 1.0]),
+            friction: random.random_choice([0.0, 0.3, 0.7]),
+            restitution: random.random_choice([0.5, 0.9, 1.0]),
             height,
         };
         let v = random.random_vector(3.0);

@@ -4,7 +4,7 @@ use linkwork::contact::Contacts;
 use linkwork::prelude::*;
 use std::thread;
 
-/// Five dominoes in a row on the ground.
+/// Five dominoes that stand in a row on the ground.
 #[mechanism(gravity = -9.81 * z)]
 struct Dominoes {
     friction: f64,

@@ -1,4 +1,4 @@
-//! Checks of a tower of boxes.
+//! Test of a tower of boxes that must remain standing.
 
 use linkwork::prelude::*;
 use std::thread;
